@@ -6,7 +6,7 @@
 //! families of cases `fluids`, `waters`, `solids` and `lattice`.
 
 pub mod cases;
-mod limitations;
+pub mod limitations;
 pub mod page;
 pub mod peers;
 pub mod stiffness;

@@ -1,5 +1,6 @@
 //! What lies outside of its bound for a known reason, grouped by cause.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use base::{gate::Cause, spec::Task};
@@ -17,19 +18,30 @@ struct Found<'a> {
     judged: &'a Judged,
 }
 
-/// The causes, those of most gates first.
-pub fn section(suite: &Suite) -> Section {
-    let mut causes: BTreeMap<Option<&Cause>, Vec<Found>> = BTreeMap::new();
-    for results in &suite.cases {
-        for (of, judged) in results.judged() {
-            if let Some(known) = judged.limitation() {
-                let found = Found { results, of, judged };
-                causes.entry(known.cause.as_ref()).or_default().push(found);
-            }
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and last
+/// those whose cause is their own.
+pub fn by_cause<'a, T>(
+    all: impl IntoIterator<Item = T>,
+    judged: impl Fn(&T) -> &'a Judged,
+) -> Vec<(Option<&'a Cause>, Vec<T>)> {
+    let mut causes: BTreeMap<Option<&Cause>, Vec<T>> = BTreeMap::new();
+    for one in all {
+        if let Some(known) = judged(&one).limitation() {
+            causes.entry(known.cause.as_ref()).or_default().push(one);
         }
     }
     let mut causes: Vec<_> = causes.into_iter().collect();
-    causes.sort_by_key(|(_, found)| std::cmp::Reverse(found.len()));
+    causes.sort_by_key(|(cause, gates)| (cause.is_none(), Reverse(gates.len())));
+    causes
+}
+
+/// A part of the page for each cause.
+pub fn section(suite: &Suite) -> Section {
+    let of_case = |results| {
+        let judged = CaseResults::judged(results);
+        judged.map(move |(of, judged)| Found { results, of, judged })
+    };
+    let causes = by_cause(suite.cases.iter().flat_map(of_case), |found| found.judged);
     let section = Section::new("limitations", "Limitations by cause").prose(
         "Each gate below is outside of its bound, and inside the wider bound that its cause explains; \
          beyond that it would fail.",

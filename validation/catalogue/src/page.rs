@@ -4,7 +4,7 @@ use base::{
     gate::Verdict,
     manifest::{Known, Manifest},
     record::Record,
-    reference::{Reference, ReferenceError},
+    reference::Reference,
     spec::{RunSpec, Task},
 };
 use harness::{
@@ -24,12 +24,14 @@ use crate::{cases, limitations, stiffness, time};
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
-    let mut cards = Vec::new();
-    let mut others = Vec::new();
+    let (mut cards, mut others) = (Vec::new(), Vec::new());
     for results in &suite.cases {
         match &results.card {
             Some(card) => cards.push(with_grades(card.clone())),
-            None => others.push(line(results)),
+            None => {
+                let name = results.case.name();
+                others.push(format!("[{name}](#{name}) {}", results.counts().short()));
+            }
         }
     }
     let notes = vec![
@@ -68,12 +70,6 @@ fn with_grades(mut card: Card) -> Card {
     card
 }
 
-/// A supporting case: how its gates ended.
-fn line(results: &CaseResults) -> String {
-    let counts = results.counts();
-    format!("[{0}](#{0}) {1}", results.case.name(), counts.short())
-}
-
 /// What all runs of the report cost together.
 fn cost(suite: &Suite) -> String {
     let records = || suite.cases.iter().flat_map(|results| &results.runs.all).map(|r| &r.record);
@@ -91,34 +87,30 @@ fn cost(suite: &Suite) -> String {
 
 /// What was not made for this page.
 fn reused(suite: &Suite) -> String {
+    if suite.made.reused == 0 {
+        return String::new();
+    }
+    let were = counted(suite.made.reused, "record was", "records were");
     let other = match suite.made.of_other_sources {
         0 => String::new(),
         count => format!(" **Made by a build of other sources: {count} of them.**"),
     };
-    match suite.made.reused {
-        0 => String::new(),
-        count => {
-            let were = counted(count, "record was", "records were");
-            format!(" {were} in the store before.{other}")
-        }
-    }
+    format!(" {were} in the store before.{other}")
 }
 
-fn provenance(m: &Manifest) -> String {
-    let dirty = match m.dirty {
+fn provenance(made_by: &Manifest) -> String {
+    let Manifest { touchstone, profile, rustc, cpu, .. } = made_by;
+    let dirty = match made_by.dirty {
         Known::Yes => " with uncommitted changes",
         Known::No => "",
         Known::Unknown => " (state of the sources unknown)",
     };
-    let commit: String = m.commit.chars().take(12).collect();
+    let commit: String = made_by.commit.chars().take(12).collect();
+    let cores = counted(made_by.cores, "core", "cores");
+    let threads = counted(made_by.threads, "thread", "threads");
     format!(
-        "Made by touchstone {} at commit `{commit}`{dirty} ({} build, {}) on {}, {}, {}.",
-        m.touchstone,
-        m.profile,
-        m.rustc,
-        m.cpu,
-        counted(m.cores, "core", "cores"),
-        counted(m.threads, "thread", "threads")
+        "Made by touchstone {touchstone} at commit `{commit}`{dirty} ({profile} build, {rustc}) on {cpu}, \
+         {cores}, {threads}."
     )
 }
 
@@ -257,30 +249,24 @@ pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
 }
 
 fn references_section() -> Section {
-    type Row = (&'static str, Result<&'static Reference, ReferenceError>);
-    let name = |(name, found): &Row| {
+    let row = |name: &str| {
         let cell = Cell::text(format!("`{name}`"));
-        if found.is_err() { cell.with(Verdict::Fail) } else { cell }
-    };
-    let what = |(_, found): &Row| match found {
-        Ok(reference) => reference.package.title.clone(),
-        Err(error) => error.to_string(),
-    };
-    let licences = |(_, found): &Row| match found {
-        Ok(Reference { package, .. }) => {
-            let names: Vec<&str> = package.licenses.iter().map(|l| l.name.as_str()).collect();
-            names.join(", ")
+        match Reference::load(name) {
+            Ok(reference) => {
+                let package = &reference.package;
+                let names: Vec<&str> = package.licenses.iter().map(|l| l.name.as_str()).collect();
+                let texts = [package.title.clone(), reference.graded(), names.join(", ")];
+                [vec![cell], texts.map(Cell::text).into()].concat()
+            }
+            Err(error) => {
+                let texts = [error.to_string(), "–".into(), "–".into()];
+                [vec![cell.with(Verdict::Fail)], texts.map(Cell::text).into()].concat()
+            }
         }
-        Err(_) => "–".into(),
     };
-    let table = Columns::<Row>::default()
-        .with(Column::text("reference"), name)
-        .text("what", what)
-        .text("grade", |(_, found)| found.as_ref().map_or("–".into(), |of| of.graded()))
-        .text("licence", licences)
-        .table(
-            "Reference data, embedded with its provenance and checked by hash.",
-            Reference::names().into_iter().map(|name| (name, Reference::load(name))),
-        );
+    let caption = "Reference data, embedded with its provenance and checked by hash.";
+    let columns = ["reference", "what", "grade", "licence"].map(Column::text);
+    let table = Table::new(caption, columns.into());
+    let table = Reference::names().into_iter().fold(table, |table, name| table.row(row(name)));
     Section::new("references", "References").block(table)
 }

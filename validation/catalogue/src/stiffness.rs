@@ -32,11 +32,6 @@ impl Row {
         all.filter(|row| !matches!(row, Err(RunError::NoRules { .. }))).collect()
     }
 
-    /// The limit of a mechanism over the step; infinite if the scene lacks it.
-    pub fn headroom(&self, mechanism: Mechanism) -> f64 {
-        self.rules.limits.alone(mechanism) / self.rules.dt()
-    }
-
     /// Steps of the run.
     pub fn steps(&self) -> f64 {
         self.rules.end / self.rules.dt()
@@ -80,7 +75,9 @@ pub fn table(rows: &[Row]) -> Table {
         });
     let limit = |value: f64| Cell::num(value, 3);
     let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, (mechanism, name)| {
-        columns.of([name, ""], move |row| row.headroom(mechanism), limit)
+        // Infinite if the scene lacks it.
+        let headroom = move |Row { rules, .. }: &Row| rules.limits.alone(mechanism) / rules.dt();
+        columns.of([name, ""], headroom, limit)
     });
     mechanisms
         .of(["together", ""], |row| row.rules.dt_limit() / row.rules.dt(), limit)

@@ -31,8 +31,8 @@ use serde_json::{Value, json};
 use validation::cases;
 
 use super::{
-    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, outcome::outcome,
-    output,
+    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, output,
+    summary::outcome,
 };
 
 /// More than this is no description of a method \[bytes\].

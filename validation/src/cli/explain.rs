@@ -1,6 +1,6 @@
 //! `explain`: what a gate checks and why.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use ::report;
@@ -14,10 +14,10 @@ use harness::plan;
 use harness::runs::Judged;
 use harness::store::Store;
 use harness::suite::{self, Of};
-use validation::cases;
+use validation::{cases, limitations};
 
 use super::{
-    Failure, World, arguments, export,
+    Failure, World, arguments,
     judged::{self, Verdicts, tier_name},
     output,
 };
@@ -25,7 +25,7 @@ use super::{
 /// A gate, what it is judged on, and what came of it last.
 struct Known {
     gate: Gate,
-    tiers: Vec<&'static str>,
+    tiers: Vec<String>,
     on: String,
     last: Option<Judged>,
     status: Option<record::Status>,
@@ -162,22 +162,10 @@ fn table(gates: &[&Judged]) -> String {
 
 /// Each cause, that of most gates first, with what would remove it and its gates.
 fn by_cause(gates: &[&Judged]) -> String {
-    let mut causes: BTreeMap<Option<&Cause>, Vec<&Judged>> = BTreeMap::new();
-    for judged in gates {
-        if let Purpose::Limitation(known) = &judged.gate.purpose {
-            causes.entry(known.cause.as_ref()).or_default().push(judged);
-        }
-    }
-    let mut causes: Vec<_> = causes.into_iter().collect();
-    causes.sort_by_key(|(cause, gates)| (cause.is_none(), std::cmp::Reverse(gates.len())));
+    let of_none = "Gates with a cause of their own, which `touchstone explain GATE` states:";
     let mut text = String::new();
-    for (cause, gates) in causes {
-        let words = match cause {
-            Some(cause) => cause.to_string(),
-            None => {
-                "Gates with a cause of their own, which `touchstone explain GATE` states:".into()
-            }
-        };
+    for (cause, gates) in limitations::by_cause(gates.iter().copied(), |judged| judged) {
+        let words = cause.map_or(of_none.into(), Cause::to_string);
         text += &output::wrap(&words, "");
         text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();
         text.push('\n');
@@ -205,7 +193,7 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
 fn words(known: &Known) -> String {
     let Known { gate, on, last, .. } = known;
     let judged_as =
-        |judged: &Judged| format!("{}: {}", export::value(&judged.judgement), judged.words());
+        |judged: &Judged| format!("{}: {}", judged::value(&judged.judgement), judged.words());
     let lines = [
         ("checks", format!("metric {}", gate.metric)),
         ("bound", gate.bound.to_string()),

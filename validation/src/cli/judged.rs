@@ -1,13 +1,14 @@
-//! Judgements as tables, and as JSON that `explain` reads back.
+//! Judgements as tables, as JSON that `explain` reads back, and for other programs as JUnit XML and Markdown.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use base::files;
+use base::files::{self, write_atomically};
 use base::gate::{Bound, Cause, Evidence, Gate, Judgement, Known, Purpose, Verdict};
 use base::number::Number;
 use base::record;
+use base::text::escaped;
 use harness::case::{self, Case, Tier};
 use harness::notes::Notes;
 use harness::runs::{Judged, JudgedRun};
@@ -15,7 +16,7 @@ use harness::study::Study;
 use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
 
-use super::{Failure, output};
+use super::{Failure, arguments, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
@@ -215,12 +216,8 @@ impl From<Entry> for Judged {
 }
 
 /// The name of a tier on the command line.
-pub fn tier_name(tier: Tier) -> &'static str {
-    match tier {
-        Tier::Quick => "quick",
-        Tier::Full => "full",
-        Tier::Deep => "deep",
-    }
+pub fn tier_name(tier: Tier) -> String {
+    format!("{tier:?}").to_lowercase()
 }
 
 impl Verdicts {
@@ -251,7 +248,7 @@ impl Verdicts {
             results.studies.iter().map(|study| of_study(results.case.name(), study))
         });
         Verdicts {
-            tier: tier_name(suite.tier).into(),
+            tier: tier_name(suite.tier),
             commit: super::SOURCE.commit.into(),
             counts: counts(suite),
             runs: suite
@@ -264,10 +261,95 @@ impl Verdicts {
     }
 }
 
+/// The verdicts of a suite as JSON.
+pub fn json(suite: &Suite) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(&Verdicts::of(suite)).map_err(Failure::bug)? + "\n")
+}
+
 fn counts(suite: &Suite) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
     for judged in suite.judged() {
         *counts.entry(judged.judgement.verdict.name().to_string()).or_default() += 1;
     }
     counts
+}
+
+/// Refuses one file for both, of which only the later one would be left.
+pub fn check_files(export: &arguments::Export) -> Result<(), Failure> {
+    match (&export.junit, &export.markdown) {
+        (Some(junit), Some(markdown)) if junit == markdown => Err(Failure::usage(format!(
+            "--junit and --markdown name the same file, {}; name two",
+            junit.display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Writes the files that were asked for; if the first one cannot be written, the other one is all the same.
+pub fn write_files(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
+    let mut written = Ok(());
+    for (path, text) in [
+        (&export.junit, junit as fn(&Suite) -> String),
+        (&export.markdown, markdown as fn(&Suite) -> String),
+    ] {
+        if let Some(path) = path {
+            written = written.and(write_atomically(path, text(suite).as_bytes()));
+        }
+    }
+    Ok(written?)
+}
+
+/// The number that was judged, for people.
+pub fn value(judgement: &Judgement) -> String {
+    judgement.value.map_or("not measured".into(), |value| report::sig(value, 5))
+}
+
+/// A test case a gate, by case. Failing gates are failures; a limitation and an expected failure are
+/// skipped, with the verdict as the message.
+fn junit(suite: &Suite) -> String {
+    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
+    for results in &suite.cases {
+        let runs = results.runs.all.iter().flat_map(|run| &run.judged);
+        let all: Vec<_> = runs.chain(results.studies.iter().flat_map(|s| &s.judged)).collect();
+        let failed = all.iter().filter(|j| j.judgement.verdict.is_failure()).count();
+        let passed = all.iter().filter(|j| j.judgement.verdict == Verdict::Pass).count();
+        let (name, skipped) = (escaped(results.case.name()), all.len() - failed - passed);
+        text += &format!(
+            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" skipped=\"{skipped}\">\n",
+            all.len()
+        );
+        for judged in all {
+            let (gate, judgement) = (&judged.gate, &judged.judgement);
+            let message = format!("{} {}; {}", value(judgement), gate.bounds(), judged.words());
+            let body = match judgement.verdict {
+                Verdict::Pass => String::new(),
+                Verdict::Fail => format!(
+                    "<failure message=\"{}\">{}</failure>",
+                    escaped(&message),
+                    escaped(&gate.because)
+                ),
+                _ => format!("<skipped message=\"{}\"/>", escaped(&message)),
+            };
+            let id = escaped(&gate.id);
+            text +=
+                &format!("    <testcase classname=\"{name}\" name=\"{id}\">{body}</testcase>\n");
+        }
+        text += "  </testsuite>\n";
+    }
+    text + "</testsuites>\n"
+}
+
+/// Counts, then a table of every gate that did not simply pass.
+fn markdown(suite: &Suite) -> String {
+    let mut text = format!("# Verdicts\n\n{}\n\n", suite.counts().headline());
+    text += "| verdict | gate | value | bound |\n|---|---|---|---|\n";
+    let mut rows: Vec<_> =
+        suite.judged().filter(|j| j.judgement.verdict != Verdict::Pass).collect();
+    rows.sort_by_key(|j| !j.judgement.verdict.is_failure());
+    for judged in rows {
+        let verdict = judged.words().replace('|', "\\|");
+        let (id, bound) = (&judged.gate.id, judged.gate.bounds());
+        text += &format!("| {verdict} | `{id}` | {} | {bound} |\n", value(&judged.judgement));
+    }
+    text
 }

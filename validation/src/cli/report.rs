@@ -1,41 +1,41 @@
-//! `report`: run what is missing, judge, render; the page is there as soon as one case is complete.
+//! `report`: run what is missing, judge, render. The page is there as soon as one case is complete: before all
+//! runs are made, what there is so far is judged, and what is lacking is listed.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 
-use ::report::{self, check_page};
+use ::report::{self, check_page, counted};
 use base::files::{FileError, OutputFolder};
+use base::spec::RunKey;
 use harness::{
-    case::Tier,
-    make::Made,
-    store::Store,
-    suite::{Plans, Suite},
+    case::{self, Case, Tier},
+    make::{self, Job, Made, Stored},
+    store::{Pending, Store},
+    study::Study,
+    suite::{self, Plans, Suite},
 };
 use validation::{page, peers};
 
 use super::{
-    Failure, Outcome, World, arguments, export,
-    judged::{VERDICTS, Verdicts},
-    output, partial,
+    Failure, Outcome, World, arguments,
+    judged::{self, VERDICTS},
+    output,
     summary::summary,
     verify,
 };
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
-    export::check(&arguments.export)?;
+    judged::check_files(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
-    let (tier, mut listed, mut lacking) = (arguments.tier, String::new(), None);
-    let suite = match &arguments.store {
-        Some(store) if arguments.partial => {
-            let any_build = arguments.reuse.any_build;
-            let (suite, list, told) =
-                partial::of_store(world.cases, tier, store, any_build, world)?;
-            (listed, lacking) = (list, told);
-            suite
-        }
+    let (tier, any_build) = (arguments.tier, arguments.reuse.any_build);
+    let (suite, listed, lacking) = match &arguments.store {
+        Some(store) if arguments.partial => of_part(world.cases, tier, store, any_build, world)?,
         Some(store) => {
-            verify::of_store(world.cases, tier, store, arguments.reuse.any_build, world)?
+            let suite = verify::of_store(world.cases, tier, store, any_build, world)?;
+            (suite, String::new(), None)
         }
         None => {
             let store = Store::open(&folder.path().join("records"))?;
@@ -43,11 +43,13 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             let last = Mutex::new(None);
             let early = |made| early(plans.clone(), tier, &store, made, &folder, &last);
             let (reuse, threads) = (arguments.reuse, arguments.threads);
-            verify::run(plans.clone(), tier, &store, reuse, threads, Some(&early), world)?
+            let early = Some(&early as _);
+            let suite = verify::run(plans.clone(), tier, &store, reuse, threads, early, world)?;
+            (suite, String::new(), None)
         }
     };
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
-    let exported = export::write(&suite, &arguments.export);
+    let exported = judged::write_files(&suite, &arguments.export);
     let written = write_verdicts(&folder, &suite);
     let path = folder.path().join("index.html");
     let mut page = page::assemble(&suite, &now());
@@ -59,12 +61,10 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let page_written = page
         .write_html(&path, &html)
         .map_err(|reason| Failure::from(FileError::File { path: path.clone(), reason }));
-    let failures: Vec<Failure> =
-        [exported, written, page_written].into_iter().filter_map(Result::err).collect();
-    if !failures.is_empty() {
+    let all = [exported, written, page_written].into_iter();
+    let reasons: Vec<String> = all.filter_map(|written| Some(written.err()?.reason)).collect();
+    if !reasons.is_empty() {
         output::print(&summary(&suite))?;
-        let reasons: Vec<String> =
-            failures.iter().map(|failure| failure.reason.to_string()).collect();
         return Err(Failure::usage(reasons.join("\n")));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
@@ -79,8 +79,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
 }
 
 fn write_verdicts(folder: &OutputFolder, suite: &Suite) -> Result<(), Failure> {
-    let verdicts = serde_json::to_string_pretty(&Verdicts::of(suite))? + "\n";
-    folder.write(VERDICTS, verdicts.as_bytes())?;
+    folder.write(VERDICTS, judged::json(suite)?.as_bytes())?;
     Ok(())
 }
 
@@ -108,7 +107,7 @@ fn early(
     }
     let start = Instant::now();
     peers::add(&mut made, &plans);
-    let (suite, lacking) = partial::of_made(plans, tier, store.path(), made);
+    let (suite, lacking) = of_made(plans, tier, store.path(), made);
     let lacking = lacking?; // all are there: the page that lacks nothing follows
     let mut page = page::assemble(&suite, &now());
     let path = folder.path().join("index.html");
@@ -126,4 +125,115 @@ fn now() -> String {
     let text = humantime::format_rfc3339_seconds(SystemTime::now()).to_string();
     let minutes: String = text.chars().take("2026-11-23T05:41".len()).collect();
     minutes.replace('T', " ") + " UTC"
+}
+
+/// A run without a record, and why it has none.
+type Lacking = (Job, Pending);
+
+/// What is told of runs that are lacking: how many, and of which cases; empty if all are there.
+type Told = Option<[String; 2]>;
+
+/// The suite of what a store has of a tier, a line for each run that it lacks, and what is told of all.
+fn of_part(
+    cases: &[&'static dyn Case],
+    tier: Tier,
+    path: &Path,
+    any_build: bool,
+    world: &World,
+) -> Result<(Suite, String, Told), Failure> {
+    let (plans, Stored { made, missing, .. }) =
+        verify::stored(cases, tier, path, any_build, world)?;
+    let lacking = lacking(missing, path, &made);
+    let told = tell(&plans, &lacking);
+    Ok((judge(plans, tier, made, &lacking), list(lacking.values().collect()), told))
+}
+
+/// The suite of the cases that are complete, and what is told of the others: to draw these too would take
+/// seconds each time.
+pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, Told) {
+    let mut missing = make::jobs(plans.clone());
+    missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
+    let lacking = lacking(missing, path, &made);
+    let told = tell(&plans, &lacking);
+    let lacks = |name: &str| lacking.values().any(|(job, _)| job.case.name() == name);
+    plans.retain(|(case, _)| !lacks(case.name()));
+    (suite::judge(plans, tier, made), told)
+}
+
+fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
+    let why = |job: &Job| match made.unsound.get(&job.planned.spec.key()) {
+        Some(error) => Pending::Failed(error.to_string()),
+        None => Store::to_read(path).pending(&job.planned.spec),
+    };
+    let lack = |job: Job| (job.planned.spec.key(), (job.clone(), why(&job)));
+    missing.into_iter().map(lack).collect()
+}
+
+/// Runs without a record are not judged, and neither are the studies of a case that lacks one: of half its
+/// runs a study has a number too, which says nothing.
+fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, Lacking>) -> Suite {
+    let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
+    let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
+    without.for_each(|planned| planned.gates.clear());
+    let mut suite = suite::judge(plans, tier, made);
+    for results in &mut suite.cases {
+        let name = results.case.name();
+        let of_case: Vec<&Lacking> =
+            lacking.values().filter(|(job, _)| job.case.name() == name).collect();
+        if of_case.is_empty() {
+            continue;
+        }
+        let open: usize =
+            results.studies.iter_mut().map(|study| study.judged.drain(..).len()).sum();
+        let words = format!(
+            "This report is not complete. Of the runs of this case are without a record: {}. They are not \
+             judged. The {open} gates of its studies are open until every run has a record.",
+            counts(&of_case)
+        );
+        let id = format!("{}-lacking", name.replace('_', "-"));
+        results.studies.insert(0, Study::new(&id, "Runs without a record").prose(words));
+    }
+    suite
+}
+
+fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> Told {
+    let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
+    let names: Vec<&str> =
+        plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();
+    let (all, complete) = (plans.len(), plans.len() - names.len());
+    let runs = counted(lacking.len(), "run without a record", "runs without a record");
+    let each = counts(&lacking.values().collect::<Vec<_>>());
+    let words = format!("{complete} of {all} cases complete; {runs}: {each}");
+    (!names.is_empty()).then(|| [words, names.join(", ")])
+}
+
+/// What became of a run, in a word, and the reason for a failure.
+fn word(why: &Pending) -> (&'static str, &str) {
+    match why {
+        Pending::Missing => ("missing", ""),
+        Pending::Running => ("running", ""),
+        Pending::Stopped => ("stopped", ""),
+        Pending::Failed(reason) => ("failed", reason),
+    }
+}
+
+/// Runs by what became of them, as `3 missing, 1 running`.
+fn counts(lacking: &[&Lacking]) -> String {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    lacking.iter().for_each(|(_, why)| *counts.entry(word(why).0).or_default() += 1);
+    counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
+}
+
+/// A line a run, those that failed last, with the reasons, and then how many there are of each kind.
+fn list(mut lacking: Vec<&Lacking>) -> String {
+    lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
+    let line = |(job, why): &&Lacking| {
+        let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec).join(" "));
+        let (word, reason) = word(why);
+        let words = format!("{word} {} {} {} {set} {reason}", spec.key(), spec.case, spec.variant);
+        words.trim_end().to_string() + "\n"
+    };
+    let lines: String = lacking.iter().map(line).collect();
+    let all = counted(lacking.len(), "run without a record", "runs without a record");
+    if lacking.is_empty() { all + "\n" } else { format!("{lines}{all}: {}\n", counts(&lacking)) }
 }

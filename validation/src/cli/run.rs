@@ -33,11 +33,10 @@ use super::{
     interrupt::Hold,
     judged,
     list::default_variant,
-    on_threads,
-    outcome::outcome,
-    output, profile,
+    on_threads, output, profile,
     progress::Bar,
     specs,
+    summary::outcome,
 };
 
 pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {

@@ -31,7 +31,7 @@ use validation::{cases, page};
 
 use super::{
     Exit, World, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,
-    judged::Verdicts, partial,
+    judged::Verdicts, report,
 };
 
 /// A case whose variants are the ways in which a run can end.
@@ -286,7 +286,7 @@ fn a_run_that_fails_keeps_no_case_from_being_shown() {
     let (plans, store) = (suite::plans(&CASES, Tier::Quick), Store::open(folder.path()));
     let (store, told) = (store.expect("a store"), Mutex::new(Vec::new()));
     let early = |made: Made| {
-        let (_, words) = partial::of_made(plans.clone(), Tier::Quick, folder.path(), made);
+        let (_, words) = report::of_made(plans.clone(), Tier::Quick, folder.path(), made);
         told.lock().expect("sound").push(words);
         None
     };
@@ -667,7 +667,7 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
     let end = |gates: Vec<Gate>| {
         let judged = gates.into_iter().map(|gate| Judged::of_record(gate, &record));
         let judged: Vec<Judged> = judged.collect();
-        super::outcome::outcome(couette, &spec("rows=20"), &record, &judged)
+        super::summary::outcome(couette, &spec("rows=20"), &record, &judged)
     };
     let has = |text: &str, parts: &[&str]| {
         for part in parts {
@@ -688,7 +688,7 @@ fn the_next_run_has_half_the_spacing() {
         let case = cases::find(name).expect("a case");
         let declared = case.declaration(Tier::Quick);
         let spec = case::spec(case, super::list::default_variant(case), &[]).expect("settings");
-        let words = super::outcome::finer(case, &declared, &spec);
+        let words = super::summary::finer(case, &declared, &spec);
         assert!(words.as_ref().is_some_and(|words| words.ends_with(finer)), "{name}: {words:?}");
     }
 }

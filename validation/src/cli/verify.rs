@@ -14,10 +14,7 @@ use harness::{
 use validation::peers;
 
 use super::{
-    Early, Exit, Failure, Outcome, World, arguments, export,
-    judged::{self, Verdicts},
-    output,
-    summary::summary,
+    Early, Exit, Failure, Outcome, World, arguments, judged, output, summary::summary,
     tell_trouble, trouble,
 };
 
@@ -41,12 +38,12 @@ fn show(
     judged: impl FnOnce(&[&'static dyn Case]) -> Result<Suite, Failure>,
 ) -> Outcome {
     let cases = world.choose(&of.cases)?;
-    export::check(&of.export)?;
+    judged::check_files(&of.export)?;
     let start = Instant::now();
     let suite = judged(&cases)?;
-    let exported = export::write(&suite, &of.export);
+    let exported = judged::write_files(&suite, &of.export);
     let printed = if of.json {
-        output::print_whole(&(serde_json::to_string_pretty(&Verdicts::of(&suite))? + "\n"))
+        output::print_whole(&judged::json(&suite)?)
     } else {
         let all = if of.all { judged::table(suite.judged()) + "\n" } else { String::new() };
         output::print(&(all + &summary(&suite)))
