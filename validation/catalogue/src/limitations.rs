@@ -47,22 +47,16 @@ pub fn section(suite: &Suite) -> Section {
          beyond that it would fail.",
     );
     causes.iter().fold(section, |section, (cause, found)| {
-        let (text, gates) = describe(*cause, found);
-        section.block(Block::Prose(vec![text])).block(Block::Details {
+        let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
+        cases.dedup();
+        let what = cause.map_or("Other causes.".into(), Cause::to_string);
+        let command = found.first().map(command).unwrap_or_default();
+        let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));
+        section.prose(text).block(Block::Details {
             summary: format!("The gates ({})", found.len()),
-            blocks: vec![Block::List(gates)],
+            blocks: vec![Block::List(found.iter().map(gate).collect())],
         })
     })
-}
-
-/// The cause in words, and a line for each gate.
-fn describe(cause: Option<&Cause>, found: &[Found]) -> (String, Vec<String>) {
-    let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
-    cases.dedup();
-    let what = cause.map_or("Other causes.".into(), Cause::to_string);
-    let command = found.first().map(command).unwrap_or_default();
-    let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));
-    (text, found.iter().map(gate).collect())
 }
 
 /// The gate, its value and its bound.

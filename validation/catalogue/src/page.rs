@@ -251,18 +251,15 @@ pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
 fn references_section() -> Section {
     let row = |name: &str| {
         let cell = Cell::text(format!("`{name}`"));
-        match Reference::load(name) {
+        let (cell, texts) = match Reference::load(name) {
             Ok(reference) => {
                 let package = &reference.package;
                 let names: Vec<&str> = package.licenses.iter().map(|l| l.name.as_str()).collect();
-                let texts = [package.title.clone(), reference.graded(), names.join(", ")];
-                [vec![cell], texts.map(Cell::text).into()].concat()
+                (cell, [package.title.clone(), reference.graded(), names.join(", ")])
             }
-            Err(error) => {
-                let texts = [error.to_string(), "–".into(), "–".into()];
-                [vec![cell.with(Verdict::Fail)], texts.map(Cell::text).into()].concat()
-            }
-        }
+            Err(error) => (cell.with(Verdict::Fail), [error.to_string(), "–".into(), "–".into()]),
+        };
+        [vec![cell], texts.map(Cell::text).into()].concat()
     };
     let caption = "Reference data, embedded with its provenance and checked by hash.";
     let columns = ["reference", "what", "grade", "licence"].map(Column::text);

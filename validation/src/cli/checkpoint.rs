@@ -43,14 +43,9 @@ struct Head {
     lengths: Vec<usize>,
 }
 
-/// Writes a checkpoint, in place of an earlier one.
-pub fn write(
-    folder: &OutputFolder,
-    asked: &Asked,
-    simulations: &[Vec<u8>],
-) -> Result<(), FileError> {
-    folder.write(CHECKPOINT, &bytes(asked, simulations))?;
-    Ok(())
+/// Writes a checkpoint of these simulations, in place of an earlier one.
+pub fn write(folder: &OutputFolder, asked: &Asked, of: &[Vec<u8>]) -> Result<(), FileError> {
+    folder.write(CHECKPOINT, &bytes(asked, of)).map(|_| ())
 }
 
 fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {

@@ -36,9 +36,8 @@ impl Side {
                 let file = path.join(VERDICTS);
                 let all: Verdicts = serde_json::from_str(&text)
                     .map_err(|_| Failure::usage(format!("{} holds no verdicts", file.display())))?;
-                let judged = all.runs.into_iter().flat_map(|run| run.judged);
-                let judged = judged.chain(all.studies.into_iter().flat_map(|study| study.judged));
-                Some(judged.map(|judged| (judged.gate.id.clone(), judged)).collect())
+                let by_name = |judged: &Judged| (judged.gate.id.clone(), judged.clone());
+                Some(all.judged().map(by_name).collect())
             }
             None => None,
         };

@@ -127,9 +127,8 @@ fn bench(world: &World) -> Result<(), Failure> {
                 bench::speed(side, threads > 1, BUDGET).map_err(Failure::bug)
             })?;
             if row.is_empty() {
-                row.push(speed.particles.to_string());
-                row.push(report::sig(speed.neighbours, 3));
-                row.push(speed.bytes.to_string());
+                let (particles, bytes) = (speed.particles.to_string(), speed.bytes.to_string());
+                row.extend([particles, report::sig(speed.neighbours, 3), bytes]);
             }
             row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
             if world.is_interrupted() {

@@ -309,17 +309,15 @@ pub fn value(judgement: &Judgement) -> String {
 fn junit(suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
     for results in &suite.cases {
-        let runs = results.runs.all.iter().flat_map(|run| &run.judged);
-        let all: Vec<_> = runs.chain(results.studies.iter().flat_map(|s| &s.judged)).collect();
-        let failed = all.iter().filter(|j| j.judgement.verdict.is_failure()).count();
-        let passed = all.iter().filter(|j| j.judgement.verdict == Verdict::Pass).count();
-        let (name, skipped) = (escaped(results.case.name()), all.len() - failed - passed);
+        let counts = results.counts();
+        let [pass, failed] = [Verdict::Pass, Verdict::Fail].map(|verdict| counts.count(verdict));
+        let (name, all) = (escaped(results.case.name()), results.judged().count());
+        let skipped = all - pass - failed;
         text += &format!(
-            "  <testsuite name=\"{name}\" tests=\"{}\" failures=\"{failed}\" skipped=\"{skipped}\">\n",
-            all.len()
+            "  <testsuite name=\"{name}\" tests=\"{all}\" failures=\"{failed}\" skipped=\"{skipped}\">\n"
         );
-        for judged in all {
-            let (gate, judgement) = (&judged.gate, &judged.judgement);
+        for (_, judged) in results.judged() {
+            let Judged { gate, judgement, .. } = judged;
             let message = format!("{} {}; {}", value(judgement), gate.bounds(), judged.words());
             let body = match judgement.verdict {
                 Verdict::Pass => String::new(),

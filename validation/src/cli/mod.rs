@@ -27,7 +27,6 @@ mod profile;
 mod progress;
 mod report;
 mod run;
-mod specs;
 mod stability;
 mod summary;
 mod symmetry;

@@ -1,7 +1,7 @@
 //! How far it is: on a terminal only, so that logs and tests stay quiet.
 
 use std::io::{self, IsTerminal};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 use harness::{context::Progress, make::Done};
@@ -16,7 +16,7 @@ pub struct Bar {
     /// Before this there is nothing new to show.
     next: Mutex<Instant>,
     /// Part of the run that was done at the start: more than 0 of one that goes on from a checkpoint.
-    first: Mutex<Option<f64>>,
+    first: OnceLock<f64>,
 }
 
 /// Between two looks.
@@ -40,7 +40,7 @@ impl Bar {
             bar.enable_steady_tick(2 * EVERY); // time goes on while a long run does
         }
         let start = Instant::now();
-        Bar { bar, start, next: Mutex::new(start), first: Mutex::new(None) }
+        Bar { bar, start, next: Mutex::new(start), first: OnceLock::new() }
     }
 
     /// Shows how far a run is.
@@ -52,8 +52,7 @@ impl Bar {
         let elapsed = self.start.elapsed().as_secs_f64();
         let done = (time / end).clamp(0.0, 1.0);
         let rate = particle_steps as f64 / elapsed / 1e6;
-        let first = *self.first.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(done);
-        let left = left(elapsed, first, done);
+        let left = left(elapsed, *self.first.get_or_init(|| done), done);
         let left = left.map(|seconds| format!(", {} left", report::seconds(seconds)));
         let left = left.unwrap_or_default();
         self.bar.set_position((done * PARTS as f64) as u64);

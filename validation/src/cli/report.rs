@@ -10,7 +10,7 @@ use ::report::{self, check_page, counted};
 use base::files::{FileError, OutputFolder};
 use base::spec::RunKey;
 use harness::{
-    case::{self, Case, Tier},
+    case::{self, Tier},
     make::{self, Job, Made, Stored},
     store::{Pending, Store},
     study::Study,
@@ -32,7 +32,13 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let folder = OutputFolder::create(&arguments.out)?;
     let (tier, any_build) = (arguments.tier, arguments.reuse.any_build);
     let (suite, listed, lacking) = match &arguments.store {
-        Some(store) if arguments.partial => of_part(world.cases, tier, store, any_build, world)?,
+        Some(store) if arguments.partial => {
+            let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
+            let Stored { made, missing, .. } = stored;
+            let lacking = lacking(missing, store, &made);
+            let told = tell(&plans, &lacking);
+            (judge(plans, tier, made, &lacking), list(lacking.values().collect()), told)
+        }
         Some(store) => {
             let suite = verify::of_store(world.cases, tier, store, any_build, world)?;
             (suite, String::new(), None)
@@ -132,21 +138,6 @@ type Lacking = (Job, Pending);
 
 /// What is told of runs that are lacking: how many, and of which cases; empty if all are there.
 type Told = Option<[String; 2]>;
-
-/// The suite of what a store has of a tier, a line for each run that it lacks, and what is told of all.
-fn of_part(
-    cases: &[&'static dyn Case],
-    tier: Tier,
-    path: &Path,
-    any_build: bool,
-    world: &World,
-) -> Result<(Suite, String, Told), Failure> {
-    let (plans, Stored { made, missing, .. }) =
-        verify::stored(cases, tier, path, any_build, world)?;
-    let lacking = lacking(missing, path, &made);
-    let told = tell(&plans, &lacking);
-    Ok((judge(plans, tier, made, &lacking), list(lacking.values().collect()), told))
-}
 
 /// The suite of the cases that are complete, and what is told of the others: to draw these too would take
 /// seconds each time.

@@ -35,13 +35,12 @@ use super::{
     list::default_variant,
     on_threads, output, profile,
     progress::Bar,
-    specs,
     summary::outcome,
 };
 
 pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     if let (Some(file), Some(store)) = (&arguments.specs, &arguments.store) {
-        return specs::run(file, store, arguments, world);
+        return super::plan::make(file, store, arguments, world);
     }
     if let Some(path) = &arguments.resume {
         let (asked, earlier) = checkpoint::read(path, world.sources)?;
@@ -115,7 +114,14 @@ fn carry_out(
     if printed.is_err() || (written.is_err() && !arguments.json) {
         output::say(&text);
     }
-    let exit = conclude(&record, &verdicts);
+    let exit = match record.status {
+        Status::Diverged { .. } => Exit::Diverged,
+        _ if verdicts.iter().any(|j| j.judgement.verdict.is_failure()) => Exit::GateFailed,
+        _ => Exit::Pass,
+    };
+    if exit == Exit::Diverged {
+        output::say(&format!("touchstone: {}", record.status));
+    }
     if let (Some(folder), Some(names)) = (&folder, written?) {
         output::say(&format!("{}: {}", folder.output.path().display(), names.join(", ")));
         folder.remove_checkpoint()?;
@@ -173,18 +179,6 @@ fn set(arguments: &arguments::Run) -> Result<Vec<String>, Failure> {
         set.push(format!("rows={rows}"));
     }
     Ok(set)
-}
-
-/// The exit code, and the words for one that is not 0.
-fn conclude(record: &Record, verdicts: &[Judged]) -> Exit {
-    if matches!(record.status, Status::Diverged { .. }) {
-        output::say(&format!("touchstone: {}", record.status));
-        return Exit::Diverged;
-    }
-    match verdicts.iter().any(|j| j.judgement.verdict.is_failure()) {
-        true => Exit::GateFailed,
-        false => Exit::Pass,
-    }
 }
 
 /// The record, and all fields of the particles at the end if there is a folder for them.
