@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
@@ -77,7 +77,8 @@ fn carry_out(
     arguments: &arguments::Run,
     world: &World,
 ) -> Outcome {
-    let lost = AtomicUsize::new(0);
+    let good = folder.as_ref().and_then(Folder::checkpointed);
+    let lost = Lost { count: AtomicUsize::new(0), good: Mutex::new(good) };
     let computed = on_threads(arguments.threads, || {
         compute(case, &asked, earlier, arguments, (folder.as_ref(), &lost), world)
     });
@@ -127,7 +128,7 @@ fn carry_out(
         folder.remove_checkpoint()?;
     }
     printed?;
-    match lost.into_inner() {
+    match lost.count.into_inner() {
         0 => Ok(exit),
         count => {
             output::say(&format!("touchstone: frames or checkpoints not written: {count}"));
@@ -153,17 +154,28 @@ fn interrupted(folder: Option<&Folder>, has_frames: bool, step: u64, time: f64) 
     Failure::interrupted(what)
 }
 
-/// Says so of the first frame or checkpoint that could not be written.
-fn tell_lost(error: &RunError, folder: Option<&Folder>, lost: &AtomicUsize) {
-    if lost.fetch_add(1, Ordering::Relaxed) > 0 {
-        return;
+/// Frames and checkpoints that could not be written, and when a checkpoint was last: its folder may be gone.
+struct Lost {
+    count: AtomicUsize,
+    good: Mutex<Option<SystemTime>>,
+}
+
+impl Lost {
+    fn good(&self) -> MutexGuard<'_, Option<SystemTime>> {
+        self.good.lock().unwrap_or_else(PoisonError::into_inner)
     }
-    let good = folder.and_then(|folder| Some((folder.checkpoint(), folder.checkpointed()?)));
-    let good = good.map_or(String::new(), |(path, time)| {
-        let time = format_rfc3339_seconds(time);
-        format!("; the last good checkpoint is {} of {time}", path.display())
-    });
-    output::say(&format!("touchstone: {error}; the run goes on{good}"));
+
+    /// Says so of the first of them.
+    fn tell(&self, error: &RunError, folder: Option<&Folder>) {
+        if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
+            return;
+        }
+        let good = folder.zip(*self.good()).map_or(String::new(), |(folder, time)| {
+            let (path, time) = (folder.checkpoint(), format_rfc3339_seconds(time));
+            format!("; the last good checkpoint is {} of {time}", path.display())
+        });
+        output::say(&format!("touchstone: {error}; the run goes on{good}"));
+    }
 }
 
 /// The settings that were given, `--rows` among them.
@@ -187,7 +199,7 @@ fn compute(
     asked: &Asked,
     earlier: Vec<Vec<u8>>,
     arguments: &arguments::Run,
-    (folder, lost): (Option<&Folder>, &AtomicUsize),
+    (folder, lost): (Option<&Folder>, &Lost),
     world: &World,
 ) -> Result<(Record, Option<Profile>), Failure> {
     let _hold = asked.every.map(|_| Hold::new());
@@ -200,10 +212,11 @@ fn compute(
         }
     };
     let show = |progress: Progress| bar.show_run(progress);
-    let lose = |error: &RunError| tell_lost(error, folder, lost);
+    let lose = |error: &RunError| lost.tell(error, folder);
     let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let write = |simulations: &[Vec<u8>]| match folder {
-        Some(folder) => checkpoint::write(&folder.output, asked, simulations),
+        Some(folder) => checkpoint::write(&folder.output, asked, simulations)
+            .map(|()| *lost.good() = Some(SystemTime::now())),
         None => Ok(()),
     };
     let every = asked.every.map(|seconds| Duration::from_secs(seconds.into()));
