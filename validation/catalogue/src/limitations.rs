@@ -18,8 +18,8 @@ struct Found<'a> {
     judged: &'a Judged,
 }
 
-/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and last
-/// those whose cause is their own.
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and
+/// last those whose cause is their own.
 pub fn by_cause<'a, T>(
     all: impl IntoIterator<Item = T>,
     judged: impl Fn(&T) -> &'a Judged,

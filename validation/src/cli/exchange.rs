@@ -59,12 +59,12 @@ fn solve(
     folder: &OutputFolder,
     world: &World,
 ) -> Result<Vec<String>, Failure> {
+    let spec = &problem.spec;
     // Mass and role are for codes that choose their own particles.
     let written = COLUMNS.iter().filter(|(name, ..)| !["mass", "role"].contains(name));
     let heads: Vec<String> =
         written.clone().map(|(name, unit, _)| format!("{name}[{unit}]")).collect();
     let columns: Vec<&str> = written.map(|(name, ..)| *name).skip(1).collect();
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let rows = Mutex::new(Vec::<Vec<f64>>::new());
     let tell = |time: f64, particles: Profile| {
         let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
@@ -83,11 +83,10 @@ fn solve(
         outline: problem.relation.map(|by| Sink::of(Some(by), true)),
         ..Context::default()
     };
-    let record = match case.run(&problem.spec, &context) {
+    let record = match case.run(spec, &context) {
         // Nothing was measured of what an observer sees, and nothing was counted.
         Err(RunError::Outlined) => {
-            let RunSpec { variant, settings, .. } = &problem.spec;
-            Record::new(case.name(), variant, settings.clone(), 1)
+            Record::new(case.name(), &spec.variant, spec.settings.clone(), 1)
         }
         made => made?,
     };
@@ -97,29 +96,27 @@ fn solve(
     let method = json!({
         "code": OURS,
         "version": env!("CARGO_PKG_VERSION"),
-        "scheme": problem.spec.variant,
+        "scheme": spec.variant,
         "division": "closed",
-        "settings": problem.spec.settings,
+        "settings": spec.settings,
         "changed": "nothing",
     });
-    let cost = &record.cost;
+    let Record { cost, manifest, .. } = &record;
     let counted = |of: Value| if of.as_f64() > Some(0.0) { of } else { json!("unknown") };
     let system = json!({
-        "machine": record.manifest.cpu,
+        "machine": manifest.cpu,
         "threads": cost.threads,
         "seconds": counted(json!(cost.cpu_s / cost.threads.max(1) as f64)),
         "steps": counted(json!(cost.steps)),
         "interactions": counted(json!(cost.pair_interactions)),
     });
+    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
+    for row in rows.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        table.numbers(&row)?;
+    }
     let (name, table) = match series(case, &record)? {
         Some(series) => (CURVE, series),
-        None => {
-            let mut table = CsvTable::new(&heads)?;
-            for row in rows.into_inner().unwrap_or_else(PoisonError::into_inner) {
-                table.numbers(&row)?;
-            }
-            (RESULTS, table)
-        }
+        None => (RESULTS, table),
     };
     folder.write(name, &table.into_bytes())?;
     folder.write(METHOD, format!("{method:#}\n").as_bytes())?;

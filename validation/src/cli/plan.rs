@@ -1,5 +1,6 @@
 //! `plan`: runs as JSON lines, and what they take, estimated before the first of them: what plans say is a
-//! guess. `plan --estimates` writes the table, and the sum is told. `run --specs` makes the runs of such lines.
+//! guess. `plan --estimates` writes the table, and the sum is told. `run --specs` makes the runs of such
+//! lines.
 
 use std::fs::File;
 use std::io::{self, Read};

@@ -1,5 +1,5 @@
-//! `report`: run what is missing, judge, render. The page is there as soon as one case is complete: before all
-//! runs are made, what there is so far is judged, and what is lacking is listed.
+//! `report`: run what is missing, judge, render. The page is there as soon as one case is complete: before
+//! all runs are made, what there is so far is judged, and what is lacking is listed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

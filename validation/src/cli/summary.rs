@@ -1,6 +1,6 @@
-//! What a suite comes to, as a person reads it in one screen: a line a case, then what needs attention. And how
-//! `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command to go
-//! on with.
+//! What a suite comes to, as a person reads it in one screen: a line a case, then what needs attention. And
+//! how `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command
+//! to go on with.
 
 use base::{
     gate::Verdict,
