@@ -158,8 +158,8 @@ impl<X: Numbers> Bits for Extra<X> {
     }
 }
 
-/// Id and role of a particle, its position, its velocity and where it was when the neighbour lists were built,
-/// and then density, mass and extra fields.
+/// Id and role of a particle, its position, its velocity and where it was when the neighbour lists were
+/// built, and then density, mass and extra fields.
 type Stored<X> = (u32, u8, [Vector2<f64>; 3], ([f64; 2], Extra<X>));
 
 /// What an integrator keeps of earlier steps: density and extra fields, and their rates.

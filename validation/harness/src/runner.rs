@@ -192,6 +192,11 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
         Status::Completed
     }
 
+    /// Calls what is to be called at the k-th of the times of interest.
+    fn look(&mut self, simulation: &mut D, k: usize) {
+        self.at.iter().for_each(|(_, (at, _))| at(self.seen, simulation, k));
+    }
+
     /// Goes on from a checkpoint; how the simulation ended, if it did.
     fn go_on(&mut self, bytes: &[u8], simulation: &mut D) -> Result<Option<Status>, RunError> {
         let Stage { reached, cost, frames, ended } =
@@ -313,8 +318,8 @@ pub struct Drive<'a, X, D: ?Sized, S> {
 }
 
 impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
-    /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show the
-    /// pressure of this equation of state.
+    /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
+    /// the pressure of this equation of state.
     pub fn new(
         simulation: &'a mut D,
         dt: f64,
@@ -380,8 +385,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
         let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
             self;
         let pressure = &*pressure;
-        let factor =
-            context.mutation.map_or(1.0, |mutation| mutation.factor_of(Constant::TimeStep));
+        let factor = context.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
         let (dt, least) = (dt * factor, least as f64 / factor);
         let end = times.last().copied().unwrap_or_default();
         let fewest = least.max(1.0) * times.len() as f64;
@@ -413,10 +417,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             synchronises: true,
         };
         if let Some(playback) = context.playback {
-            let at = |watch: &mut Watch<_, D, _>, simulation: &mut D, k: usize| {
-                watch.at.iter().for_each(|(_, (at, _))| at(watch.seen, simulation, k));
-            };
-            let status = playback.play(simulation, times, &mut watch, at)?;
+            let status = playback.play(simulation, times, &mut watch, Watch::look)?;
             return Ok((status, watch.counted(simulation)));
         }
         let mut ended = None;

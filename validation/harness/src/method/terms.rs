@@ -138,8 +138,8 @@ boundaries! {
         |m, _| Self::new(m.eos, m.wall_acceleration);
     ExtrapolatingWall<Tait, NoSlip> = "extrapolating-wall", Behind (),
         |m, _| Self::new(m.eos, m.wall_acceleration);
-    // Along walls at rest. Their pressure is not below 0, because above a free surface a wall must not attract
-    // the water.
+    // Along walls at rest. Their pressure is not below 0, because above a free surface a wall must not
+    // attract the water.
     ExtrapolatingWall<Tait> = "extrapolating-wall", Behind (WallGravity),
         |m, _| Self { least_pressure: 0.0, ..Self::new(m.eos, m.wall_acceleration) };
 }
