@@ -37,8 +37,8 @@ fn vectors(columns: &Profile, names: [&str; 2]) -> Vec<[f64; 3]> {
     x.iter().zip(y).map(|(x, y)| [*x, *y, 0.0]).collect()
 }
 
-/// The text of a `.vtp` file: particles at one time. Of their columns, `x` and `y` are the places, `u` and `v`
-/// the array `velocity`, and each other is an array of its own.
+/// The text of a `.vtp` file: particles at one time. Of their columns, `x` and `y` are the places, `u` and
+/// `v` the array `velocity`, and each other is an array of its own.
 ///
 /// # Errors
 /// If a place is not finite, an array has another length, or two have one name.
