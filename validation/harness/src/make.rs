@@ -464,7 +464,7 @@ fn alone(jobs: &[&Job], batch: &Batch) {
 /// record too, with the reason; the only error is a file that cannot be written.
 ///
 /// # Errors
-/// [`RunError::File`], [`RunError::Vtk`] and [`RunError::Reference`].
+/// [`RunError::File`], [`RunError::Frame`] and [`RunError::Reference`].
 pub fn run(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
     match &spec.task {
         Task::Simulate => case::record_of(case, spec, context),

@@ -369,7 +369,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
     }
 
     /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
-    /// what is no part of [`Stepper::checkpoint`], such as a force.
+    /// what is no part of a [`Checkpoint`](solver::Checkpoint), such as a force.
     pub fn resumed(self, resumed: Resumed<'a, D, S>) -> Self {
         Self { resumed, ..self }
     }
