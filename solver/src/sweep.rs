@@ -177,8 +177,8 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> On
                 terms.pair(&pair, &mut sum);
             }
             // Each lane is taken out of its register by a number that the compiler knows: otherwise all
-            // registers are stored again for every lane, and a sweep of colliding rings takes up to 1.5 of the
-            // time.
+            // registers are stored again for every lane, and a sweep of colliding rings takes up to 1.5 of
+            // the time.
             let mut sums = [T::Sum::default(); GROUP];
             for (lane, sum_of_lane) in sums.iter_mut().enumerate().take(V::LANES) {
                 *sum_of_lane = T::Sum::lane::<V>(sum, lane);
