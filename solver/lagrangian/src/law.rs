@@ -120,6 +120,7 @@ impl Law for Hencky {
     const NAME: &'static str = "hencky";
     const ENERGY: &'static str = "w = K (J - 1 - ln J) + μ |dev ln V|², V = (F Fᵀ)^½ (Hencky)";
 
+    #[inline(always)]
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
         let (log_j, [d, xy]) = Self::logarithm(strain);
         let shear = 2.0 * (d * d + xy * xy) + log_j * log_j / 6.0;
