@@ -155,8 +155,7 @@ impl<K: Kernel> Smoothing<K> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use lanes::total;
-    use simba::simd::WideF64x4;
+    use lanes::{Portable, total};
 
     fn radii(support: f64) -> impl Iterator<Item = f64> {
         (0..200).map(move |k| (k as f64 + 0.5) / 200.0 * support)
@@ -170,7 +169,7 @@ mod tests {
             let slope = (kernel.w((r + d) * (r + d)) - kernel.w((r - d) * (r - d))) / (2.0 * d);
             let scale = kernel.w(0.0) / kernel.h();
             assert!((kernel.f(r * r) * r + slope).abs() < 2e-9 * scale, "{} at r = {r}", K::NAME);
-            let four = WideF64x4::all(r * r);
+            let four = Portable::all(r * r);
             assert_eq!(total(kernel.f(four)), 4.0 * kernel.f(r * r));
             assert_eq!(total(kernel.w(four)), 4.0 * kernel.w(r * r));
         }

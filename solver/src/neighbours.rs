@@ -445,8 +445,9 @@ impl OnLanes for FillLists<'_> {
 
 #[cfg(test)]
 mod tests {
+    use lanes::Portable;
+
     use super::*;
-    use simba::simd::WideF64x4;
 
     /// Splitmix64: the same points on every machine.
     struct Random(u64);
@@ -614,7 +615,7 @@ mod tests {
             let [mut portable, mut widest] = [Block::default(), Block::default()];
             let of_block =
                 |block| FillLists { neighbours: &neighbours, block, of: of.clone(), up_to };
-            of_block(&mut portable).run::<WideF64x4>();
+            of_block(&mut portable).run::<Portable>();
             on_widest(of_block(&mut widest));
             let [built] = built else { panic!("one block") };
             for block in [portable, widest] {

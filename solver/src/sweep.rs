@@ -194,11 +194,12 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> On
 
 #[cfg(test)]
 mod tests {
+    use lanes::Portable;
+
     use super::*;
     use crate::{
         Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours,
     };
-    use simba::simd::WideF64x4;
 
     const DX: f64 = 0.1;
 
@@ -274,7 +275,7 @@ mod tests {
         let [mut one, mut widest] = [portable.clone(), portable.clone()];
         for (b, rates) in portable.chunks_mut(BLOCK).enumerate() {
             let (sweep, block, first) = (&sweep, &neighbours.lists.blocks[b], b * BLOCK);
-            Particles { sweep, block, list: 0, first, rates }.run::<WideF64x4>();
+            Particles { sweep, block, list: 0, first, rates }.run::<Portable>();
             let rates = &mut one[first..first + rates.len()];
             Particles { sweep, block, list: 0, first, rates }.run::<f64>();
         }

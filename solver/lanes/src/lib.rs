@@ -1,6 +1,6 @@
 //! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, of one pair (`f64`),
-//! of four at once (`WideF64x4`, and a type of this crate where the processor has registers for four) or of
-//! eight (a type of this crate where it has registers for eight).
+//! of four at once ([`Portable`], and another type where the processor has registers for four) or of eight
+//! (where it has registers for eight).
 //!
 //! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
 //! pair sweep runs it on as many pairs at once as the processor can by [`on_widest`]. No form contracts
@@ -11,8 +11,6 @@ use std::ops::Neg;
 use nalgebra::{
     ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, Scalar, Vector2,
 };
-use simba::simd::WideF64x4;
-use wide::f64x4;
 
 /// Lanes of [`on_four`].
 pub const LANES: usize = 4;
@@ -83,7 +81,7 @@ pub trait OnLanes {
 pub fn on_widest(work: impl OnLanes) {
     #[cfg(target_arch = "x86_64")]
     let Some(work) = registers::run(work) else { return };
-    work.run::<WideF64x4>();
+    work.run::<Portable>();
 }
 
 /// The same on four lanes, whatever the processor has, for loops that add lanes up.
@@ -91,7 +89,7 @@ pub fn on_widest(work: impl OnLanes) {
 pub fn on_four(work: impl OnLanes) {
     #[cfg(target_arch = "x86_64")]
     let Some(work) = registers::run_four(work) else { return };
-    work.run::<WideF64x4>();
+    work.run::<Portable>();
 }
 
 /// Implements [`Lane`], inlined always: what each operation is for the type.
@@ -110,6 +108,13 @@ macro_rules! lane {
 #[cfg(target_arch = "x86_64")]
 mod registers; // after the macro that it uses
 
+/// Four numbers, in the registers that every processor of its kind has.
+#[cfg(target_arch = "x86_64")]
+pub type Portable = registers::Xmm;
+/// Four numbers, in the registers that every processor of its kind has.
+#[cfg(not(target_arch = "x86_64"))]
+pub type Portable = simba::simd::WideF64x4;
+
 lane! {
     for f64, 1:
     fn all(x: f64) -> Self = x;
@@ -122,17 +127,18 @@ lane! {
     fn bits_below(self, bound: f64) -> usize = usize::from(self < bound);
 }
 
+#[cfg(not(target_arch = "x86_64"))]
 lane! {
-    for WideF64x4, 4:
-    fn all(x: f64) -> Self = Self(f64x4::splat(x));
-    fn gather(read: impl Fn(usize) -> f64) -> Self = Self(f64x4::from([read(0), read(1), read(2), read(3)]));
+    for Portable, 4:
+    fn all(x: f64) -> Self = Self(wide::f64x4::splat(x));
+    fn gather(read: impl Fn(usize) -> f64) -> Self = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)]));
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
         [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
     fn sqrt(self) -> Self = Self(self.0.sqrt());
     fn abs(self) -> Self = Self(self.0.abs());
     fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
     fn lane(self, k: usize) -> f64 = self.0.to_array()[k];
-    fn bits_below(self, bound: f64) -> usize = self.0.simd_lt(f64x4::splat(bound)).to_bitmask() as usize;
+    fn bits_below(self, bound: f64) -> usize = self.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize;
 }
 
 /// The sum of four lanes, always in the same order: of [`on_four`] alone, for no sum may depend on the number

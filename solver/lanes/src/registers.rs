@@ -1,5 +1,5 @@
-//! Eight numbers in one register of a processor that has AVX-512, and four of one that has AVX2: the only
-//! unsafe code of the crate.
+//! Eight numbers in one register of a processor that has AVX-512, four of one that has AVX2, and four in two
+//! registers of any x86-64 processor: the only unsafe code of the crate.
 //!
 //! The default build may use only the registers that every x86-64 processor has, which hold two numbers.
 //! Nearly all present processors have wider ones, which the program detects at run time: the pair sweep and
@@ -57,6 +57,15 @@ fn with_registers_for_eight(work: impl OnLanes) {
     work.run::<Zmm>();
 }
 
+/// Four numbers in two registers.
+///
+/// # Safety
+///
+/// Every x86-64 processor has such registers and their instructions (SSE2).
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Xmm([__m128d; 2]);
+
 /// Four numbers in one register.
 ///
 /// # Safety
@@ -79,7 +88,7 @@ struct Zmm(__m512d);
 /// The operators, each one instruction, and a change of sign, of 0 too, as for f64.
 macro_rules! operators {
     ($Register:ident, $lanes:literal;
-     $($Op:ident $op:ident $OpAssign:ident $op_assign:ident $instruction:ident;)+) => {
+     $($Op:ident $op:ident $OpAssign:ident $op_assign:ident = |$a:ident, $b:ident| $is:expr;)+) => {
         impl $Register {
             /// The numbers.
             #[inline(always)]
@@ -107,8 +116,9 @@ macro_rules! operators {
             type Output = Self;
             #[inline(always)]
             fn $op(self, other: Self) -> Self {
-                // SAFETY: see `Ymm`.
-                Self(unsafe { $instruction(self.0, other.0) })
+                let ($a, $b) = (self.0, other.0);
+                // SAFETY: see `Xmm`, `Ymm` and `Zmm`.
+                Self(unsafe { $is })
             }
         }
 
@@ -122,19 +132,50 @@ macro_rules! operators {
 }
 
 operators! {
+    Xmm, 4;
+    Add add AddAssign add_assign = |a, b| [_mm_add_pd(a[0], b[0]), _mm_add_pd(a[1], b[1])];
+    Sub sub SubAssign sub_assign = |a, b| [_mm_sub_pd(a[0], b[0]), _mm_sub_pd(a[1], b[1])];
+    Mul mul MulAssign mul_assign = |a, b| [_mm_mul_pd(a[0], b[0]), _mm_mul_pd(a[1], b[1])];
+    Div div DivAssign div_assign = |a, b| [_mm_div_pd(a[0], b[0]), _mm_div_pd(a[1], b[1])];
+}
+
+operators! {
     Ymm, 4;
-    Add add AddAssign add_assign _mm256_add_pd;
-    Sub sub SubAssign sub_assign _mm256_sub_pd;
-    Mul mul MulAssign mul_assign _mm256_mul_pd;
-    Div div DivAssign div_assign _mm256_div_pd;
+    Add add AddAssign add_assign = |a, b| _mm256_add_pd(a, b);
+    Sub sub SubAssign sub_assign = |a, b| _mm256_sub_pd(a, b);
+    Mul mul MulAssign mul_assign = |a, b| _mm256_mul_pd(a, b);
+    Div div DivAssign div_assign = |a, b| _mm256_div_pd(a, b);
 }
 
 operators! {
     Zmm, 8;
-    Add add AddAssign add_assign _mm512_add_pd;
-    Sub sub SubAssign sub_assign _mm512_sub_pd;
-    Mul mul MulAssign mul_assign _mm512_mul_pd;
-    Div div DivAssign div_assign _mm512_div_pd;
+    Add add AddAssign add_assign = |a, b| _mm512_add_pd(a, b);
+    Sub sub SubAssign sub_assign = |a, b| _mm512_sub_pd(a, b);
+    Mul mul MulAssign mul_assign = |a, b| _mm512_mul_pd(a, b);
+    Div div DivAssign div_assign = |a, b| _mm512_div_pd(a, b);
+}
+
+// SAFETY: see `Xmm`.
+lane! {
+    for Xmm, 4:
+    fn all(x: f64) -> Self = Self([unsafe { _mm_set1_pd(x) }; 2]);
+    fn gather(read: impl Fn(usize) -> f64) -> Self =
+        Self(unsafe { [_mm_setr_pd(read(0), read(1)), _mm_setr_pd(read(2), read(3))] });
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
+        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
+    fn sqrt(self) -> Self = Self(self.0.map(|x| unsafe { _mm_sqrt_pd(x) }));
+    fn abs(self) -> Self = Self(self.0.map(|x| unsafe { _mm_andnot_pd(_mm_set1_pd(-0.0), x) }));
+    fn at_least(self, floor: Self) -> Self = {
+        let ([a, b], [c, d]) = (self.0, floor.0);
+        Self(unsafe { [_mm_max_pd(a, c), _mm_max_pd(b, d)] })
+    };
+    fn bits_below(self, bound: f64) -> usize = {
+        let [low, high] = self.0.map(|x| unsafe {
+            _mm_movemask_pd(_mm_cmplt_pd(x, _mm_set1_pd(bound))) as usize
+        });
+        low | high << 2
+    };
+    fn lane(self, k: usize) -> f64 = self.to_array()[k];
 }
 
 // SAFETY: see `Ymm`; what is transmuted is four `u32` in the same order. Roots are correctly rounded, as for
@@ -209,7 +250,6 @@ const PACKED: [i32; 16] = [
 #[cfg(test)]
 mod tests {
     use super::*;
-    use simba::simd::WideF64x4;
 
     /// Numbers with signs, zeros of either sign, and extremes.
     const A: [f64; 8] = [-0.0, 1.0 / 3.0, -1e-300, 2e200, 0.7, -3.3e7, 0.0, 5e-324];
@@ -276,7 +316,7 @@ mod tests {
             run(Results(&mut results));
             results
         };
-        let portable = of(&|results| results.run::<WideF64x4>());
+        let portable = of(&|results| results.run::<Xmm>());
         assert!(portable.iter().any(|bits| *bits == (-0.0f64).to_bits()));
         let [four, eight] = has();
         // SAFETY: each where its registers are there.
