@@ -26,7 +26,7 @@ pub struct Engine<P: Physics> {
     /// Of the forces, and of the drift.
     pub(crate) terms: (P::Forces, P::Drift),
     pub(crate) wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
-    pub(crate) data: ParticleData<P::Extra>,
+    pub(crate) data: Box<ParticleData<P::Extra>>,
     /// Of the particles, of their images, and the sentinel.
     pub(crate) columns: Vec<Column<Derived<P>>>,
     /// What was found in each block while filling columns, and of what was not filled.
@@ -41,6 +41,30 @@ pub struct Engine<P: Physics> {
 }
 
 impl<P: Physics> Engine<P> {
+    /// The engine of particles that have no lists yet.
+    pub(crate) fn new(
+        h: f64,
+        terms: (P::Forces, P::Drift),
+        wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
+        mut data: Box<ParticleData<P::Extra>>,
+    ) -> Self {
+        let state = std::mem::take(&mut data.state);
+        let mut engine = Self {
+            kernel: Smoothing::new(h),
+            terms,
+            wall_terms,
+            data,
+            columns: vec![],
+            extents: vec![],
+            still: None,
+            extrapolated: vec![],
+            inverses: vec![],
+        };
+        engine.build_lists(&mut places(&state));
+        engine.data.state = state;
+        engine
+    }
+
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
     /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
     /// that is derived from the state.

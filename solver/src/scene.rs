@@ -5,9 +5,9 @@ use thiserror::Error;
 
 use crate::{
     domain::Domain,
-    engine::{Engine, places},
+    engine::Engine,
     integrator::Scheme,
-    kernel::{Kernel, Smoothing},
+    kernel::Kernel,
     neighbours::Neighbours,
     numbers::Numbers,
     particle_data::{Limits, ParticleData},
@@ -102,62 +102,63 @@ impl<S: Scheme> Scene<S> {
 
     /// Checks the scene, and builds a simulation that is ready to step.
     pub fn build(self) -> Result<Simulation<S>, SceneError> {
-        let Self { h, domain, limits, skin, skin_share, .. } = self;
+        let Self { h, domain, particles, forces, drift, walls, feet, .. } = self;
+        let Self { skin, skin_share, limits, parallel_from, .. } = self;
         let lengths = [h, skin, skin_share, S::Kernel::SUPPORT];
-        let mirrors = self.walls.mirrors();
-        let mut data = ready(&self.particles, lengths, (domain, mirrors), limits)?;
-        check_feet(S::Walls::FEET, &self.feet, data.counts[1])?;
-        data.neighbours.feet = self.feet;
-        data.parallel = self.particles.len() >= self.parallel_from;
-        let state = std::mem::take(&mut data.state);
-        let mut engine = Engine {
-            kernel: Smoothing::new(h),
-            terms: (self.forces, self.drift),
-            wall_terms: self.walls.terms(),
-            data,
-            columns: vec![],
-            extents: vec![],
-            still: None,
-            extrapolated: vec![],
-            inverses: vec![],
-        };
-        engine.build_lists(&mut places(&state));
-        engine.data.state = state;
-        Ok(Simulation { engine, integrator: S::Integrator::default() })
+        let parallel = particles.len() >= parallel_from;
+        let setting = Setting { lengths, domain, particles, feet, limits, parallel };
+        let data = setting.ready(walls.mirrors(), S::Walls::FEET)?;
+        Ok(Simulation {
+            engine: Engine::new(h, (forces, drift), walls.terms(), data),
+            integrator: S::Integrator::default(),
+        })
     }
 }
 
-/// The particles of a sound scene, sorted, without lists. The lengths: h \[m\], the skin \[m\], the share of
-/// it after which lists are stale, and the support \[h\].
-fn ready<X: Numbers>(
-    particles: &[Particle<X>],
-    [h, skin, skin_share, support]: [f64; 4],
-    (domain, mirrors): (Domain, &[PlaneWall]),
+/// What of a scene does not depend on its scheme.
+struct Setting<X> {
+    /// h \[m\], the skin \[m\], the share of it after which lists are stale, and the support \[h\].
+    lengths: [f64; 4],
+    domain: Domain,
+    particles: Vec<Particle<X>>,
+    feet: Vec<Vector2<f64>>,
     limits: Limits,
-) -> Result<ParticleData<X>, SceneError> {
-    let lengths = [
-        (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
-        (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
-    ];
-    require(Part::Scene, lengths)?;
-    check_particles(particles)?;
-    check_walls(mirrors)?;
-    check_domain(&domain, support * h, skin)?;
-    let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
-    let area: f64 = fluid.clone().map(|p| p.mass / p.density).sum();
-    let spacing = (area / fluid.count() as f64).sqrt();
-    // The root of the largest number: its square is finite.
-    let half_period = 0.5 * domain.period.iter().flatten().fold(f64::MAX.sqrt(), |a, b| a.min(*b));
-    let neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);
-    let mut data = ParticleData { neighbours, limits, ..Default::default() };
-    let mut stored: Vec<_> = (0..).zip(particles.iter().copied()).collect();
-    stored.sort_by_key(|(_, particle)| particle.role);
-    data.put(&stored);
-    [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];
-    let mut state = std::mem::take(&mut data.state);
-    data.sort(&mut state);
-    data.state = state;
-    Ok(data)
+    parallel: bool,
+}
+
+impl<X: Numbers> Setting<X> {
+    /// The particles of a sound scene, sorted, without lists. `reads` says whether the walls read feet.
+    fn ready(self, mirrors: &[PlaneWall], reads: bool) -> Result<Box<ParticleData<X>>, SceneError> {
+        let Self { lengths, domain, particles, feet, limits, parallel } = self;
+        let [h, skin, skin_share, support] = lengths;
+        let lengths = [
+            (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
+            (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
+        ];
+        require(Part::Scene, lengths)?;
+        check_particles(&particles)?;
+        check_walls(mirrors)?;
+        check_domain(&domain, support * h, skin)?;
+        let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
+        let area: f64 = fluid.clone().map(|p| p.mass / p.density).sum();
+        let spacing = (area / fluid.count() as f64).sqrt();
+        // The root of the largest number: its square is finite.
+        let half_period =
+            0.5 * domain.period.iter().flatten().fold(f64::MAX.sqrt(), |a, b| a.min(*b));
+        let mut stored: Vec<_> = (0..).zip(particles).collect();
+        stored.sort_by_key(|(_, particle)| particle.role);
+        let mut neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);
+        neighbours.feet = feet;
+        let mut data =
+            Box::new(ParticleData { neighbours, limits, parallel, ..Default::default() });
+        data.put(&stored);
+        check_feet(reads, &data.neighbours.feet, data.counts[1])?;
+        [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];
+        let mut state = std::mem::take(&mut data.state);
+        data.sort(&mut state);
+        data.state = state;
+        Ok(data)
+    }
 }
 
 type Checked = Result<(), SceneError>;

@@ -266,7 +266,7 @@ impl<S: Scheme> Simulation<S> {
     /// The particles alone, with their neighbour lists, for a method that is none of [`Scheme`] and keeps
     /// the lists, however far particles move.
     pub fn into_particles(self) -> ParticleData<S::Extra> {
-        let mut data = self.engine.data;
+        let mut data = *self.engine.data;
         data.reach2 = f64::MAX;
         data
     }
