@@ -143,7 +143,7 @@ impl Reference {
         let found = match found {
             Ok(found) => found,
             Err(why) => {
-                OF_HISTORIES.into_iter().for_each(|key| record.leave_out(key, why.to_string()));
+                OF_HISTORIES.into_iter().for_each(|key| record.leave_out(key, why.clone()));
                 return;
             }
         };
