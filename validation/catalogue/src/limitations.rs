@@ -26,8 +26,9 @@ pub fn by_cause<'a, T>(
 ) -> Vec<(Option<&'a Cause>, Vec<T>)> {
     let mut causes: BTreeMap<Option<&Cause>, Vec<T>> = BTreeMap::new();
     for one in all {
-        if let Some(known) = judged(&one).limitation() {
-            causes.entry(known.cause.as_ref()).or_default().push(one);
+        let judged = judged(&one);
+        if judged.limitation().is_some() {
+            causes.entry(judged.gate.cause.as_ref()).or_default().push(one);
         }
     }
     let mut causes: Vec<_> = causes.into_iter().collect();

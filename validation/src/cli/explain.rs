@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use ::report;
-use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
+use base::gate::{Cause, Evidence, Gate, Verdict};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
@@ -199,7 +199,7 @@ fn words(known: &Known) -> String {
         ("bound", gate.bound.to_string()),
         ("evidence", evidence(gate)),
         ("because", gate.because.clone()),
-        ("purpose", purpose(&gate.purpose)),
+        ("purpose", purpose(gate)),
         ("judged on", on.clone()),
         ("in tiers", known.tiers.join(", ")),
         ("last", last.as_ref().map(judged_as).unwrap_or_default()),
@@ -227,18 +227,15 @@ fn evidence(gate: &Gate) -> String {
     words.to_string() + &grades.collect::<String>()
 }
 
-fn purpose(purpose: &Purpose) -> String {
-    match purpose {
-        Purpose::Judge => "inside passes, outside fails".into(),
-        Purpose::Limitation(known) => {
-            let cause = known.cause.as_ref().map_or("", |cause| &cause.what);
-            let reasons = format!("{cause} {}", known.reason);
-            format!(
-                "known limitation, may lie outside, but {}: {}",
-                known.bound,
-                reasons.trim_start()
-            )
+fn purpose(gate: &Gate) -> String {
+    let Gate { known, reason, cause, .. } = gate;
+    match known {
+        _ if gate.control => "a control, which must lie outside".into(),
+        None => "inside passes, outside fails".into(),
+        Some(known) => {
+            let cause = cause.as_ref().map(|cause| &*cause.what);
+            let reasons: Vec<&str> = cause.into_iter().chain(reason.as_deref()).collect();
+            format!("known limitation, may lie outside, but {known}: {}", reasons.join(" "))
         }
-        Purpose::ExpectFailure => "a control, which must lie outside".into(),
     }
 }

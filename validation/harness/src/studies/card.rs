@@ -119,7 +119,8 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
 /// The two causes that most gates share.
 fn main_limitations(judged: &[&Judged]) -> Vec<String> {
     let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
-    for cause in judged.iter().filter_map(|judged| judged.limitation()?.cause.as_ref()) {
+    let limited = judged.iter().filter(|judged| judged.limitation().is_some());
+    for cause in limited.filter_map(|judged| judged.gate.cause.as_ref()) {
         *causes.entry(&cause.what).or_default() += 1;
     }
     let mut causes: Vec<(&str, usize)> = causes.into_iter().collect();
