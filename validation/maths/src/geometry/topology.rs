@@ -157,7 +157,7 @@ fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     let everything = (f64::NEG_INFINITY, f64::INFINITY, OUTSIDE);
     let mut above = vec![everything];
     for mut line in scan_lines(piece, 0.5 * BOND * dx, LINE * dx) {
-        put_in_order(&mut line);
+        line.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut gaps = Vec::with_capacity(4);
         // Where the gap that is open begins, and its number.
         let mut from = f64::NEG_INFINITY;
@@ -176,18 +176,6 @@ fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     }
     background.join_lines(&above, &[everything]);
     background.closed(least_hole)
-}
-
-/// Sorts intervals by where they begin; few are out of order, and by a few places.
-fn put_in_order(line: &mut [(f64, f64)]) {
-    for k in 1..line.len() {
-        let (mut place, moved) = (k, line[k]);
-        while place > 0 && line[place - 1].0 > moved.0 {
-            line[place] = line[place - 1];
-            place -= 1;
-        }
-        line[place] = moved;
-    }
 }
 
 /// The intervals \[m\] that discs leave on lines a `step` \[m\] apart.
