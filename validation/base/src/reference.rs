@@ -12,9 +12,8 @@
 //! # Ok::<(), base::reference::ReferenceError>(())
 //! ```
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::sync::{LazyLock, OnceLock};
+use std::sync::OnceLock;
 
 use serde::Deserialize;
 use thiserror::Error;
@@ -224,22 +223,18 @@ impl Reference {
 
     /// An embedded reference, checked and read once. One is refused whose second code does not agree.
     pub fn load(name: &str) -> Result<&'static Self, ReferenceError> {
-        static READ: LazyLock<BTreeMap<&str, OnceLock<Result<Reference, ReferenceError>>>> =
-            LazyLock::new(|| {
-                Reference::names().into_iter().map(|name| (name, OnceLock::new())).collect()
-            });
+        static READ: [OnceLock<Result<Reference, ReferenceError>>; EMBEDDED.len()] =
+            [const { OnceLock::new() }; EMBEDDED.len()];
         let read = || {
             let reference = Self::read(name)?;
             reference.agreement()?;
             Ok(reference)
         };
-        let once = READ.get(name).ok_or_else(|| unknown(name))?;
-        once.get_or_init(read).as_ref().map_err(Clone::clone)
+        READ[place(name)?].get_or_init(read).as_ref().map_err(Clone::clone)
     }
 
     fn read(name: &str) -> Result<Self, ReferenceError> {
-        let (_, packed) =
-            EMBEDDED.iter().find(|(known, _)| *known == name).ok_or_else(|| unknown(name))?;
+        let (_, packed) = EMBEDDED[place(name)?];
         let texts = pack::read(packed);
         let file =
             |(path, text)| Some((String::as_str(path).split_once('/')?.1, String::as_str(text)));
@@ -441,9 +436,13 @@ fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError>
     Ok(())
 }
 
-fn unknown(name: &str) -> ReferenceError {
-    let known = Reference::names().join(", ");
-    ReferenceError(format!("no reference is called {name:?}; there are {known}"))
+/// The place of a package among those that are embedded.
+fn place(name: &str) -> Result<usize, ReferenceError> {
+    let unknown = || {
+        let known = Reference::names().join(", ");
+        ReferenceError(format!("no reference is called {name:?}; there are {known}"))
+    };
+    EMBEDDED.iter().position(|(known, _)| *known == name).ok_or_else(unknown)
 }
 
 /// Reads a table after checking its header.
