@@ -1,11 +1,12 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 pub use base::gate::Judged;
 use base::{
-    gate::Gate,
+    gate::{Cause, Gate},
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
@@ -94,6 +95,23 @@ impl JudgedRun {
             planned.gates.iter().map(|gate| Judged::of_record(gate.clone(), &record)).collect();
         Self { planned, record, judged }
     }
+}
+
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.
+pub fn by_cause<'a, T>(
+    all: impl IntoIterator<Item = T>,
+    judged: impl Fn(&T) -> &'a Judged,
+) -> Vec<(&'a Cause, Vec<T>)> {
+    let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
+    for one in all {
+        let judged = judged(&one);
+        if let Some(cause) = judged.gate.cause.as_ref().filter(|_| judged.limitation().is_some()) {
+            causes.entry(cause).or_default().push(one);
+        }
+    }
+    let mut causes: Vec<_> = causes.into_iter().collect();
+    causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
+    causes
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not

@@ -4,17 +4,17 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use ::report;
-use base::gate::{Cause, Evidence, Gate, Verdict};
+use base::gate::{Evidence, Gate, Verdict};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
 use harness::case::{self, Case, Tier};
 use harness::make::Stored;
 use harness::plan;
-use harness::runs::Judged;
+use harness::runs::{self, Judged};
 use harness::store::Store;
 use harness::suite::{self, Of};
-use validation::{cases, limitations};
+use validation::cases;
 
 use super::{
     Failure, World, arguments,
@@ -162,11 +162,9 @@ fn table(gates: &[&Judged]) -> String {
 
 /// Each cause, that of most gates first, with what would remove it and its gates.
 fn by_cause(gates: &[&Judged]) -> String {
-    let of_none = "Gates with a cause of their own, which `touchstone explain GATE` states:";
     let mut text = String::new();
-    for (cause, gates) in limitations::by_cause(gates.iter().copied(), |judged| judged) {
-        let words = cause.map_or(of_none.into(), Cause::to_string);
-        text += &output::wrap(&words, "");
+    for (cause, gates) in runs::by_cause(gates.iter().copied(), |judged| judged) {
+        text += &output::wrap(&cause.to_string(), "");
         text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();
         text.push('\n');
     }

@@ -185,8 +185,7 @@ fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
     // A piece holds together, so that this is at most its number of particles times 2 radius/step.
     let most = piece.len() as f64 * (2.0 * radius / step) + 1.0;
     let count = ((high - low) / step).clamp(0.0, most) as usize;
-    let on_each = (most / count.max(1) as f64) as usize;
-    let mut lines: Vec<_> = (0..count).map(|_| Vec::with_capacity(on_each + 8)).collect();
+    let mut lines = vec![Vec::new(); count];
     for p in piece {
         let first = ((p.y - radius - low) / step - 0.5).ceil().max(0.0) as usize;
         for (k, line) in lines.iter_mut().enumerate().skip(first) {
