@@ -3,9 +3,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use hmac_sha256::Hash;
+
+#[path = "base/tell.rs"]
+mod tell;
+
+use tell::{output, set};
 
 /// What every result depends on.
 const SHARED: [&str; 7] =
@@ -59,18 +63,6 @@ fn files(place: &Path) -> Vec<PathBuf> {
     paths.into_iter().filter(|path| !is_test(path)).flat_map(|path| files(&path)).collect()
 }
 
-fn set(name: &str, value: Option<String>) {
-    println!("cargo:rustc-env=TOUCHSTONE_{name}={}", value.as_deref().unwrap_or("unknown"));
-}
-
 fn git(arguments: &[&str]) -> Option<String> {
     output("git", arguments)
-}
-
-/// What a command prints, if it is there and succeeds.
-fn output(program: &str, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program).args(arguments).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    // Only the first line: a second one would be a cargo instruction of its own.
-    output.status.success().then(|| text.trim().lines().next().unwrap_or_default().to_string())
 }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use base::gate::{Bound, Gate, Purpose};
+use base::gate::{Bound, Gate};
 use harness::{case::Tier, convergence::Level, plan, studies::validation::numerical};
 use serde_json::Value;
 use touchstone_tests::snapshot;
@@ -178,15 +178,11 @@ fn uncertainty(comment: &str) -> Option<f64> {
 
 /// The ends of the bound of a gate and of that of its limitation.
 fn ends(gate: &Gate) -> Vec<f64> {
-    let known = match &gate.purpose {
-        Purpose::Limitation(known) => Some(known.bound),
-        _ => None,
-    };
     let ends = |bound| match bound {
         Bound::Below(end) | Bound::Above(end) | Bound::Equals(end) => vec![end],
         Bound::Within(low, high) => vec![low, high],
     };
-    [gate.bound].into_iter().chain(known).flat_map(ends).collect()
+    [gate.bound].into_iter().chain(gate.known).flat_map(ends).collect()
 }
 
 /// What a document states with its source: what is before the comment, and the comment.

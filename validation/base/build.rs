@@ -1,12 +1,14 @@
 //! Tells the library which compiler built it and for what, where what cannot be known is `unknown`, and packs
 //! the references.
 
-use std::process::Command;
 use std::{env, fs, io, path::Path};
 
 use hmac_sha256::Hash;
 
 mod pack;
+mod tell;
+
+use tell::{output, set};
 
 fn main() -> io::Result<()> {
     set("RUSTC", env::var("RUSTC").ok().and_then(|rustc| output(&rustc, &["--version"])));
@@ -18,7 +20,9 @@ fn main() -> io::Result<()> {
     ] {
         set(name, env::var(variable).ok());
     }
-    println!("cargo:rerun-if-changed=build.rs\ncargo:rerun-if-changed=pack.rs");
+    for watched in ["build.rs", "pack.rs", "tell.rs"] {
+        println!("cargo:rerun-if-changed={watched}");
+    }
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../references");
     let is = |path: &Path, kind| path.extension().is_some_and(|of| of == kind);
     let mut list = String::new();
@@ -55,16 +59,4 @@ fn is_described(table: &Path) -> io::Result<bool> {
     let words =
         format!("the hash of reference {table} is {hash}, which its package does not state");
     Err(io::Error::other(words))
-}
-
-fn set(name: &str, value: Option<String>) {
-    println!("cargo:rustc-env=TOUCHSTONE_{name}={}", value.as_deref().unwrap_or("unknown"));
-}
-
-/// What a command prints, if it is there and succeeds.
-fn output(program: &str, arguments: &[&str]) -> Option<String> {
-    let output = Command::new(program).args(arguments).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    // Only the first line: a second one would be a cargo instruction of its own.
-    output.status.success().then(|| text.trim().lines().next().unwrap_or_default().to_string())
 }

@@ -7,62 +7,24 @@
 //! those of the standard library (`clippy.toml`).
 //!
 //! Methods of `f64` that stay: `sqrt`, `abs`, `floor`, `ceil`, `round`, `trunc`, `%` and conversions are
-//! exact or correctly rounded everywhere; `powi` is a sequence of multiplications, fixed when compiled.
+//! exact or correctly rounded everywhere; `powi` is a sequence of multiplications, fixed when compiled, and
+//! the faster one where the power is known and whole.
+//!
+//! Angles are in radians. [`exp_m1`] and [`ln_1p`] are eˣ − 1 and ln(1 + x) without cancellation for small x,
+//! [`erfc`] is 1 − erf x without cancellation for large x, and [`hypot`] is (x² + y²)^(1/2) without overflow of
+//! the squares.
 
 use nalgebra::{Complex, Matrix2, Rotation2};
 
-/// Functions of one number.
-macro_rules! functions_of_one {
-    ($($(#[$doc:meta])+ $name:ident = $of_libm:ident;)+) => {$(
-        $(#[$doc])+
-        pub fn $name(x: f64) -> f64 {
-            libm::$of_libm(x)
-        }
-    )+};
-}
-
-functions_of_one! {
-    /// Sine of an angle in radians.
-    sin = sin;
-    /// Cosine of an angle in radians.
-    cos = cos;
-    /// The angle in [0, π] whose cosine is x; NaN outside [-1, 1].
-    acos = acos;
-    /// Hyperbolic sine.
-    sinh = sinh;
-    /// Hyperbolic cosine.
-    cosh = cosh;
-    /// e to the power x.
-    exp = exp;
-    /// 2 to the power x.
-    exp2 = exp2;
-    /// e to the power x, minus 1, without cancellation for small x.
-    exp_m1 = expm1;
-    /// Natural logarithm.
-    ln = log;
-    /// Natural logarithm of 1 + x, without cancellation for small x.
-    ln_1p = log1p;
-    /// Logarithm to base 2.
-    log2 = log2;
-    /// Logarithm to base 10.
-    log10 = log10;
-    /// Complementary error function, 1 - erf x, without cancellation for large x.
-    erfc = erfc;
-}
+#[doc(no_inline)]
+pub use libm::{
+    acos, cos, cosh, erfc, exp, exp2, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, log2,
+    log10, pow as powf, sin, sinh,
+};
 
 /// Sine and cosine of an angle in radians.
 pub fn sin_cos(x: f64) -> (f64, f64) {
     (sin(x), cos(x))
-}
-
-/// x to the power y; of a whole power that is known, `powi` is the faster.
-pub fn powf(x: f64, y: f64) -> f64 {
-    libm::pow(x, y)
-}
-
-/// (x² + y²)^(1/2) without overflow of the squares.
-pub fn hypot(x: f64, y: f64) -> f64 {
-    libm::hypot(x, y)
 }
 
 /// The modulus |z|.

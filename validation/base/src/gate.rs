@@ -90,16 +90,12 @@ impl Bound {
         }
     }
 
-    /// Does every number inside lie inside of `other` too?
-    fn is_inside(self, other: Self) -> bool {
+    /// Is it sound, does it reach beyond the other bound, and is it limited on each side on which that one is?
+    fn is_beyond(self, other: Self) -> bool {
         let ([low, high], [lowest, highest]) = (self.ends(), other.ends());
-        lowest <= low && high <= highest
-    }
-
-    /// Is it unlimited on a side on which `other` is not?
-    fn is_open_where(self, other: Self) -> bool {
-        let ([low, high], [lowest, highest]) = (self.ends(), other.ends());
-        (low.is_infinite() && lowest.is_finite()) || (high.is_infinite() && highest.is_finite())
+        let is_open = (low.is_infinite() && lowest.is_finite())
+            || (high.is_infinite() && highest.is_finite());
+        self.is_sound() && !is_open && (low < lowest || highest < high)
     }
 }
 
@@ -137,28 +133,6 @@ pub enum Evidence {
     Regression,
 }
 
-/// What a gate does with its judgement.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Purpose {
-    /// inside passes, outside fails
-    Judge,
-    /// a number outside is a known limitation as long as it is inside of the limitation's own bound
-    Limitation(Known),
-    /// a control that must lie outside its bound: inside fails
-    ExpectFailure,
-}
-
-/// How far outside the bound of its gate a metric is known to lie, and why.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Known {
-    /// from the evidence for the cause: outside of it, the gate fails
-    pub bound: Bound,
-    /// what causes it, and where its bound comes from
-    pub reason: String,
-    /// the cause that it shares with other gates
-    pub cause: Option<Cause>,
-}
-
 /// Why numbers lie outside of their bounds, for any number of gates.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Cause {
@@ -182,24 +156,30 @@ impl fmt::Display for Cause {
 }
 
 /// A metric, its bound and its reasons.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Gate {
     /// dotted name, starting with the case
+    #[serde(rename = "gate")]
     pub id: String,
     /// name of the metric in the record
     pub metric: String,
     /// where it must lie
     pub bound: Bound,
+    /// how far outside the bound it is known to lie, from the evidence for the cause: outside of this, the gate
+    /// fails
+    pub known: Option<Bound>,
     /// the kind of evidence behind the bound
     pub evidence: Evidence,
     /// why the bound is where it is
     pub because: String,
-    /// what the judgement is for
-    pub purpose: Purpose,
+    /// what causes the limitation, and where its bound comes from
+    pub reason: Option<String>,
+    /// the cause that the limitation shares with other gates
+    pub cause: Option<Cause>,
+    /// is it a control, which must lie outside its bound?
+    pub control: bool,
     /// is a run that ends early the limitation or the failure that is expected?
     pub may_end_early: bool,
-    /// does it judge what was measured of a run that did not reach its end?
-    pub even_if_diverged: bool,
 }
 
 impl Gate {
@@ -218,11 +198,13 @@ impl Gate {
             id: id.into(),
             metric: metric.into(),
             bound,
+            known: None,
             evidence,
             because: because.into(),
-            purpose: Purpose::Judge,
+            reason: None,
+            cause: None,
+            control: false,
             may_end_early: false,
-            even_if_diverged: false,
         };
         gate.sound()
     }
@@ -233,13 +215,13 @@ impl Gate {
     /// # Panics
     /// If the gate is unsound with it (see [`Gate::check`]).
     pub fn with_limitation(self, bound: Bound, reason: impl Into<String>, cause: &Cause) -> Self {
-        let known = Known { bound, reason: reason.into(), cause: Some(cause.clone()) };
-        Gate { purpose: Purpose::Limitation(known), ..self }.sound()
+        let (known, reason, cause) = (Some(bound), Some(reason.into()), Some(cause.clone()));
+        Gate { known, reason, cause, ..self }.sound()
     }
 
     /// A control: a finite number outside the bound is what must come out.
     pub fn expected_to_fail(self) -> Self {
-        Gate { purpose: Purpose::ExpectFailure, ..self }
+        Gate { control: true, ..self }
     }
 
     /// A run that ends early counts as the limitation or as the failure that is expected.
@@ -248,11 +230,6 @@ impl Gate {
     /// If the gate has neither.
     pub fn may_end_early(self) -> Self {
         Gate { may_end_early: true, ..self }.sound()
-    }
-
-    /// What was measured before a run ended early is judged; otherwise such a run fails the gate.
-    pub fn even_if_diverged(self) -> Self {
-        Gate { even_if_diverged: true, ..self }
     }
 
     /// Panics unless it is sound.
@@ -268,87 +245,74 @@ impl Gate {
     /// # Errors
     /// What is wrong with it.
     pub fn check(&self) -> Result<(), String> {
+        let Gate { id, metric, bound, known, because, reason, .. } = self;
         let is_blank = |text: &str| text.trim().is_empty();
-        let Gate { id, metric, bound, because, purpose, .. } = self;
-        let known = match purpose {
-            Purpose::Limitation(known) => Some(known),
-            _ => None,
-        };
-        let is_wrong = |known: &&Known| {
-            let known = known.bound;
-            !known.is_sound() || known.is_inside(*bound) || known.is_open_where(*bound)
-        };
-        let words = if is_blank(id) || is_blank(metric) {
-            format!(
+        if is_blank(id) || is_blank(metric) {
+            return Err(format!(
                 "a gate must have a name and a metric, but has the name {id:?} and the metric {metric:?}"
-            )
-        } else if is_blank(because) || known.is_some_and(|known| is_blank(&known.reason)) {
-            format!("gate {id} does not say why its bound has this value")
-        } else if !bound.is_sound() {
-            format!(
+            ));
+        }
+        if is_blank(because) || known.is_some() && reason.as_deref().is_none_or(is_blank) {
+            return Err(format!("gate {id} does not say why its bound has this value"));
+        }
+        if !bound.is_sound() {
+            return Err(format!(
                 "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"
-            )
-        } else if self.may_end_early && *purpose == Purpose::Judge {
-            format!(
+            ));
+        }
+        if self.may_end_early && known.is_none() && !self.control {
+            return Err(format!(
                 "gate {id} lets a run end early and names neither a limitation nor an expected failure"
-            )
-        } else if let Some(Known { bound: known, .. }) = known.filter(is_wrong) {
-            format!(
+            ));
+        }
+        match known {
+            Some(known) if !known.is_beyond(*bound) => Err(format!(
                 "the limitation of gate {id} is {known}, which must have finite ends in ascending order and \
                  reach beyond the gate's {bound} on one side"
-            )
-        } else {
-            return Ok(());
-        };
-        Err(words)
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Where the metric must lie, in words, with how far its limitation reaches.
     pub fn bounds(&self) -> String {
-        match &self.purpose {
-            Purpose::Limitation(known) => format!("{}; limitation: {}", self.bound, known.bound),
-            _ => self.bound.to_string(),
-        }
+        let known = self.known.map(|known| format!("; limitation: {known}"));
+        self.bound.to_string() + &known.unwrap_or_default()
     }
 
-    /// Judges a record: its metric by [`Gate::judge`] if the run reached its end or the gate judges what was
-    /// measured until then, and otherwise the early end, which fails unless the gate says what it is.
+    /// Judges a record: its metric by [`Gate::judge`] if the run reached its end, and otherwise the early end,
+    /// however good the run was until then: it fails unless the gate says what it is.
     pub fn judge_record(&self, record: &Record) -> Judgement {
-        let is_completed = record.status == Status::Completed;
-        // However good a run was until it ended early.
-        let counts = is_completed || self.even_if_diverged;
-        let value = record.metric(&self.metric).filter(|_| counts);
-        let verdict = match &self.purpose {
-            _ if value.is_some() || is_completed => return self.judge(value),
-            Purpose::Limitation(_) if self.may_end_early => Verdict::Limitation,
-            Purpose::ExpectFailure if self.may_end_early => Verdict::ExpectedFailure,
-            _ => Verdict::Fail,
+        let verdict = match (self.may_end_early, self.control) {
+            _ if record.status == Status::Completed => {
+                return self.judge(record.metric(&self.metric));
+            }
+            (true, true) => Verdict::ExpectedFailure,
+            (true, false) => Verdict::Limitation,
+            (false, _) => Verdict::Fail,
         };
         Judgement { verdict, value: None, margin: None }
     }
 
     /// Judges a metric. Whatever the gate is for, it passes only on a finite number inside its bound.
     ///
-    /// | metric | `Judge` | `Limitation` | `ExpectFailure` |
+    /// | metric | plain gate | with a limitation | control |
     /// |---|---|---|---|
     /// | finite, inside | pass | pass | fail |
     /// | outside, inside the limitation's bound | fail | limitation | expected failure |
     /// | outside of both | fail | fail | expected failure |
     /// | NaN, infinite, missing | fail | fail | fail |
     pub fn judge(&self, value: Option<f64>) -> Judgement {
-        let is_within = |bound: Bound| value.is_some_and(|value| bound.contains(value));
-        let (verdict, bound) = match &self.purpose {
-            Purpose::ExpectFailure
-                if value.is_some_and(f64::is_finite) && !is_within(self.bound) =>
-            {
+        let is_within = |bound: &Bound| value.is_some_and(|value| bound.contains(value));
+        let is_inside = is_within(&self.bound);
+        let (verdict, bound) = match self.known.filter(is_within) {
+            _ if self.control && !is_inside && value.is_some_and(f64::is_finite) => {
                 (Verdict::ExpectedFailure, None)
             }
-            Purpose::ExpectFailure => (Verdict::Fail, None),
-            _ if is_within(self.bound) => (Verdict::Pass, Some(self.bound)),
-            Purpose::Limitation(known) if is_within(known.bound) => {
-                (Verdict::Limitation, Some(known.bound))
-            }
-            _ => (Verdict::Fail, None),
+            _ if self.control => (Verdict::Fail, None),
+            _ if is_inside => (Verdict::Pass, Some(self.bound)),
+            Some(known) => (Verdict::Limitation, Some(known)),
+            None => (Verdict::Fail, None),
         };
         let margin = bound.zip(value).and_then(|(bound, value)| bound.margin(value));
         Judgement { verdict, value, margin }
@@ -416,14 +380,58 @@ impl fmt::Display for Verdict {
 }
 
 /// A verdict with the number it rests on.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
     /// what came of it
     pub verdict: Verdict,
     /// the metric, if it was measured
+    #[serde(with = "crate::number::option")]
     pub value: Option<f64>,
     /// what is left of the allowance, of the gate or else of its limitation, see [`Bound::margin`]
+    #[serde(with = "crate::number::option")]
     pub margin: Option<f64>,
+}
+
+/// A gate and its judgement: in JSON an object of one level, from whose numbers the verdict follows.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Judged {
+    /// The gate.
+    #[serde(flatten)]
+    pub gate: Gate,
+    /// Unit of the metric; none of one that the record lacks.
+    pub unit: Option<String>,
+    /// The judgement.
+    #[serde(flatten)]
+    pub judgement: Judgement,
+}
+
+impl Judged {
+    /// Judges a number of a study, which has no unit unless the name of its metric ends with one in brackets.
+    pub fn new(gate: Gate, value: Option<f64>) -> Self {
+        let judgement = gate.judge(value);
+        let bracketed = gate.metric.strip_suffix(']').and_then(|name| name.rsplit_once('['));
+        let unit = bracketed.map_or("-", |(_, unit)| unit).to_string();
+        Self { gate, judgement, unit: Some(unit) }
+    }
+
+    /// Judges the record of a run.
+    pub fn of_record(gate: Gate, record: &Record) -> Self {
+        let judgement = gate.judge_record(record);
+        let unit = record.metrics.get(&gate.metric).map(|metric| metric.unit.clone());
+        Self { gate, judgement, unit }
+    }
+
+    /// The reason of the limitation, if it is the verdict.
+    pub fn limitation(&self) -> Option<&str> {
+        let is_limited = self.judgement.verdict == Verdict::Limitation;
+        self.gate.reason.as_deref().filter(|_| is_limited)
+    }
+
+    /// The verdict in words, with the reason of a limitation.
+    pub fn words(&self) -> String {
+        let reason = self.limitation().map(|reason| format!(": {reason}"));
+        self.judgement.verdict.to_string() + &reason.unwrap_or_default()
+    }
 }
 
 #[cfg(test)]
@@ -475,12 +483,11 @@ mod tests {
             (plain.expected_to_fail(), [Fail, ExpectedFailure, ExpectedFailure, Fail]),
         ];
         for (gate, [inside, outside, far, none]) in expected {
-            let purpose = &gate.purpose;
-            assert_eq!(gate.judge(Some(0.5)).verdict, inside, "{purpose:?}");
-            assert_eq!(gate.judge(Some(1.5)).verdict, outside, "{purpose:?}");
-            assert_eq!(gate.judge(Some(2.5)).verdict, far, "{purpose:?}");
+            assert_eq!(gate.judge(Some(0.5)).verdict, inside, "{gate:?}");
+            assert_eq!(gate.judge(Some(1.5)).verdict, outside, "{gate:?}");
+            assert_eq!(gate.judge(Some(2.5)).verdict, far, "{gate:?}");
             for value in NOT_FINITE.map(Some).into_iter().chain([None]) {
-                assert_eq!(gate.judge(value).verdict, none, "{purpose:?}: {value:?}");
+                assert_eq!(gate.judge(value).verdict, none, "{gate:?}: {value:?}");
             }
         }
     }
@@ -503,7 +510,6 @@ mod tests {
         let verdict = |gate: Gate| gate.may_end_early().judge_record(&record).verdict;
         assert_eq!(verdict(limited), Verdict::Limitation);
         assert_eq!(verdict(control), Verdict::ExpectedFailure);
-        assert_eq!(plain.clone().even_if_diverged().judge_record(&record).verdict, Verdict::Pass);
         let silent = Gate { may_end_early: true, ..plain };
         assert!(silent.check().is_err_and(|words| words.contains("lets a run end early")));
     }
@@ -511,8 +517,8 @@ mod tests {
     #[test]
     fn a_limitation_has_a_bound_that_is_wider_than_the_gates() {
         let known = |bound: Bound, known: Bound| {
-            let known = Known { bound: known, reason: "it is soft".into(), cause: None };
-            Gate { purpose: Purpose::Limitation(known), ..gate(bound) }.check()
+            let reason = Some("it is soft".into());
+            Gate { known: Some(known), reason, ..gate(bound) }.check()
         };
         let within = Bound::Within(-0.1, 0.1);
         for wider in [Bound::Within(-0.5, 0.1), Bound::Within(0.2, 0.5), Bound::Within(-1.0, 1.0)] {
@@ -566,8 +572,8 @@ mod tests {
         let refused = |gate: Gate| gate.check().unwrap_err();
         let silent = Gate { because: " ".into(), ..sound.clone() };
         assert_eq!(refused(silent), "gate case.metric does not say why its bound has this value");
-        let known = Known { bound: Bound::Below(2.0), reason: String::new(), cause: None };
-        let causeless = Gate { purpose: Purpose::Limitation(known), ..sound.clone() };
+        let known = Some(Bound::Below(2.0));
+        let causeless = Gate { known, reason: Some(String::new()), ..sound.clone() };
         assert!(refused(causeless).contains("does not say why"));
         let nameless = Gate { metric: String::new(), ..sound.clone() };
         assert!(refused(nameless).contains("must have a name"));

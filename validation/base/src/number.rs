@@ -3,8 +3,8 @@
 //! JSON has no NaN and no infinity, and `serde_json` writes both as `null`, which a reader would take
 //! for "not measured". Here they are written as objects with one key and read back without change:
 //! `{"not_finite": "NaN"}`, `{"not_finite": "inf"}`, `{"not_finite": "-inf"}`.
-//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field, `Option<Number>` for
-//! one that may be missing, and `crate::number::list` on a `Vec<f64>`.
+//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field, `crate::number::option`
+//! on an `Option<f64>`, and `crate::number::list` on a `Vec<f64>`.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -14,34 +14,22 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 pub struct Number(pub f64);
 
 /// The JSON form of a number: what a reader of a record finds.
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 #[serde(untagged)]
 enum Form {
     Finite(f64),
     Other(NotFinite),
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct NotFinite {
     not_finite: String,
 }
 
-/// The name of a float that is not finite: `NaN`, `inf` or `-inf`.
-fn name(value: f64) -> &'static str {
-    match (value.is_nan(), value > 0.0) {
-        (true, _) => "NaN",
-        (_, true) => "inf",
-        (_, false) => "-inf",
-    }
-}
-
 impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self.0 {
-            value if value.is_finite() => serializer.serialize_f64(value),
-            value => NotFinite { not_finite: name(value).into() }.serialize(serializer),
-        }
+        json(self.0).serialize(serializer)
     }
 }
 
@@ -64,7 +52,7 @@ impl<'de> Deserialize<'de> for Number {
 pub fn json(value: f64) -> serde_json::Value {
     match serde_json::Number::from_f64(value) {
         Some(finite) => serde_json::Value::Number(finite),
-        None => serde_json::json!({ "not_finite": name(value) }),
+        None => serde_json::json!({ "not_finite": value.to_string() }),
     }
 }
 
@@ -76,6 +64,21 @@ pub fn serialize<S: Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::
 /// For `#[serde(with = …)]` on an `f64`.
 pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Number::deserialize(deserializer).map(|number| number.0)
+}
+
+/// The same for an `Option<f64>`.
+pub mod option {
+    use super::{Deserialize, Deserializer, Number, Serialize, Serializer};
+
+    /// Writes the number, or `null`.
+    pub fn serialize<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
+        value.map(Number).serialize(to)
+    }
+
+    /// Reads a number or `null`.
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+        Ok(Option::<Number>::deserialize(from)?.map(|number| number.0))
+    }
 }
 
 /// The same for a `Vec<f64>`.

@@ -12,9 +12,8 @@
 //! # Ok::<(), base::reference::ReferenceError>(())
 //! ```
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::sync::{LazyLock, OnceLock};
+use std::sync::OnceLock;
 
 use serde::Deserialize;
 use thiserror::Error;
@@ -224,22 +223,18 @@ impl Reference {
 
     /// An embedded reference, checked and read once. One is refused whose second code does not agree.
     pub fn load(name: &str) -> Result<&'static Self, ReferenceError> {
-        static READ: LazyLock<BTreeMap<&str, OnceLock<Result<Reference, ReferenceError>>>> =
-            LazyLock::new(|| {
-                Reference::names().into_iter().map(|name| (name, OnceLock::new())).collect()
-            });
+        static READ: [OnceLock<Result<Reference, ReferenceError>>; EMBEDDED.len()] =
+            [const { OnceLock::new() }; EMBEDDED.len()];
         let read = || {
             let reference = Self::read(name)?;
             reference.agreement()?;
             Ok(reference)
         };
-        let once = READ.get(name).ok_or_else(|| unknown(name))?;
-        once.get_or_init(read).as_ref().map_err(Clone::clone)
+        READ[place(name)?].get_or_init(read).as_ref().map_err(Clone::clone)
     }
 
     fn read(name: &str) -> Result<Self, ReferenceError> {
-        let (_, packed) =
-            EMBEDDED.iter().find(|(known, _)| *known == name).ok_or_else(|| unknown(name))?;
+        let (_, packed) = EMBEDDED[place(name)?];
         let texts = pack::read(packed);
         let file =
             |(path, text)| Some((String::as_str(path).split_once('/')?.1, String::as_str(text)));
@@ -276,15 +271,8 @@ impl Reference {
     /// Value and uncertainty of the row of the table `summary` of a reference that has these texts; NaN if
     /// there is none, so that nothing follows from it.
     pub fn summarised(name: &str, of: &[(&str, &str)]) -> [f64; 2] {
-        let read = || -> Result<[f64; 2], ReferenceError> {
-            let reference = Self::load(name)?;
-            let summary = reference.table("summary")?;
-            let rows = summary.rows_of(of)?;
-            let (values, doubts) = (summary.optional("value")?, summary.optional("uncertainty")?);
-            let row = rows.first().and_then(|row| Some([values[*row]?, doubts[*row]?]));
-            Ok(row.unwrap_or([f64::NAN; 2]))
-        };
-        read().unwrap_or([f64::NAN; 2])
+        let read = || Self::load(name)?.table("summary")?.select(of, ["value", "uncertainty"]);
+        read().ok().and_then(|rows| rows.first().copied()).unwrap_or([f64::NAN; 2])
     }
 
     /// How far the second code is from the first, if the grade names one.
@@ -305,31 +293,23 @@ impl Reference {
     /// the same texts in the columns before `value`.
     fn distance(&self, other: &Reference) -> Result<Agreement, ReferenceError> {
         let (own, others) = (self.table("summary")?, other.table("values")?);
+        let numbers = ["value", "uncertainty"];
         let keys = &others.fields[..others.position("value")?];
-        let places: Result<Vec<usize>, _> =
-            keys.iter().map(|key| own.position(&key.name)).collect();
-        let (places, numbers) = (places?, |table: &Table| -> Result<Vec<_>, ReferenceError> {
-            Ok(table.numbers("value")?.into_iter().zip(table.numbers("uncertainty")?).collect())
-        });
-        let (found, mut worst) = (
-            numbers(own)?,
-            Agreement { numbers: others.rows.len(), worst: 0.0, of: String::new() },
-        );
-        for (row, (value, doubt)) in others.rows.iter().zip(numbers(others)?) {
-            let of = row[..places.len()].join(" ");
-            let is_same =
-                |cells: &Vec<String>| places.iter().zip(row).all(|(&at, cell)| cells[at] == *cell);
-            let Some(same) = own.rows.iter().position(is_same) else {
-                return refused(format!("reference {} has no number {of:?}", self.package.name));
+        let (mut worst, mut of) = (0.0, String::new());
+        for (row, [value, doubt]) in others.rows.iter().zip(others.select(&[], numbers)?) {
+            let texts: Vec<_> =
+                keys.iter().map(|key| &*key.name).zip(row.iter().map(|cell| &**cell)).collect();
+            let name = row[..keys.len()].join(" ");
+            let Some(&[value_of, doubt_of]) = own.select(&texts, numbers)?.first() else {
+                return refused(format!("reference {} has no number {name:?}", self.package.name));
             };
-            let (value_of, doubt_of) = found[same];
             let both = (doubt * doubt + doubt_of * doubt_of).sqrt();
             let ratio = (value - value_of).abs() / both;
-            if ratio.is_nan() || ratio >= worst.worst {
-                worst = Agreement { worst: ratio, of, ..worst };
+            if ratio.is_nan() || ratio >= worst {
+                (worst, of) = (ratio, name);
             }
         }
-        Ok(worst)
+        Ok(Agreement { numbers: others.rows.len(), worst, of })
     }
 
     /// The grade in words; with two codes, how far they are apart.
@@ -380,21 +360,28 @@ impl Table {
 
     /// A column of numbers without gaps.
     pub fn numbers(&self, column: &str) -> Result<Vec<f64>, ReferenceError> {
-        let texts = self.texts(column)?.into_iter().enumerate();
-        texts.map(|(row, text)| self.number(row, column, text)).collect()
+        Ok(self.select(&[], [column])?.into_flattened())
     }
 
-    /// A column of numbers, `None` where nothing was measured.
-    pub fn optional(&self, column: &str) -> Result<Vec<Option<f64>>, ReferenceError> {
-        let texts = self.texts(column)?.into_iter().enumerate();
-        let number = |(row, text): (usize, &str)| match text {
-            "" => Ok(None),
-            text => self.number(row, column, text).map(Some),
-        };
-        texts.map(number).collect()
+    /// Columns of numbers without gaps, of the rows that have these texts in these columns.
+    pub fn select<const N: usize>(
+        &self,
+        of: &[(&str, &str)],
+        columns: [&str; N],
+    ) -> Result<Vec<[f64; N]>, ReferenceError> {
+        let mut selected = Vec::new();
+        for row in self.rows_of(of)? {
+            let mut numbers = [0.0; N];
+            for (number, column) in numbers.iter_mut().zip(columns) {
+                *number = self.number(row, column)?;
+            }
+            selected.push(numbers);
+        }
+        Ok(selected)
     }
 
-    fn number(&self, row: usize, column: &str, text: &str) -> Result<f64, ReferenceError> {
+    fn number(&self, row: usize, column: &str) -> Result<f64, ReferenceError> {
+        let text = &self.rows[row][self.position(column)?];
         let not_a_number = || {
             let place = format!("row {row}, column {column} of table {}", self.name);
             ReferenceError(format!("{place} is {text:?}, which is not a number"))
@@ -449,9 +436,13 @@ fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError>
     Ok(())
 }
 
-fn unknown(name: &str) -> ReferenceError {
-    let known = Reference::names().join(", ");
-    ReferenceError(format!("no reference is called {name:?}; there are {known}"))
+/// The place of a package among those that are embedded.
+fn place(name: &str) -> Result<usize, ReferenceError> {
+    let unknown = || {
+        let known = Reference::names().join(", ");
+        ReferenceError(format!("no reference is called {name:?}; there are {known}"))
+    };
+    EMBEDDED.iter().position(|(known, _)| *known == name).ok_or_else(unknown)
 }
 
 /// Reads a table after checking its header.
@@ -569,7 +560,7 @@ mod tests {
         let table = reference.table("profile").unwrap();
         assert_eq!((table.rows.len(), table.unit("u")), (3, Ok("m/s")));
         assert_eq!(table.numbers("y").unwrap(), [0.1, 0.2, 0.3]);
-        assert_eq!(table.optional("u").unwrap(), [Some(0.5), Some(-0.86636), None]);
+        assert_eq!(table.select(&[("who", "b")], ["u", "y"]).unwrap(), [[-0.86636, 0.2]]);
         assert_eq!(table.texts("who").unwrap(), ["a", "b", "c"]);
         let says = |error: ReferenceError| error.to_string();
         let gap = "row 2, column u of table profile is \"\", which is not a number";
@@ -639,7 +630,8 @@ mod tests {
             load(&package, TABLE)
         };
         let corrected = erratum("-0.86636", 1, "u").unwrap();
-        assert_eq!(corrected.table("profile").unwrap().optional("u").unwrap()[1], Some(-0.08664));
+        let table = corrected.table("profile").unwrap();
+        assert_eq!(table.select(&[("who", "b")], ["u"]).unwrap(), [[-0.08664]]);
         for wrong in [erratum("-0.8", 1, "u"), erratum("-0.86636", 9, "u"), erratum("b", 1, "v")] {
             assert!(wrong.unwrap_err().to_string().starts_with("the erratum for row"));
         }

@@ -53,7 +53,7 @@ impl fmt::Display for Kind {
             Kind::Real => "a number",
             Kind::RealOrAuto => "a number or auto",
             Kind::Count => "a whole number",
-            Kind::Flag => "true or false",
+            Kind::Flag => "a flag",
         })
     }
 }
@@ -200,7 +200,7 @@ pub trait SettingType: Copy {
     const KIND: Kind;
 
     /// Reads the text; knows nothing of the range.
-    fn read(text: &str, field: &Field) -> Result<Self, SettingError>;
+    fn read(text: &str) -> Option<Self>;
 
     /// The value without its type.
     fn value(self) -> Value;
@@ -209,40 +209,26 @@ pub trait SettingType: Copy {
     fn limited(self) -> Option<Self::Limit>;
 }
 
-/// Refuses a value that is not finite or outside the range.
-pub fn check<T: SettingType>(
-    value: T,
+/// Reads a value. One that is not finite, or outside of the range, is refused.
+pub fn read<T: SettingType>(
+    text: &str,
     range: Option<std::ops::RangeInclusive<T::Limit>>,
-    field: &Field,
+    Field { name, kind, range: words, .. }: &Field,
 ) -> Result<T, SettingError> {
-    let text = value.value().to_string();
-    match value.limited().zip(range) {
-        _ if matches!(value.value(), Value::Real(real) if !real.is_finite()) => {
-            Err(not_finite(&text, field))
-        }
-        Some((number, range)) if !range.contains(&number) => Err(out_of_range(&text, field)),
-        _ => Ok(value),
-    }
-}
-
-fn unreadable(text: &str, Field { name, kind, range, .. }: &Field) -> SettingError {
-    SettingError(format!("setting {name} takes {kind} in the range {range}, not {text:?}"))
-}
-
-fn not_finite(text: &str, Field { name, range, .. }: &Field) -> SettingError {
-    SettingError(format!("setting {name} is {text}, which is not finite; allowed is {range}"))
-}
-
-fn out_of_range(text: &str, Field { name, unit, range, .. }: &Field) -> SettingError {
-    SettingError(format!("setting {name} is {text} [{unit}]; allowed is {range}"))
+    let is_allowed = |value: &T| {
+        value.limited().zip(range).is_none_or(|(number, range)| range.contains(&number))
+    };
+    let refused =
+        || SettingError(format!("setting {name} is {text:?}; allowed is {kind}, {words}"));
+    T::read(text).filter(is_allowed).ok_or_else(refused)
 }
 
 impl SettingType for f64 {
     type Limit = f64;
     const KIND: Kind = Kind::Real;
 
-    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
-        text.parse().map_err(|_| unreadable(text, field))
+    fn read(text: &str) -> Option<Self> {
+        text.parse().ok()
     }
 
     fn value(self) -> Value {
@@ -258,8 +244,8 @@ impl SettingType for Option<f64> {
     type Limit = f64;
     const KIND: Kind = Kind::RealOrAuto;
 
-    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
-        if text == "auto" { Ok(None) } else { f64::read(text, field).map(Some) }
+    fn read(text: &str) -> Option<Self> {
+        if text == "auto" { Some(None) } else { f64::read(text).map(Some) }
     }
 
     fn value(self) -> Value {
@@ -275,18 +261,12 @@ impl SettingType for usize {
     type Limit = usize;
     const KIND: Kind = Kind::Count;
 
-    /// Whole numbers, also written as `2e3`; what is a number but not a count is out of range.
-    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
+    /// Whole numbers, also written as `2e3`.
+    fn read(text: &str) -> Option<Self> {
         const EXACT: f64 = 9007199254740992.0; // 2^53: above it neighbouring floats skip counts
-        if let Ok(count) = text.parse() {
-            return Ok(count);
-        }
-        match text.parse::<f64>() {
-            Ok(real) if (0.0..=EXACT).contains(&real) && real.fract() == 0.0 => Ok(real as usize),
-            Ok(real) if real.is_finite() && real.fract() == 0.0 => Err(out_of_range(text, field)),
-            Ok(real) if !real.is_finite() => Err(not_finite(text, field)),
-            _ => Err(unreadable(text, field)),
-        }
+        let is_whole = |real: &f64| (0.0..=EXACT).contains(real) && real.fract() == 0.0;
+        let real = || text.parse().ok().filter(is_whole).map(|real| real as usize);
+        text.parse().ok().or_else(real)
     }
 
     fn value(self) -> Value {
@@ -302,8 +282,8 @@ impl SettingType for bool {
     type Limit = bool;
     const KIND: Kind = Kind::Flag;
 
-    fn read(text: &str, field: &Field) -> Result<Self, SettingError> {
-        text.parse().map_err(|_| unreadable(text, field))
+    fn read(text: &str) -> Option<Self> {
+        text.parse().ok()
     }
 
     fn value(self) -> Value {
@@ -382,17 +362,15 @@ macro_rules! settings {
             }
 
             fn set(&mut self, key: &str, text: &str) -> Result<(), $crate::settings::SettingError> {
-                use $crate::settings::{SettingType, check, unknown};
                 match Self::FIELDS.iter().find(|field| field.name == key) {
                     $(Some(field) if key == stringify!($name) => {
                         let range = [$($low..=$high)?].into_iter().next();
-                        self.$name = check(<$kind as SettingType>::read(text, field)?, range, field)?;
+                        self.$name = $crate::settings::read(text, range, field)?;
                     })+
-                    _ => return Err(unknown(Self::FIELDS, key)),
+                    _ => return Err($crate::settings::unknown(Self::FIELDS, key)),
                 }
                 Ok(())
             }
-
         }
 
         impl $crate::settings::serde::Serialize for $Struct {
@@ -491,28 +469,34 @@ mod tests {
         assert!(
             says("viscosity=1").starts_with("no setting is called \"viscosity\"; the settings")
         );
-        assert_eq!(says("rows=3"), "setting rows is 3 [-]; allowed is 4 to 2000 [-]");
-        assert_eq!(says("rows=-3"), "setting rows is -3 [-]; allowed is 4 to 2000 [-]");
-        assert_eq!(says("re=1e300"), "setting re is 1e300 [-]; allowed is 1e-9 to 1e6 [-]");
         assert_eq!(
-            says("re=NaN"),
-            "setting re is NaN, which is not finite; allowed is 1e-9 to 1e6 [-]"
+            says("rows=3"),
+            "setting rows is \"3\"; allowed is a whole number, 4 to 2000 [-]"
         );
         assert_eq!(
+            says("rows=-3"),
+            "setting rows is \"-3\"; allowed is a whole number, 4 to 2000 [-]"
+        );
+        assert_eq!(
+            says("re=1e300"),
+            "setting re is \"1e300\"; allowed is a number, 1e-9 to 1e6 [-]"
+        );
+        assert_eq!(says("re=NaN"), "setting re is \"NaN\"; allowed is a number, 1e-9 to 1e6 [-]");
+        assert_eq!(
             says("c0=inf"),
-            "setting c0 is inf, which is not finite; allowed is 1e-9 to 1e5 [m/s]"
+            "setting c0 is \"inf\"; allowed is a number or auto, 1e-9 to 1e5 [m/s]"
         );
         assert_eq!(
             says("rows=20.5"),
-            "setting rows takes a whole number in the range 4 to 2000 [-], not \"20.5\""
+            "setting rows is \"20.5\"; allowed is a whole number, 4 to 2000 [-]"
         );
         assert_eq!(says("re"), "\"re\" is not of the form key=value");
         assert_eq!(
             says("rows=99999999999999999999999"),
-            "setting rows is 99999999999999999999999 [-]; allowed is 4 to 2000 [-]"
+            "setting rows is \"99999999999999999999999\"; allowed is a whole number, 4 to 2000 [-]"
         );
-        assert!(says("re=").starts_with("setting re takes a number in the range"));
-        assert!(says("verbose=yes").starts_with("setting verbose takes true or false"));
+        assert!(says("re=").starts_with("setting re is \"\"; allowed is a number"));
+        assert!(says("verbose=yes").ends_with("allowed is a flag, true or false"));
     }
 
     #[test]
@@ -533,12 +517,10 @@ mod tests {
     fn validate_finds_what_was_written_past_set() {
         assert_eq!(Channel::default().validate(), Ok(()));
         let wrong = Channel { re: f64::NAN, ..Channel::default() };
-        assert!(
-            wrong.validate().is_err_and(|e| e.0.starts_with("setting re is NaN, which is not"))
-        );
+        assert!(wrong.validate().is_err_and(|e| e.0.starts_with("setting re is \"NaN\"; allowed")));
         let wrong = Channel { c0: Some(-1.0), ..Channel::default() };
         assert!(
-            wrong.validate().is_err_and(|e| e.0.starts_with("setting c0 is -1.0 [m/s]; allowed"))
+            wrong.validate().is_err_and(|e| e.0.starts_with("setting c0 is \"-1.0\"; allowed"))
         );
     }
 

@@ -112,16 +112,15 @@ type Place = (Vector2<f64>, usize, [f64; 2]);
 fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
     let reference = Reference::load("cavity")?;
     let table = reference.table("lines")?;
-    let (of, names) = (table.numbers("re")?, table.texts("quantity")?);
-    let (value, ghia) = (table.numbers("value")?, table.numbers("published")?);
-    let places = table.optional("place")?;
-    let place = |k: usize| {
-        let along = places[k].filter(|x| *x > 0.0 && *x < 1.0 && of[k] == re)?;
-        let component = usize::from(names[k] == "v");
-        let place = [Vector2::new(0.5, along), Vector2::new(along, 0.5)][component];
-        Some((place, component, [value[k], ghia[k]]))
+    let re = re.to_string();
+    let line = |component: usize| -> Result<Vec<Place>, ReferenceError> {
+        let of = [("re", &*re), ("quantity", ["u", "v"][component])];
+        let rows = table.select(&of, ["place", "value", "published"])?.into_iter();
+        let inner = rows.filter(|[along, ..]| *along > 0.0 && *along < 1.0);
+        let place = |along| [Vector2::new(0.5, along), Vector2::new(along, 0.5)][component];
+        Ok(inner.map(|[along, own, ghia]| (place(along), component, [own, ghia])).collect())
     };
-    Ok((0..of.len()).filter_map(place).collect())
+    Ok([line(0)?, line(1)?].concat())
 }
 
 /// The velocity at a place: that of a quadratic field that is fitted to the fluid within 4.5 spacings, with

@@ -1,10 +1,12 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
+pub use base::gate::Judged;
 use base::{
-    gate::{Gate, Judgement, Known, Purpose, Verdict},
+    gate::{Cause, Gate},
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
@@ -95,48 +97,21 @@ impl JudgedRun {
     }
 }
 
-/// A gate and its judgement.
-#[derive(Clone, Debug)]
-pub struct Judged {
-    /// The gate.
-    pub gate: Gate,
-    /// The judgement.
-    pub judgement: Judgement,
-    /// Unit of the metric; none of one that the record lacks.
-    pub unit: Option<String>,
-}
-
-impl Judged {
-    /// Judges a number of a study, which has no unit unless the name of its metric ends with one in brackets.
-    pub fn new(gate: Gate, value: Option<f64>) -> Self {
-        let judgement = gate.judge(value);
-        let bracketed = gate.metric.strip_suffix(']').and_then(|name| name.rsplit_once('['));
-        let unit = bracketed.map_or("-", |(_, unit)| unit).to_string();
-        Self { gate, judgement, unit: Some(unit) }
-    }
-
-    /// Judges the record of a run.
-    pub fn of_record(gate: Gate, record: &Record) -> Self {
-        let judgement = gate.judge_record(record);
-        let unit = record.metrics.get(&gate.metric).map(|metric| metric.unit.clone());
-        Self { gate, judgement, unit }
-    }
-
-    /// The limitation, if it is the verdict.
-    pub fn limitation(&self) -> Option<&Known> {
-        match &self.gate.purpose {
-            Purpose::Limitation(known) if self.judgement.verdict == Verdict::Limitation => {
-                Some(known)
-            }
-            _ => None,
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.
+pub fn by_cause<'a, T>(
+    all: impl IntoIterator<Item = T>,
+    judged: impl Fn(&T) -> &'a Judged,
+) -> Vec<(&'a Cause, Vec<T>)> {
+    let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
+    for one in all {
+        let judged = judged(&one);
+        if let Some(cause) = judged.gate.cause.as_ref().filter(|_| judged.limitation().is_some()) {
+            causes.entry(cause).or_default().push(one);
         }
     }
-
-    /// The verdict in words, with the reason of a limitation.
-    pub fn words(&self) -> String {
-        let reason = self.limitation().map(|known| format!(": {}", known.reason));
-        self.judgement.verdict.to_string() + &reason.unwrap_or_default()
-    }
+    let mut causes: Vec<_> = causes.into_iter().collect();
+    causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
+    causes
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not
@@ -199,7 +174,7 @@ impl Runs {
 
 #[cfg(test)]
 mod tests {
-    use base::gate::{Bound, Evidence};
+    use base::gate::{Bound, Evidence, Verdict};
     use base::record::Metric;
 
     use super::*;

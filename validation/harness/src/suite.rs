@@ -1,7 +1,7 @@
 //! Planning, making and judging of all runs, which `verify` and `report` share.
 
 use base::{
-    gate::{Bound, Evidence, Gate, Purpose},
+    gate::{Bound, Evidence, Gate},
     record::{self, Record, Status},
     spec::RunSpec,
 };
@@ -141,7 +141,9 @@ pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     leave_out_ours(case, &mut record);
     let spec = record.spec();
     let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
-    let plain = |gate| Gate { purpose: Purpose::Judge, may_end_early: false, ..gate };
+    let plain = |Gate { id, metric, bound, evidence, because, .. }: Gate| {
+        Gate::new(id, metric, bound, evidence, because)
+    };
     JudgedRun::new(Planned::new(spec).judged(gates.into_iter().map(plain).collect()), record)
 }
 

@@ -15,6 +15,7 @@ use harness::{
     simulate::{self, momentum},
     table::{Row, Table},
 };
+use maths::metrics::norms::largest;
 use nalgebra::Vector2;
 use solver::{Domain, Particle, Tait};
 
@@ -162,8 +163,7 @@ fn run(
 
 /// Kinetic energy per mass of the fastest particle \[c₀²\]; NaN stays.
 fn fastest(particles: &[Particle]) -> f64 {
-    let all = particles.iter().map(|p| 0.5 * p.velocity.norm_squared());
-    all.fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+    largest(particles.iter().map(|p| 0.5 * p.velocity.norm_squared()))
 }
 
 /// ρ₀ = c₀ = dx = 1, ν = 0.1.

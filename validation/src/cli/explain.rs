@@ -4,17 +4,17 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use ::report;
-use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
+use base::gate::{Evidence, Gate, Verdict};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
 use harness::case::{self, Case, Tier};
 use harness::make::Stored;
 use harness::plan;
-use harness::runs::Judged;
+use harness::runs::{self, Judged};
 use harness::store::Store;
 use harness::suite::{self, Of};
-use validation::{cases, limitations};
+use validation::cases;
 
 use super::{
     Failure, World, arguments,
@@ -162,11 +162,9 @@ fn table(gates: &[&Judged]) -> String {
 
 /// Each cause, that of most gates first, with what would remove it and its gates.
 fn by_cause(gates: &[&Judged]) -> String {
-    let of_none = "Gates with a cause of their own, which `touchstone explain GATE` states:";
     let mut text = String::new();
-    for (cause, gates) in limitations::by_cause(gates.iter().copied(), |judged| judged) {
-        let words = cause.map_or(of_none.into(), Cause::to_string);
-        text += &output::wrap(&words, "");
+    for (cause, gates) in runs::by_cause(gates.iter().copied(), |judged| judged) {
+        text += &output::wrap(&cause.to_string(), "");
         text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();
         text.push('\n');
     }
@@ -199,7 +197,7 @@ fn words(known: &Known) -> String {
         ("bound", gate.bound.to_string()),
         ("evidence", evidence(gate)),
         ("because", gate.because.clone()),
-        ("purpose", purpose(&gate.purpose)),
+        ("purpose", purpose(gate)),
         ("judged on", on.clone()),
         ("in tiers", known.tiers.join(", ")),
         ("last", last.as_ref().map(judged_as).unwrap_or_default()),
@@ -227,18 +225,15 @@ fn evidence(gate: &Gate) -> String {
     words.to_string() + &grades.collect::<String>()
 }
 
-fn purpose(purpose: &Purpose) -> String {
-    match purpose {
-        Purpose::Judge => "inside passes, outside fails".into(),
-        Purpose::Limitation(known) => {
-            let cause = known.cause.as_ref().map_or("", |cause| &cause.what);
-            let reasons = format!("{cause} {}", known.reason);
-            format!(
-                "known limitation, may lie outside, but {}: {}",
-                known.bound,
-                reasons.trim_start()
-            )
+fn purpose(gate: &Gate) -> String {
+    let Gate { known, reason, cause, .. } = gate;
+    match known {
+        _ if gate.control => "a control, which must lie outside".into(),
+        None => "inside passes, outside fails".into(),
+        Some(known) => {
+            let cause = cause.as_ref().map(|cause| &*cause.what);
+            let reasons: Vec<&str> = cause.into_iter().chain(reason.as_deref()).collect();
+            format!("known limitation, may lie outside, but {known}: {}", reasons.join(" "))
         }
-        Purpose::ExpectFailure => "a control, which must lie outside".into(),
     }
 }

@@ -57,14 +57,16 @@ impl Reference {
 
     /// What the package has of a Reynolds number.
     fn read(re: f64) -> Result<Self, ReferenceError> {
-        let package = Package::load("periodic_hill")?;
-        let wall = rows(package, "wall", re, ["x", "hill_shear", "lid_shear"])?;
-        let line = rows(package, "line", re, ["x", "y"])?;
-        let profiles = rows(package, "profiles", re, ["x", "y", "u", "v"])?;
-        let uncertainty = rows(package, "profiles", re, ["u_uncertainty"])?;
+        let (package, text) = (Package::load("periodic_hill")?, re.to_string());
+        let of = [("re", &*text)];
+        let wall = package.table("wall")?.select(&of, ["x", "hill_shear", "lid_shear"])?;
+        let line = package.table("line")?.select(&of, ["x", "y"])?;
+        let profiles = package.table("profiles")?;
+        let uncertainty = profiles.select(&of, ["u_uncertainty"])?;
+        let profiles = profiles.select(&of, ["x", "y", "u", "v"])?;
         let hill = Hill::new(1.0)?;
         let height = |x: f64, s: f64| hill.wall(x) * (1.0 - s) + hill.lid() * s;
-        let starts = rows(package, "starts", re, ["x", "s", "u", "v"])?.into_iter();
+        let starts = package.table("starts")?.select(&of, ["x", "s", "u", "v"])?.into_iter();
         let starts: Vec<_> = starts.map(|[x, s, u, v]| [x, height(x, s), u, v]).collect();
         Ok(Self {
             stations: stations(&profiles),
@@ -106,21 +108,6 @@ impl Reference {
         };
         near.iter().enumerate().map(|(k, station)| at(station) * weight(k)).sum()
     }
-}
-
-/// Some columns of a table, the rows of a Reynolds number.
-fn rows<const N: usize>(
-    package: &Package,
-    table: &str,
-    reynolds: f64,
-    names: [&str; N],
-) -> Result<Vec<[f64; N]>, ReferenceError> {
-    let table = package.table(table)?;
-    let re = table.numbers("re")?;
-    let columns: Result<Vec<_>, _> = names.iter().map(|name| table.numbers(name)).collect();
-    let columns = columns?;
-    let own = (0..re.len()).filter(|&k| re[k] == reynolds);
-    Ok(own.map(|k| std::array::from_fn(|j| columns[j][k])).collect())
 }
 
 /// Rows of x, y, u, v as stations.

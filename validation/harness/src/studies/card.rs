@@ -1,7 +1,5 @@
 //! What the report says first of a case: errors and costs of two variants, how far they got, verdicts.
 
-use std::collections::BTreeMap;
-
 use base::{
     record::{Record, Status},
     spec::RunSpec,
@@ -11,7 +9,7 @@ use report::{Block, Card, Counts, Figure, Legend, Panel, exact, percent, sci, se
 use super::{limit, validation};
 use crate::{
     declare::{self, Declaration},
-    runs::{Judged, Runs},
+    runs::{Judged, Runs, by_cause},
     study::Study,
 };
 
@@ -118,11 +116,6 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
 
 /// The two causes that most gates share.
 fn main_limitations(judged: &[&Judged]) -> Vec<String> {
-    let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
-    for cause in judged.iter().filter_map(|judged| judged.limitation()?.cause.as_ref()) {
-        *causes.entry(&cause.what).or_default() += 1;
-    }
-    let mut causes: Vec<(&str, usize)> = causes.into_iter().collect();
-    causes.sort_by_key(|(_, gates)| std::cmp::Reverse(*gates));
-    causes.into_iter().take(2).map(|(what, _)| what.to_string()).collect()
+    let causes = by_cause(judged.iter().copied(), |judged| judged);
+    causes.into_iter().take(2).map(|(cause, _)| cause.what.to_string()).collect()
 }

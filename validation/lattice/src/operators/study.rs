@@ -28,60 +28,42 @@ static QUADRATURE: Cause = Cause::new(
     "A smoother kernel, more neighbours, or gradients that are exact for linear fields.",
 );
 
-/// What is refined: its runs, the metric, and the spacing by which an order is taken.
-struct Refined {
-    of: For,
-    name: &'static str,
-    title: &'static str,
-    axis: &'static str,
-    spacing: fn(&OperatorSettings) -> f64,
-}
+/// What is refined.
+const REFINED: [For; 4] = [For::Lattice, For::Resolution, For::Neighbours, For::Disorder];
 
-const REFINED: [Refined; 4] = [
-    Refined {
-        of: For::Lattice,
-        name: "bias",
-        title: "Lattice: gain",
-        axis: "h/L [-]",
-        spacing: |s| s.h_over_dx / s.n as f64,
-    },
-    Refined {
-        of: For::Resolution,
-        name: "noise_h",
-        title: "Disorder: smaller h",
-        axis: "h/L [-]",
-        spacing: |s| s.h_over_dx / s.n as f64,
-    },
-    Refined {
-        of: For::Neighbours,
-        name: "noise_neighbours",
-        title: "Disorder: more neighbours",
-        axis: "dx/h [-]",
-        spacing: |s| 1.0 / s.h_over_dx,
-    },
-    Refined {
-        of: For::Disorder,
-        name: "noise_disorder",
-        title: "Less disorder",
-        axis: "displacement/dx [-]",
-        spacing: |s| s.disorder,
-    },
-];
+impl For {
+    /// Its name in gates, its title, and what is on the axis.
+    fn texts(self) -> [&'static str; 3] {
+        match self {
+            For::Lattice => ["bias", "Lattice: gain", "h/L [-]"],
+            For::Resolution => ["noise_h", "Disorder: smaller h", "h/L [-]"],
+            For::Neighbours => ["noise_neighbours", "Disorder: more neighbours", "dx/h [-]"],
+            For::Disorder => ["noise_disorder", "Less disorder", "displacement/dx [-]"],
+        }
+    }
 
-impl Refined {
+    /// The spacing by which the order is taken.
+    fn spacing(self, s: &OperatorSettings) -> f64 {
+        match self {
+            For::Lattice | For::Resolution => s.h_over_dx / s.n as f64,
+            For::Neighbours => 1.0 / s.h_over_dx,
+            For::Disorder => s.disorder,
+        }
+    }
+
     /// The order that theory expects.
-    fn expected(&self, of: &Subject) -> f64 {
-        match self.of {
+    fn expected(self, of: &Subject) -> f64 {
+        match self {
             For::Resolution => of.order(),
             For::Disorder => 1.0,
             _ => 2.0,
         }
     }
 
-    fn gate(&self, of: &Subject) -> Gate {
+    fn gate(self, of: &Subject) -> Gate {
         let expected = self.expected(of);
         let within = |by: f64| Bound::Within(expected - by, expected + by);
-        let (bound, because) = match self.of {
+        let (bound, because) = match self {
             For::Lattice => (
                 within(0.2),
                 "The gain of a wave is that of smoothing, 1 - (kh)^2 times half the second moment of the \
@@ -104,9 +86,9 @@ impl Refined {
                  first order as exactness for linear fields (of a gradient) gives it.",
             ),
         };
-        let id = format!("{}.{}.{}", OPERATORS.name, of.name, self.name);
+        let id = format!("{}.{}.{}", OPERATORS.name, of.name, self.texts()[0]);
         let gate = Gate::new(id, "order", bound, Evidence::Theory, because);
-        match self.of {
+        match self {
             For::Lattice
                 if of.kernel == CUBIC && !of.is_corrected && of.operator != Operator::Density =>
             {
@@ -133,15 +115,15 @@ impl Refined {
 pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let all = REFINED.map(|refined| {
-        let (metric, axis): (MetricKey, _) = match refined.of {
+        let (metric, axis): (MetricKey, _) = match refined {
             For::Lattice => (BIAS, "bias [-]"),
             _ => (NOISE, "noise [-]"),
         };
         let lines = subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).map(|of| {
-            let rows = table.of(refined.of).filter(|row| row.variant == of.name);
+            let rows = table.of(refined).filter(|row| row.variant == of.name);
             let value = |record: &Record| record.value(metric);
             let level = |row: &Row<OperatorSettings, For>| Level {
-                spacing: (refined.spacing)(&row.settings),
+                spacing: refined.spacing(&row.settings),
                 value: runs.completed(&row.run.spec).and_then(value).unwrap_or(f64::NAN),
             };
             let kind = if of.is_corrected { "corrected" } else { "plain" };
@@ -154,10 +136,10 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
             let (levels, gate) = (rows.map(level).collect(), refined.gate(of));
             Line { name: of.name, kind, levels, expected, gate }
         });
-        let is_second = matches!(refined.of, For::Lattice | For::Neighbours);
+        let is_second = matches!(refined, For::Lattice | For::Neighbours);
         let slopes: &[f64] = if is_second { &[2.0] } else { &[1.0] };
-        let (title, axes) = (refined.title, [refined.axis, axis]);
-        Refinement { title, axes, slopes, lines: lines.collect() }
+        let [_, title, spacing] = refined.texts();
+        Refinement { title, axes: [spacing, axis], slopes, lines: lines.collect() }
     });
     let study = Study::new("operators-orders", "Orders of single operators").prose(
         "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there \

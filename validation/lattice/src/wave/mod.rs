@@ -130,11 +130,9 @@ base::metrics! {
     // Error of the frequency of a sound wave.
     FREQUENCY_ERROR = "frequency_error" ["-"]
         "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out";
-    // Error of the decay of a sound wave.
-    DECAY_ERROR = "decay_error" ["-"] "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0";
-    // Error of the decay of a shear wave.
-    SHEAR_DECAY_ERROR = "decay_error" ["-"]
-        "|gamma - nu lambda(k)|/(nu lambda(k)), time error divided out";
+    // Error of the decay.
+    DECAY_ERROR = "decay_error" ["-"]
+        "|gamma - nu lambda(k)|/(nu lambda(k)), of omega if nu = 0, time error divided out";
     // Distance of the amplitudes from exact steps.
     TRAJECTORY_ERROR = "trajectory_error" ["-"]
         "max|amplitudes - exact steps|/amplitude over p, v along, v across and all steps";
@@ -201,7 +199,7 @@ const SOUND: Judged = &[
 /// A shear wave on the lattice as it is.
 const SHEAR: Judged = &[
     (
-        SHEAR_DECAY_ERROR,
+        DECAY_ERROR,
         "The Laplacian symbol is exact on a lattice. Rows slide by amplitude c0/gamma, which counts with \
          the square of the amplitude and was measured as 3e-9.",
     ),

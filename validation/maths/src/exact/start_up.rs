@@ -20,19 +20,9 @@ const TAIL: f64 = 1e-14;
 const IMAGES_BELOW: f64 = 0.1;
 
 /// The smallest number of terms n ≥ 1 with `tail(n)` < [`TAIL`], where `tail` bounds what the first
-/// n terms leave out and falls with n. Doubling, then bisection: n can be 10⁶ at small times.
+/// n terms leave out and falls with n.
 fn terms_for(tail: impl Fn(f64) -> f64) -> usize {
-    let enough = |n: usize| tail(n as f64) < TAIL;
-    let mut high = 1;
-    while !enough(high) && high < 1 << 52 {
-        high *= 2;
-    }
-    let mut low = high / 2;
-    while high - low > 1 {
-        let middle = low + (high - low) / 2;
-        if enough(middle) { high = middle } else { low = middle }
-    }
-    high
+    (1..).find(|n| tail(*n as f64) < TAIL).unwrap_or(1)
 }
 
 /// (-1)ⁿ.

@@ -27,12 +27,9 @@ impl Hill {
     /// A hill of this height \[m\].
     pub fn new(height: f64) -> Result<Self, ReferenceError> {
         let reference = Reference::load("periodic_hill_geometry")?;
-        let table = reference.table("segments")?;
-        let ends = table.numbers("x_end")?;
-        let [a0, a1, a2, a3] = ["a0", "a1", "a2", "a3"].map(|name| table.numbers(name));
-        let (a0, a1, a2, a3) = (a0?, a1?, a2?, a3?);
-        let piece = |k: usize| Piece { end: ends[k], a: [a0[k], a1[k], a2[k], a3[k]] };
-        Ok(Self { height, pieces: (0..ends.len()).map(piece).collect() })
+        let rows = reference.table("segments")?.select(&[], ["x_end", "a0", "a1", "a2", "a3"])?;
+        let pieces = rows.into_iter().map(|[end, a @ ..]| Piece { end, a }).collect();
+        Ok(Self { height, pieces })
     }
 
     /// Period along x \[m\].

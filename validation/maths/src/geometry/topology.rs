@@ -157,7 +157,7 @@ fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     let everything = (f64::NEG_INFINITY, f64::INFINITY, OUTSIDE);
     let mut above = vec![everything];
     for mut line in scan_lines(piece, 0.5 * BOND * dx, LINE * dx) {
-        put_in_order(&mut line);
+        line.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut gaps = Vec::with_capacity(4);
         // Where the gap that is open begins, and its number.
         let mut from = f64::NEG_INFINITY;
@@ -178,18 +178,6 @@ fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     background.closed(least_hole)
 }
 
-/// Sorts intervals by where they begin; few are out of order, and by a few places.
-fn put_in_order(line: &mut [(f64, f64)]) {
-    for k in 1..line.len() {
-        let (mut place, moved) = (k, line[k]);
-        while place > 0 && line[place - 1].0 > moved.0 {
-            line[place] = line[place - 1];
-            place -= 1;
-        }
-        line[place] = moved;
-    }
-}
-
 /// The intervals \[m\] that discs leave on lines a `step` \[m\] apart.
 fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
     let [low, high] = corners(piece.iter().copied()).map(|corner| corner.y);
@@ -197,8 +185,7 @@ fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
     // A piece holds together, so that this is at most its number of particles times 2 radius/step.
     let most = piece.len() as f64 * (2.0 * radius / step) + 1.0;
     let count = ((high - low) / step).clamp(0.0, most) as usize;
-    let on_each = (most / count.max(1) as f64) as usize;
-    let mut lines: Vec<_> = (0..count).map(|_| Vec::with_capacity(on_each + 8)).collect();
+    let mut lines = vec![Vec::new(); count];
     for p in piece {
         let first = ((p.y - radius - low) / step - 0.5).ceil().max(0.0) as usize;
         for (k, line) in lines.iter_mut().enumerate().skip(first) {

@@ -22,16 +22,9 @@ use solver::{
 /// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
 pub type Slope<'a, X> = &'a dyn Fn(f64, &Evolved<X>, &Rate<X>) -> f64;
 
-/// Work of pressure against walls that are not particles of the energy budget.
-pub const WALLS: &str = "walls";
-/// (16), (17).
-pub const VISCOSITY: &str = "artificial viscosity";
-/// (18), (19).
-pub const STRESS: &str = "artificial stress";
-/// (22).
-pub const XSPH: &str = "XSPH";
-/// Of density.
-pub const DIFFUSION: &str = "density diffusion";
+/// Powers of terms \[W/m\]: artificial viscosity (16), (17), artificial stress (18), (19), density diffusion,
+/// XSPH (22), and pressure against walls that are not particles of the energy budget.
+pub type Powers = [f64; 5];
 
 /// What the rates of one sweep do.
 struct Sums {
@@ -68,9 +61,6 @@ fn sums<X: Numbers>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X
     }
     sums
 }
-
-/// Items of a budget and their powers \[W/m\] or works \[J/m\]; no name comes twice.
-pub type Items = Vec<(&'static str, f64)>;
 
 /// Forces of water: pressure, with an artificial stress or without (`R = ()`), artificial viscosity if there
 /// is any, and a body force.
@@ -119,7 +109,7 @@ impl<X, R: Rest> WaterDrift<X> for (Continuity, Xsph, DensityDiffusion<R>) {}
 pub trait Metered<X>: Stepper<X> {
     /// The powers of its forces, of its drift and of the terms of its walls, after [`Stepper::advance`]
     /// reached a time; and the force of all pairs on the fluid \[N/m\].
-    fn powers(&mut self, slope: Slope<X>) -> (Items, Vector2<f64>);
+    fn powers(&mut self, slope: Slope<X>) -> (Powers, Vector2<f64>);
 }
 
 impl<S: Scheme> Metered<S::Extra> for Simulation<S>
@@ -127,7 +117,7 @@ where
     S::Forces: WaterForces<S::Extra>,
     S::Drift: WaterDrift<S::Extra>,
 {
-    fn powers(&mut self, slope: Slope<S::Extra>) -> (Items, Vector2<f64>) {
+    fn powers(&mut self, slope: Slope<S::Extra>) -> (Powers, Vector2<f64>) {
         let (forces, drift) = self.terms_mut().clone();
         let all = self.rates(&(forces.pairs(), drift));
         let Sums { power: [velocity, density, position], force } =
@@ -140,53 +130,9 @@ where
             0 => 0.0,
             _ => power(&mut self.fluid(), &self.rates(&pressure), slope) - bare[0],
         };
-        let items = vec![
-            (WALLS, bare[0] + bare[1] + walls),
-            (STRESS, stress),
-            (VISCOSITY, velocity - bare[0] - stress),
-            (DIFFUSION, density - bare[1]),
-            (XSPH, position),
-        ];
-        (items, force)
+        let viscosity = velocity - bare[0] - stress;
+        ([viscosity, stress, density - bare[1], position, bare[0] + bare[1] + walls], force)
     }
-}
-
-/// Works since the first sample, by the trapezoidal rule over the powers of each sample.
-#[derive(Clone, Debug, Default)]
-pub struct Account {
-    last: Option<(f64, Named)>,
-    works: Named,
-}
-
-base::bits! { Account { last, works } }
-
-/// Items that own their names.
-type Named = Vec<(String, f64)>;
-
-impl Account {
-    /// Adds the powers at this time \[s\].
-    pub fn add(&mut self, time: f64, powers: &[(&'static str, f64)]) {
-        if let Some((before, old)) = &self.last {
-            for (name, power) in powers {
-                let work = 0.5 * (time - before) * (power + of(old, name));
-                match self.works.iter_mut().find(|(known, _)| known == name) {
-                    Some((_, sum)) => *sum += work,
-                    None => self.works.push((name.to_string(), work)),
-                }
-            }
-        }
-        let powers = powers.iter().map(|(name, power)| (name.to_string(), *power)).collect();
-        self.last = Some((time, powers));
-    }
-
-    /// The work of an item so far \[J/m\]: below 0 what it took from the particles.
-    pub fn work(&self, name: &str) -> f64 {
-        of(&self.works, name)
-    }
-}
-
-fn of<N: AsRef<str>>(items: &[(N, f64)], name: &str) -> f64 {
-    items.iter().find(|(known, _)| known.as_ref() == name).map_or(0.0, |(_, value)| *value)
 }
 
 #[cfg(test)]
@@ -274,20 +220,20 @@ mod tests {
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         let slope = water_slope(&WATER);
-        let (items, force) = simulation.powers(&slope);
+        let (powers, force) = simulation.powers(&slope);
         let bare = power_of(&simulation, &Pressure::new(forces.0.eos));
         let of_walls = power(&mut simulation.walls(), &simulation.wall_rates(), &slope);
         let alone = [
-            (WALLS, bare + power_of(&simulation, &drift.0) + of_walls),
-            (STRESS, power_of(&simulation, &forces.0) - bare),
-            (VISCOSITY, power_of(&simulation, &forces.1)),
-            (DIFFUSION, power_of(&simulation, &drift.2)),
-            (XSPH, power_of(&simulation, &drift.1)),
+            power_of(&simulation, &forces.1),
+            power_of(&simulation, &forces.0) - bare,
+            power_of(&simulation, &drift.2),
+            power_of(&simulation, &drift.1),
+            bare + power_of(&simulation, &drift.0) + of_walls,
         ];
-        for (name, power) in alone {
-            let error = of(&items, name) - power;
-            assert!(error.abs() < 1e-13 * bare.abs(), "{name}: {error:e} of {power:e}");
-            assert!(name == WALLS || power.abs() > 1e-6 * bare.abs(), "{name} shows something");
+        for (k, (found, power)) in powers.into_iter().zip(alone).enumerate() {
+            let error = found - power;
+            assert!(error.abs() < 1e-13 * bare.abs(), "{k}: {error:e} of {power:e}");
+            assert!(k == 4 || power.abs() > 1e-6 * bare.abs(), "{k} shows something");
         }
         let total = simulation.total_rates();
         let each = simulation.fluid().zip(&total);
@@ -296,32 +242,19 @@ mod tests {
         assert!((force + WATER.gravity * mass - all).norm() < 1e-12 * all.norm());
     }
 
-    /// dE/dt of the discrete equations by differences of the energy, against the items.
+    /// dE/dt of the discrete equations by differences of the energy, against the powers.
     #[test]
-    fn the_items_are_the_slope_of_the_energy_in_time() {
+    fn the_powers_are_the_slope_of_the_energy_in_time() {
         let scene = scene();
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
-        let (items, _) = simulation.powers(&water_slope(&WATER));
-        assert_eq!(items.len(), 5);
-        assert!(of(&items, VISCOSITY) < 0.0, "viscosity heats");
-        let total: f64 = items.iter().map(|(_, power)| power).sum();
+        let (powers, _) = simulation.powers(&water_slope(&WATER));
+        assert!(powers[0] < 0.0, "viscosity heats");
+        let total: f64 = powers.iter().sum();
         let (dt, start) = (1e-6, energy(0.0));
         let (whole, half) = (energy(dt) - start, energy(0.5 * dt) - start);
         let slope = (4.0 * half - whole) / dt;
         // Differences over 1 µs leave some 1e-8 of truncation, and of round-off in E.
-        assert!((slope / total - 1.0).abs() < 1e-5, "{slope:e} {total:e} {items:?}");
-    }
-
-    #[test]
-    fn works_are_integrals_of_powers() {
-        let mut account = Account::default();
-        for k in 0..=10 {
-            let t = f64::from(k) * 0.2;
-            account.add(t, &[("a", 2.0 * t), ("b", 1.0)]);
-        }
-        assert!((account.work("a") - 4.0).abs() < 1e-12);
-        assert!((account.work("b") - 2.0).abs() < 1e-12);
-        assert_eq!(account.work("c"), 0.0);
+        assert!((slope / total - 1.0).abs() < 1e-5, "{slope:e} {total:e} {powers:?}");
     }
 }

@@ -1,65 +1,36 @@
 //! The distance of a history from that of a reference, each at times of its own.
 
-use thiserror::Error;
-
 /// Times before the first or after the last sample by this share of the time between both are taken for its.
 const ROUND_OFF: f64 = 1e-6;
-
-/// Why there is no distance.
-#[derive(Clone, Copy, Debug, Error, PartialEq)]
-pub enum HistoryError {
-    /// Nothing to compare.
-    #[error("there are {samples} samples and {times} times of the reference to compare")]
-    Empty {
-        /// Number of samples.
-        samples: usize,
-        /// Number of times of the reference.
-        times: usize,
-    },
-    /// A time of the reference is not among those of the samples.
-    #[error("the reference has the time {time}, and samples are from {first} to {last}")]
-    Missing {
-        /// The time of the reference.
-        time: f64,
-        /// Time of the first sample.
-        first: f64,
-        /// Time of the last sample.
-        last: f64,
-    },
-    /// A value is NaN or infinite.
-    #[error("the history or the reference is not finite at the time {time}")]
-    NotFinite {
-        /// The time of the reference.
-        time: f64,
-    },
-}
 
 /// y(tᵢ) − eᵢ at every time tᵢ of a reference (tᵢ, eᵢ), in the unit of the values. The history y is linear
 /// between its samples (t, y), whose times ascend.
 ///
 /// # Errors
-/// [`HistoryError`] if there is nothing to compare, if samples do not enclose every time of the reference,
-/// and if a value is not finite.
-pub fn differences(
-    samples: &[(f64, f64)],
-    reference: &[(f64, f64)],
-) -> Result<Vec<f64>, HistoryError> {
-    let (Some((first, _)), Some((last, _)), false) =
-        (samples.first(), samples.last(), reference.is_empty())
+/// Why there is no distance: there is nothing to compare, samples do not enclose every time of the reference,
+/// or a value is not finite.
+pub fn differences(samples: &[(f64, f64)], reference: &[(f64, f64)]) -> Result<Vec<f64>, String> {
+    let ([(first, _), ..], [.., (last, _)], false) = (samples, samples, reference.is_empty())
     else {
-        return Err(HistoryError::Empty { samples: samples.len(), times: reference.len() });
+        let (samples, times) = (samples.len(), reference.len());
+        return Err(format!(
+            "there are {samples} samples and {times} times of the reference to compare"
+        ));
     };
     let slack = ROUND_OFF * (last - first);
     let at = |&(time, exact): &(f64, f64)| {
         if !(first - slack..=last + slack).contains(&time) {
-            return Err(HistoryError::Missing { time, first: *first, last: *last });
+            let words = format!(
+                "the reference has the time {time}, and samples are from {first} to {last}"
+            );
+            return Err(words);
         }
         let after = samples.partition_point(|(t, _)| *t < time).min(samples.len() - 1);
         let [(t0, y0), (t1, y1)] = [samples[after.saturating_sub(1)], samples[after]];
         let share = if t1 > t0 { ((time - t0) / (t1 - t0)).clamp(0.0, 1.0) } else { 1.0 };
         let difference = y0 + (y1 - y0) * share - exact;
-        let is_known = difference.is_finite();
-        if is_known { Ok(difference) } else { Err(HistoryError::NotFinite { time }) }
+        let unknown = || format!("the history or the reference is not finite at the time {time}");
+        difference.is_finite().then_some(difference).ok_or_else(unknown)
     };
     reference.iter().map(at).collect()
 }
@@ -106,22 +77,28 @@ mod tests {
     #[test]
     fn times_that_are_missing_are_said_and_round_off_is_none() {
         let (short, whole) = (history(every(0.5, 9.5)), history(every(0.5, 10.0)));
-        let missing = HistoryError::Missing { time: 10.0, first: 0.0, last: 9.5 };
-        assert_eq!(differences(&short, &whole), Err(missing));
-        assert_eq!(
-            missing.to_string(),
-            "the reference has the time 10, and samples are from 0 to 9.5"
-        );
+        let missing = "the reference has the time 10, and samples are from 0 to 9.5";
+        assert_eq!(differences(&short, &whole), Err(missing.into()));
         let late = whole[1..].to_vec();
-        assert!(matches!(differences(&late, &whole), Err(HistoryError::Missing { .. })));
+        let missing = "the reference has the time 0, and samples are from 0.5 to 10";
+        assert_eq!(differences(&late, &whole), Err(missing.into()));
         let mut rounded = whole.clone();
         rounded[20].0 -= 1e-9;
         let found = differences(&rounded, &whole).expect("the end is there");
         assert!(found[20].abs() < 1e-7, "{found:?}");
-        assert_eq!(differences(&[], &whole), Err(HistoryError::Empty { samples: 0, times: 21 }));
-        assert_eq!(differences(&whole, &[]), Err(HistoryError::Empty { samples: 21, times: 0 }));
+        let empty = |[samples, times]: [usize; 2]| {
+            Err(format!(
+                "there are {samples} samples and {times} times of the reference to compare"
+            ))
+        };
+        assert_eq!(differences(&[], &whole), empty([0, 21]));
+        assert_eq!(differences(&whole, &[]), empty([21, 0]));
         let mut unknown = whole.clone();
         unknown[7].1 = f64::NAN;
-        assert_eq!(differences(&unknown, &whole), Err(HistoryError::NotFinite { time: 3.5 }));
+        let unknown = differences(&unknown, &whole);
+        assert_eq!(
+            unknown,
+            Err("the history or the reference is not finite at the time 3.5".into())
+        );
     }
 }

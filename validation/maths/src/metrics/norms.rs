@@ -26,6 +26,12 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (sum / count).sqrt()
 }
 
+/// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
+/// not pass.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+}
+
 /// Do values pair up, is each of them finite, and is the scale positive and finite, so that a relative error
 /// is never a division by 0?
 fn is_comparable(measured: &[f64], exact: &[f64], scale: f64) -> bool {

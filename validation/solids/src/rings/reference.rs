@@ -35,12 +35,11 @@ pub struct Reference {
 /// The faces of the right ring at a time of the table \[L\]; none at any other.
 pub fn outlines(speed: f64, time: f64) -> Option<Vec<Vec<(f64, f64)>>> {
     let table = table("outlines")?;
-    let [t, x, y] = ["t", "x", "y"].map(|name| table.numbers(name).ok());
-    let (t, x, y) = (t?, x?, y?);
     let face = |name: &str| {
         let of = [("law", JAUMANN), ("speed", &speed.to_string()), ("face", name)];
-        let rows = table.rows_of(&of).ok()?.into_iter().filter(|&k| (t[k] - time).abs() < 1e-9);
-        let half: Vec<(f64, f64)> = rows.map(|k| (x[k], y[k])).collect();
+        let rows = table.select(&of, ["t", "x", "y"]).ok()?.into_iter();
+        let now = rows.filter(|[t, ..]| (t - time).abs() < 1e-9);
+        let half: Vec<(f64, f64)> = now.map(|[_, x, y]| (x, y)).collect();
         let mirrored = half.iter().rev().map(|(x, y)| (*x, -y));
         Some(half.iter().copied().chain(mirrored).collect::<Vec<_>>())
     };
@@ -89,8 +88,7 @@ impl Reference {
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {
-            let values = table.numbers(name).ok()?;
-            Some(table.rows_of(of).ok()?.into_iter().map(|k| values[k]).collect())
+            Some(table.select(of, [name]).ok()?.into_flattened())
         };
         let series = |name: &str| column(table("series")?, name, &of);
         let phases = |name: &str| {
@@ -143,7 +141,7 @@ impl Reference {
         let found = match found {
             Ok(found) => found,
             Err(why) => {
-                OF_HISTORIES.into_iter().for_each(|key| record.leave_out(key, why.to_string()));
+                OF_HISTORIES.into_iter().for_each(|key| record.leave_out(key, why.clone()));
                 return;
             }
         };

@@ -16,10 +16,9 @@ pub type Quantities = BTreeMap<String, [f64; 2]>;
 
 /// Those of the rows of a summary that have these texts.
 pub fn quantities(summary: &Table, of: Texts) -> Result<Quantities, ReferenceError> {
-    let (names, values) = (summary.texts("quantity")?, summary.numbers("value")?);
-    let spread = summary.numbers("uncertainty")?;
-    let quantity = |row: usize| (names[row].to_string(), [values[row], spread[row]]);
-    Ok(summary.rows_of(of)?.into_iter().map(quantity).collect())
+    let (names, rows) = (summary.texts("quantity")?, summary.rows_of(of)?);
+    let numbers = summary.select(of, ["value", "uncertainty"])?;
+    Ok(rows.into_iter().map(|row| names[row].to_string()).zip(numbers).collect())
 }
 
 /// Finite elements of one place.
@@ -37,10 +36,8 @@ impl Elements {
         [x, y]: [&str; 2],
     ) -> Result<Self, ReferenceError> {
         let quantities = quantities(package.table("summary")?, summary)?;
-        let table = package.table("series")?;
-        let [t, x, y] = [table.numbers("t")?, table.numbers(x)?, table.numbers(y)?];
-        let path = table.rows_of(series)?.into_iter().map(|row| [t[row], x[row], y[row]]);
-        Ok(Self { quantities, path: Path(path.collect()) })
+        let path = package.table("series")?.select(series, ["t", x, y])?;
+        Ok(Self { quantities, path: Path(path) })
     }
 
     /// A quantity.

@@ -14,17 +14,11 @@ pub mod tests;
 pub use elements::{Elements, Path, Quantities, compare, quantities};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use material::{Material, limits};
-pub use maths::geometry::corners;
+pub use maths::{geometry::corners, metrics::norms::largest};
 pub use plates::{FIRST_MODE, clamp, thin_plate_period};
 pub use problem::{
     Problem, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
 };
-
-/// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
-/// not pass.
-pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
-    values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
-}
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its
 /// [`SharedSettings`]. The material has this Young's modulus \[Pa\] and Poisson's ratio.

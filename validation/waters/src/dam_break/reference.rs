@@ -54,7 +54,7 @@ fn best_shift(pairs: &[(Points, Points)], range: f64) -> f64 {
 
 /// A column of a table over another one.
 fn curve(table: &Table, t: &str, y: &str) -> Result<Points, ReferenceError> {
-    Ok(table.numbers(t)?.into_iter().zip(table.numbers(y)?).collect())
+    Ok(table.select(&[], [t, y])?.into_iter().map(<(f64, f64)>::from).collect())
 }
 
 /// Four columns of a table over its times.
@@ -139,8 +139,8 @@ impl VolumeOfFluid {
         let package = Package::load("dam_break_vof")?;
         let series = package.table("series")?;
         let of = |scene: &str, name: &str| -> Result<Points, ReferenceError> {
-            let rows = series.texts("scene")?.into_iter().zip(curve(series, "t", name)?);
-            Ok(rows.filter(|(of, _)| *of == scene).map(|(_, point)| point).collect())
+            let rows = series.select(&[("scene", scene)], ["t", name])?;
+            Ok(rows.into_iter().map(<(f64, f64)>::from).collect())
         };
         let scene = "martin_moyce";
         // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.

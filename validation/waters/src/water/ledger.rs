@@ -4,7 +4,7 @@
 use base::record::{MetricKey, Profile, Record};
 use harness::method::Medium;
 use maths::metrics::{
-    budget::{Account, DIFFUSION, Metered, STRESS, VISCOSITY, WALLS, XSPH},
+    budget::{Metered, Powers},
     energy::{Energy, Water, water_slope},
 };
 use nalgebra::Vector2;
@@ -21,14 +21,8 @@ base::metrics! {
     WORK_WALLS = "work_walls" ["-"] "energy that walls has added until the end/{}";
 }
 
-/// The items of a budget: as accounts name them, and their metrics, which are columns of the series too.
-pub const ITEMS: [(&str, MetricKey); 5] = [
-    (VISCOSITY, WORK_VISCOSITY),
-    (STRESS, WORK_STRESS),
-    (DIFFUSION, WORK_DIFFUSION),
-    (XSPH, WORK_XSPH),
-    (WALLS, WORK_WALLS),
-];
+/// The works of the terms of [`Powers`], which are columns of the series too.
+const WORKS: [MetricKey; 5] = [WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
 /// What a ledger measures: it takes pair sweeps of its own.
 pub const METRICS: [MetricKey; 6] =
@@ -37,19 +31,20 @@ pub const METRICS: [MetricKey; 6] =
 /// Keeps the balances of a run.
 pub struct Ledger {
     water: Water,
-    account: Account,
+    /// At the last sample.
+    powers: Powers,
     /// Momentum at the start \[kg/s\], force at the last sample \[N/m\], impulse since the start by the
     /// trapezoidal rule, and the largest difference of momentum that it does not explain \[kg/s\].
     start: Vector2<f64>,
     force: Vector2<f64>,
     impulse: Vector2<f64>,
     unexplained: f64,
-    /// t \[s\], kinetic, potential and compression energy, then the works of [`ITEMS`] \[J/m\].
+    /// t \[s\], kinetic, potential and compression energy, then the [`WORKS`] \[J/m\].
     rows: Vec<[f64; 9]>,
 }
 
 harness::observed! {
-    Ledger: changes(account, start, force, impulse, unexplained, rows), stays(water)
+    Ledger: changes(powers, start, force, impulse, unexplained, rows), stays(water)
 }
 
 impl Ledger {
@@ -57,19 +52,27 @@ impl Ledger {
     pub fn new(medium: &Medium) -> Self {
         let water = Water { eos: medium.eos, gravity: medium.acceleration };
         let [start, force, impulse] = [Vector2::zeros(); 3];
-        let (account, unexplained, rows) = (Account::default(), 0.0, Vec::new());
-        Self { water, account, start, force, impulse, unexplained, rows }
+        let (powers, unexplained, rows) = ([0.0; 5], 0.0, Vec::new());
+        Self { water, powers, start, force, impulse, unexplained, rows }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, simulation: &mut dyn Metered<()>) {
         let (powers, pairs) = simulation.powers(&water_slope(&self.water));
         let time = simulation.time();
-        self.account.add(time, &powers);
         self.balance_momentum(&*simulation, pairs);
         let Energy { kinetic, potential, compression } = self.water.energy(&*simulation);
-        let [a, b, c, d, e] = ITEMS.map(|(name, _)| self.account.work(name));
+        let [a, b, c, d, e] = self.works(time, &powers);
         self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
+        self.powers = powers;
+    }
+
+    /// Works from the first sample to a time, by the trapezoidal rule over the powers of each sample: below 0
+    /// what a term took from the particles.
+    fn works(&self, time: f64, powers: &Powers) -> [f64; 5] {
+        let Some(last) = self.rows.last() else { return [0.0; 5] };
+        let half = 0.5 * (time - last[0]);
+        std::array::from_fn(|k| last[4 + k] + half * (powers[k] + self.powers[k]))
     }
 
     /// Adds the impulse since the last sample; `pairs` is the force of all pairs on the water \[N/m\].
@@ -105,11 +108,11 @@ impl Ledger {
     /// Metrics relative to a scale \[J/m\], and the series.
     pub fn measure(&self, scale: f64, of_what: &str, record: &mut Record) {
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
-        for (name, work) in ITEMS {
-            record.put(work.of(of_what), self.account.work(name) / scale);
+        for (k, work) in WORKS.into_iter().enumerate() {
+            record.put(work.of(of_what), self.rows.last().map_or(0.0, |row| row[4 + k]) / scale);
         }
         let names = ["t", "kinetic", "potential", "compression"].map(String::from);
-        let names = names.into_iter().chain(ITEMS.map(|(_, work)| work.into()));
+        let names = names.into_iter().chain(WORKS.map(String::from));
         let add = |profile: Profile, (k, name): (usize, String)| {
             let unit = if k == 0 { "s" } else { "J/m" };
             profile.with(&name, unit, self.rows.iter().map(|row| row[k]).collect())
@@ -168,21 +171,22 @@ mod tests {
         }
         assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
-        // Each term at a power of its own for 3 s, seen at the end.
-        for time in [0.0, 1.0, 3.0] {
-            let powers: Vec<_> =
-                (1..).map(f64::from).zip(ITEMS).map(|(p, (name, _))| (name, p)).collect();
-            ledger.account.add(time, &powers);
-        }
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
         ledger.measure(50.0, "it", &mut record);
-        let value = |metric: MetricKey| record.value(metric).expect("a metric");
-        assert!((value(ENERGY_GAP) - 27.0 / 50.0).abs() < 1e-12);
-        for (k, metric) in [WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS]
-            .into_iter()
-            .enumerate()
-        {
-            assert!((value(metric) - 3.0 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
+        let gap = record.value(ENERGY_GAP).expect("a metric");
+        assert!((gap - 27.0 / 50.0).abs() < 1e-12);
+        // Each term at a power that rises at a rate of its own for 3 s.
+        ledger.rows.clear();
+        for time in [0.0, 1.0, 3.0] {
+            let powers = std::array::from_fn(|k| (k + 1) as f64 * time);
+            let [a, b, c, d, e] = ledger.works(time, &powers);
+            ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e]);
+            ledger.powers = powers;
+        }
+        ledger.measure(50.0, "it", &mut record);
+        for (k, metric) in WORKS.into_iter().enumerate() {
+            let work = record.value(metric).expect("a metric");
+            assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
         }
         // What terms gave is no gap; what they say that they gave and the water does not have is one.
         ledger.rows = vec![[0.0; 9], [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 1.5, 0.5]];

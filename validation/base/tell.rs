@@ -1,0 +1,16 @@
+//! For build scripts: what they tell the compiler, where what cannot be known is `unknown`.
+
+use std::process::Command;
+
+/// Sets an environment variable of the crate.
+pub fn set(name: &str, value: Option<String>) {
+    println!("cargo:rustc-env=TOUCHSTONE_{name}={}", value.as_deref().unwrap_or("unknown"));
+}
+
+/// What a command prints, if it is there and succeeds.
+pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    // Only the first line: a second one would be a cargo instruction of its own.
+    output.status.success().then(|| text.trim().lines().next().unwrap_or_default().to_string())
+}
