@@ -4,6 +4,7 @@
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
+use base::bits::Bits;
 use base::breakdown::Breakdown;
 use base::mutation::Constant;
 use base::record::{Cost, Status};
@@ -11,7 +12,7 @@ use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
-    checkpoint::{self, CheckpointError, Checkpoints, Observed, Stage},
+    checkpoint::{self, CheckpointError, Checkpoints, Stage},
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
@@ -61,7 +62,7 @@ struct Watch<'a, X, D: ?Sized, S> {
     synchronises: Synchronised,
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
     fn show(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
@@ -232,7 +233,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
     }
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Observer<X> for Watch<'_, X, D, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observer<X> for Watch<'_, X, D, S> {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
@@ -317,7 +318,7 @@ pub struct Drive<'a, X, D: ?Sized, S> {
     resumed: Resumed<'a, D, S>,
 }
 
-impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
+impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
     /// the pressure of this equation of state.
     pub fn new(

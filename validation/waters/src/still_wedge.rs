@@ -159,7 +159,7 @@ struct Moments<'a> {
     kinetic: f64,
 }
 
-harness::observed! {
+base::observed! {
     Moments<'_>: changes(samples, corners, errors, kinetic), stays(settings, medium)
 }
 

@@ -126,7 +126,7 @@ pub struct Mode<'a> {
     series: Vec<(f64, f64)>,
 }
 
-harness::observed! { Mode<'_>: changes(series), stays(setup) }
+base::observed! { Mode<'_>: changes(series), stays(setup) }
 
 impl<'a> Mode<'a> {
     /// Nothing seen yet.

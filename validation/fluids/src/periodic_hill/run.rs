@@ -38,7 +38,7 @@ struct Monitor<'a> {
     series: Vec<[f64; 4]>,
 }
 
-harness::observed! {
+base::observed! {
     Monitor<'_>: changes(controller, window, series), stays(setup, area)
 }
 

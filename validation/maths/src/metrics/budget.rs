@@ -158,7 +158,7 @@ pub struct Account {
     works: Named,
 }
 
-base::bits! { Account { last, works } }
+base::observed! { Account: changes(last, works), stays() }
 
 /// Items that own their names.
 type Named = Vec<(String, f64)>;

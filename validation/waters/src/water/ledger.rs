@@ -48,7 +48,7 @@ pub struct Ledger {
     rows: Vec<[f64; 9]>,
 }
 
-harness::observed! {
+base::observed! {
     Ledger: changes(account, start, force, impulse, unexplained, rows), stays(water)
 }
 
