@@ -25,7 +25,7 @@ use std::time::{Duration, SystemTime};
 use tempfile::{Builder, TempPath};
 use thiserror::Error;
 
-/// Why a file was not written.
+/// Why a file was not written, or not read.
 #[derive(Debug, Error)]
 pub enum FileError {
     /// The output folder does not exist and cannot be made, or cannot be written into.
@@ -43,6 +43,15 @@ pub enum FileError {
         /// the file
         path: PathBuf,
         /// what the system said
+        #[source]
+        reason: io::Error,
+    },
+    /// One file or folder could not be read.
+    #[error("cannot read {path}: {reason}", path = .path.display())]
+    Unread {
+        /// the file or folder
+        path: PathBuf,
+        /// what the system said, or what is wrong with its content
         #[source]
         reason: io::Error,
     },

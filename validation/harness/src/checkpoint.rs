@@ -17,24 +17,8 @@ use base::{
 };
 use nalgebra::Vector2;
 use solver::{Checkpoint, Numbers, Particle, Past, Progress, Role, Stepper, Symmetric, Work};
-use thiserror::Error;
 
-/// Why there is no checkpoint, or why a run does not go on from one.
-#[derive(Debug, Error)]
-pub enum CheckpointError {
-    /// The bytes are not those of the run.
-    #[error("the checkpoint is not one of this run: {0}")]
-    Read(#[from] OtherBits),
-    /// The particles have other extra fields than those of the cases, none or a deviatoric stress.
-    #[error("particles with these extra fields have no checkpoint")]
-    Extra,
-    /// No simulation can have that state.
-    #[error("the checkpoint has {0}")]
-    State(&'static str),
-    /// The file was not written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
+use crate::error::RunError;
 
 /// How far a simulation is, apart from its particles and from what is observed of it.
 #[derive(Default)]
@@ -98,7 +82,7 @@ fn state<X: Numbers>(of: &Checkpoint<X>) -> State<X> {
     (times, counts, built_inside_a_step, particles)
 }
 
-fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, CheckpointError> {
+fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError> {
     let (times, counts, built_inside_a_step, (stored, past)) = bits::read::<State<X>>(from)?;
     let [time, dt, last_approach, lag, call @ ..] = times;
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
@@ -108,7 +92,7 @@ fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, Checkpoi
     for (id, role, [position, velocity, at], ([density, mass], Extra(extra))) in stored {
         let roles = [Role::Fluid, Role::Wall, Role::Interface];
         let role = roles.into_iter().find(|known| *known as u8 == role);
-        let role = role.ok_or(CheckpointError::State("a particle of an unknown role"))?;
+        let role = role.ok_or(RunError::Checkpoint("a particle of an unknown role"))?;
         particles.push((id, Particle { role, position, velocity, density, mass, extra }));
         built_at.push(at);
     }
@@ -125,9 +109,11 @@ pub(crate) fn save<X: Numbers>(
     simulation: &(impl Stepper<X> + ?Sized),
     stage: &Stage,
     seen: &impl Bits,
-) -> Result<Vec<u8>, CheckpointError> {
+) -> Result<Vec<u8>, RunError> {
     if size_of::<X>() > 0 && TypeId::of::<X>() != TypeId::of::<Symmetric>() {
-        return Err(CheckpointError::Extra);
+        return Err(RunError::Checkpoint(
+            "particles with other extra fields than a deviatoric stress",
+        ));
     }
     let mut to = Vec::new();
     state(&simulation.checkpoint()).save(&mut to);
@@ -141,9 +127,9 @@ pub(crate) fn restore<X: Numbers>(
     mut bytes: &[u8],
     simulation: &mut (impl Stepper<X> + ?Sized),
     seen: &mut impl Bits,
-) -> Result<Stage, CheckpointError> {
+) -> Result<Stage, RunError> {
     let from = &mut bytes;
-    simulation.restore(&restore_state(from)?).map_err(CheckpointError::State)?;
+    simulation.restore(&restore_state(from)?).map_err(RunError::Checkpoint)?;
     let stage = bits::read(from)?;
     seen.restore(from)?;
     Ok(stage)
@@ -194,7 +180,7 @@ impl<'a> Checkpoints<'a> {
 
     /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
     /// one, that of an interrupt, none is written.
-    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), CheckpointError> {
+    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), RunError> {
         let mut simulations = self.simulations();
         if simulations.is_over {
             return Ok(());

@@ -1,15 +1,14 @@
 //! Why a run was refused before its first step.
 
 use base::{
+    bits::OtherBits,
     files::FileError,
     settings::{SettingError, hint},
     spec::SpecError,
-    vtk::VtkError,
 };
 use thiserror::Error;
 
 use crate::{
-    checkpoint::CheckpointError,
     relation::{NoSymmetry, Relation},
     size::{MOST_BYTES, MOST_SECONDS, Size},
 };
@@ -138,24 +137,22 @@ pub enum RunError {
     /// A panic, of which the hook of panics has told.
     #[error("it ended by the bug of which was told")]
     Bug,
-    /// A checkpoint could not be written, or is not one of the run.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
+    /// The bytes of a checkpoint are not those of the run.
+    #[error("the checkpoint is not one of this run: {0}")]
+    OtherBits(#[from] OtherBits),
+    /// No checkpoint can be made of these particles, or no simulation can have its state.
+    #[error("the checkpoint has {0}")]
+    Checkpoint(&'static str),
     /// A folder or file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A frame has numbers that its file cannot state.
-    #[error(transparent)]
-    Frame(#[from] VtkError),
 }
 
 impl RunError {
     /// Was the run refused because of its settings? Otherwise a file, a reference or a bug is the reason,
     /// which is not a property of the run.
     pub fn is_refusal(&self) -> bool {
-        !matches!(
-            self,
-            Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_) | Self::Bug
-        )
+        use RunError::{Bug, Checkpoint, File, OtherBits, Reference};
+        !matches!(self, File(_) | OtherBits(_) | Checkpoint(_) | Reference(_) | Bug)
     }
 }

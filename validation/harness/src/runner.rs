@@ -12,7 +12,7 @@ use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
-    checkpoint::{self, CheckpointError, Checkpoints, Stage},
+    checkpoint::{self, Checkpoints, Stage},
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
@@ -99,7 +99,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
         simulation: &(impl Stepper<X> + ?Sized),
         cost: Cost,
         ended: Option<Status>,
-    ) -> Result<Vec<u8>, CheckpointError> {
+    ) -> Result<Vec<u8>, RunError> {
         let frames = self.frames.as_ref().map(Frames::written);
         let stage = Stage { reached: self.reached, cost, frames, ended };
         checkpoint::save(simulation, &stage, &*self.seen)
@@ -115,7 +115,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
         let Some(frames) = &mut self.frames else { return };
         self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
         while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
-            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error));
+            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
         }
     }
 
@@ -139,7 +139,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
             let saved = self.save(simulation, cost, None);
             let is_last = self.context.is_interrupted();
             let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
-            written.unwrap_or_else(|error| self.context.lose(&error.into()));
+            written.unwrap_or_else(|error| self.context.lose(&error));
             self.saved = self.context.now().wall;
         }
         flow
@@ -438,7 +438,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
             None => {
                 let status = watch.step_through(simulation, times, dt, least);
                 if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
-                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error));
+                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error.into()));
                 }
                 (status, watch.counted(simulation))
             }
