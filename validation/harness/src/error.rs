@@ -100,9 +100,9 @@ pub enum RunError {
         /// The settings on which this number depends.
         setting: &'static str,
     },
-    /// The problem of the run was asked for, and no step.
-    #[error("no step was made: the problem of the run was asked for")]
-    Outlined,
+    /// Only the problem of the run or its size was asked for, which was told.
+    #[error("no step was made: only the problem of the run or its size was asked for")]
+    Told,
     /// A relation that is no symmetry of the scene.
     #[error("relation {} does not hold here: {reason}", .relation.name())]
     NoSymmetry {
@@ -125,9 +125,6 @@ pub enum RunError {
         /// The settings on which this depends.
         settings: &'static str,
     },
-    /// Only the size of the run was asked for, which was told.
-    #[error("only the size of the run was asked for")]
-    Estimated,
     /// The solver refuses the scene.
     #[error("the settings make an impossible scene: {0}")]
     Scene(#[from] solver::SceneError),

@@ -537,7 +537,7 @@ mod tests {
                     Ok(record)
                 }
                 Some("k=file") => Err(RunError::Reference("staged".into())),
-                Some("k=long") if !context.allow_long => Err(RunError::Estimated), // a refusal
+                Some("k=long") if !context.allow_long => Err(RunError::Told), // a refusal
                 _ => Ok(record),
             }
         }

@@ -273,7 +273,7 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
     }
     if let (true, Some(tell)) = (context.only_estimate, context.estimate) {
         tell(&size);
-        return Err(RunError::Estimated);
+        return Err(RunError::Told);
     }
     Ok(())
 }
@@ -298,7 +298,7 @@ fn outlined<X: Numbers>(
             tell(*until, frames::columns(&simulation.particles(), pressure));
         }
     }
-    Err(RunError::Outlined)
+    Err(RunError::Told)
 }
 
 /// A simulation with what is observed of it on its way through the times of interest.
