@@ -370,26 +370,6 @@ impl Profile {
         self
     }
 
-    /// A CSV table under a head with units. A number is the shortest text that reads back to the same bits; one
-    /// that is not finite leaves a gap.
-    pub fn csv(&self) -> Vec<u8> {
-        let cell = |value: f64| match value {
-            whole if whole.trunc() == whole && whole.abs() < 1e15 => whole.to_string(),
-            value if value.is_finite() => format!("{value:?}"),
-            _ => String::new(),
-        };
-        let head = |column: &Column| format!("{}[{}]", column.name, column.unit);
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let mut write = |cells: Vec<String>| {
-            writer.write_record(cells).expect("writing rows of one width into memory cannot fail");
-        };
-        write(self.columns.iter().map(head).collect());
-        for k in 0..self.columns.iter().map(|column| column.values.len()).min().unwrap_or(0) {
-            write(self.columns.iter().map(|column| cell(column.values[k])).collect());
-        }
-        writer.into_inner().expect("writing into memory cannot fail")
-    }
-
     /// The values of a column, none if there is no such column.
     pub fn column(&self, name: &str) -> &[f64] {
         self.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
@@ -701,15 +681,5 @@ mod tests {
         let key = |other: RunSpec| Record { run: other, ..run.clone() }.key();
         assert_ne!(run.key(), key(run.spec().with_setting("re", 0.6)));
         assert_ne!(run.key(), key(RunSpec { variant: "modern".into(), ..run.spec() }));
-    }
-
-    #[test]
-    fn a_table_has_units_keeps_every_bit_and_leaves_gaps() {
-        let of_rows = |rows: &[[f64; 3]]| {
-            Profile::of_rows(&[("t", "s"), ("u", "m/s"), ("code, plain", "-")], rows).csv()
-        };
-        let table = of_rows(&[[0.1, 1e-300, 2.0], [0.1 + 0.2, f64::NAN, f64::INFINITY]]);
-        let expected = "t[s],u[m/s],\"code, plain[-]\"\n0.1,1e-300,2\n0.30000000000000004,,\n";
-        assert_eq!(String::from_utf8(table).unwrap(), expected);
     }
 }

@@ -10,8 +10,8 @@ use std::sync::OnceLock;
 
 use ::report::{counted, seconds, sig};
 use base::{
-    files,
-    record::{Profile, Status},
+    files::{self, Cell, CsvTable, FileError},
+    record::Status,
     spec::{RunSpec, Task},
 };
 use harness::{
@@ -54,7 +54,7 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
             return Err(Failure::interrupted("no plan is printed"));
         }
         if let Some(path) = &arguments.estimates {
-            files::write_atomically(path, &table(&jobs, &sizes).csv())?;
+            files::write_atomically(path, &table(&jobs, &sizes)?)?;
         }
         output::say(&sum(&jobs, &sizes));
     }
@@ -128,13 +128,14 @@ fn time(spec: &RunSpec, size: &Size) -> f64 {
 
 /// What each run takes, a row a line of the plan with its number for `run --index`; nothing of a run that is
 /// refused.
-fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
-    let rows = jobs.iter().zip(sizes).enumerate().map(|(index, (job, size))| {
+fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Result<Vec<u8>, FileError> {
+    let mut table = CsvTable::new(&["index[-]", "time[s]", "memory[MB]"])?;
+    for (index, (job, size)) in jobs.iter().zip(sizes).enumerate() {
         let numbers = size.map(|size| [time(&job.planned.spec, &size), 1e-6 * size.bytes()]);
-        let [time, memory] = numbers.unwrap_or([f64::NAN; 2]);
-        [index as f64, time, memory]
-    });
-    Profile::of_rows(&[("index", "-"), ("time", "s"), ("memory", "MB")], &rows.collect::<Vec<_>>())
+        let cell = |k: usize| Cell::from(numbers.map(|of| of[k]).filter(|of| of.is_finite()));
+        table.cells(&[Cell::Text(index.to_string()), cell(0), cell(1)])?;
+    }
+    Ok(table.into_bytes())
 }
 
 /// What all runs take together, the longest and the largest of them, and how many are refused.

@@ -10,7 +10,7 @@ use std::time::{Duration, SystemTime};
 
 use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
-    files::{self, FileError, OutputFolder},
+    files::{self, Cell, CsvTable, FileError, OutputFolder},
     gate::Gate,
     record::{NOT_ASKED, Profile, Record, Status},
 };
@@ -324,7 +324,7 @@ fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<
     let curves = curves(record);
     let shown = if curves.is_empty() { last } else { Some(of_curves(&curves)) };
     if let Some(shown) = shown {
-        output.write("profile.csv", &shown.csv())?;
+        output.write("profile.csv", &series_csv(&shown)?)?;
         names.push("profile.csv".into());
     }
     if !curves.is_empty() {
@@ -337,7 +337,7 @@ fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<
         // Curves at one time are in profile.csv, particles in the frames.
         if !name.contains('@') && name != "particles" {
             let file = format!("{}.csv", name.replace(' ', "-"));
-            output.write(&file, &profile.csv())?;
+            output.write(&file, &series_csv(profile)?)?;
             names.push(file);
         }
     }
@@ -387,6 +387,21 @@ fn of_curves(curves: &[Curve]) -> Profile {
     };
     let rows: Vec<[f64; 4]> = curves.iter().flat_map(of_curve).collect();
     Profile::of_rows(&[("t", "s"), ("y", "m"), ("u", "m/s"), ("u_exact", "m/s")], &rows)
+}
+
+/// The columns as they are; a number that is not finite leaves a gap.
+fn series_csv(series: &Profile) -> Result<Vec<u8>, FileError> {
+    let heads: Vec<String> =
+        series.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
+    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
+    let length = series.columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
+    for k in 0..length {
+        let cell =
+            |number: f64| if number.is_finite() { Cell::Number(number) } else { Cell::Empty };
+        let row: Vec<Cell> = series.columns.iter().map(|column| cell(column.values[k])).collect();
+        table.cells(&row)?;
+    }
+    Ok(table.into_bytes())
 }
 
 /// Symbols: SPH; lines: exact.

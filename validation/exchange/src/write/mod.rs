@@ -3,9 +3,7 @@
 mod lammps;
 mod vtu;
 
-use base::files::{FileError, OutputFolder};
-use base::record::Profile;
-use harness::outline::Outline;
+use base::files::{CsvTable, FileError, OutputFolder};
 use thiserror::Error;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
@@ -70,7 +68,7 @@ pub fn write(
     };
     let document = format!("{:#}\n", problem.to_json());
     let mut files: Vec<(&str, Vec<u8>)> = vec![
-        (PARTICLES, particles(problem).csv()),
+        (PARTICLES, particles(problem)?),
         ("README.md", problem.page().into_bytes()),
         (PROBLEM, document.into_bytes()),
     ];
@@ -81,14 +79,23 @@ pub fn write(
     Ok(files.into_iter().map(|(name, _)| name.to_string()).collect())
 }
 
-/// The particles at the start, and the body of each if there are several.
-fn particles(problem: &Problem) -> Profile {
-    let Outline { particles, bodies, .. } = &problem.outline;
-    let particles = particles.clone();
-    match bodies.is_empty() {
-        true => particles,
-        false => particles.with("body", "-", bodies.iter().map(|body| f64::from(*body)).collect()),
+/// One line a particle, with units in the head.
+fn particles(problem: &Problem) -> Result<Vec<u8>, FileError> {
+    let outline = &problem.outline;
+    let columns = &outline.particles.columns;
+    let mut heads: Vec<String> =
+        columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
+    let mut values: Vec<Vec<f64>> = columns.iter().map(|c| c.values.clone()).collect();
+    if !outline.bodies.is_empty() {
+        heads.push("body[-]".into());
+        values.push(outline.bodies.iter().map(|body| f64::from(*body)).collect());
     }
+    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
+    for k in 0..outline.particles.column("id").len() {
+        let row: Vec<f64> = values.iter().map(|column| column[k]).collect();
+        table.numbers(&row)?;
+    }
+    Ok(table.into_bytes())
 }
 
 /// Refuses what a code of weakly compressible fluids with walls of particles cannot do.
