@@ -148,7 +148,7 @@ struct Means {
     means: Vec<f64>,
 }
 
-base::observed! { Means: changes(means), stays(places, dx) }
+harness::observed! { Means: changes(means), stays(places, dx) }
 
 /// Samples of the last fifth.
 const SAMPLES: usize = 20;

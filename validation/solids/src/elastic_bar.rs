@@ -193,7 +193,7 @@ pub struct Motion {
     stress: Option<f64>,
 }
 
-base::observed! {
+harness::observed! {
     Motion: changes(series, stress), stays(settings, momentum, total, energy)
 }
 

@@ -142,7 +142,7 @@ struct Watch {
     amplitudes: Vec<f64>,
 }
 
-base::observed! { Watch: changes(amplitudes), stays(direction) }
+harness::observed! { Watch: changes(amplitudes), stays(direction) }
 
 impl Watch {
     /// θ of a step, from a fit to all steps.

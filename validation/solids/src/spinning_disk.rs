@@ -112,7 +112,7 @@ pub struct History {
     first: Option<([f64; 2], f64)>,
 }
 
-base::observed! { History: changes(until, series, first), stays(settings, mass) }
+harness::observed! { History: changes(until, series, first), stays(settings, mass) }
 
 impl History {
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {

@@ -132,7 +132,7 @@ struct History {
     free_fall: [f64; 2],
 }
 
-base::observed! { History: changes(rows, free_fall), stays() }
+harness::observed! { History: changes(rows, free_fall), stays() }
 
 impl History {
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {

@@ -240,7 +240,7 @@ struct History<'a> {
     outside: f64,
 }
 
-base::observed! { History<'_>: changes(rows, outside), stays(column, start) }
+harness::observed! { History<'_>: changes(rows, outside), stays(column, start) }
 
 impl<'a> History<'a> {
     /// No sample yet of water that starts as in this simulation.

@@ -159,7 +159,7 @@ struct Moments<'a> {
     kinetic: f64,
 }
 
-base::observed! {
+harness::observed! {
     Moments<'_>: changes(samples, corners, errors, kinetic), stays(settings, medium)
 }
 

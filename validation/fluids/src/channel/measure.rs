@@ -126,7 +126,7 @@ pub struct Mode<'a> {
     series: Vec<(f64, f64)>,
 }
 
-base::observed! { Mode<'_>: changes(series), stays(setup) }
+harness::observed! { Mode<'_>: changes(series), stays(setup) }
 
 impl<'a> Mode<'a> {
     /// Nothing seen yet.

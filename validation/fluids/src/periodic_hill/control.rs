@@ -20,7 +20,7 @@ pub struct Controller {
     pub last: f64,
 }
 
-base::observed! { Controller: changes(wanted, response, force, last), stays() }
+harness::observed! { Controller: changes(wanted, response, force, last), stays() }
 
 impl Controller {
     /// Looks at the mean velocity after `dt` \[s\].

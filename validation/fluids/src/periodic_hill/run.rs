@@ -38,7 +38,7 @@ struct Monitor<'a> {
     series: Vec<[f64; 4]>,
 }
 
-base::observed! {
+harness::observed! {
     Monitor<'_>: changes(controller, window, series), stays(setup, area)
 }
 

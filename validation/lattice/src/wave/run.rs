@@ -51,7 +51,7 @@ struct Projection<'a> {
     momentum: Option<[[f64; 2]; 2]>,
 }
 
-base::observed! { Projection<'_>: changes(series, momentum), stays(wave, basis) }
+harness::observed! { Projection<'_>: changes(series, momentum), stays(wave, basis) }
 
 impl Wave {
     /// A wave of these settings in the lattice of a method.

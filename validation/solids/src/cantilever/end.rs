@@ -21,7 +21,7 @@ pub struct End {
     pub energies: Vec<[f64; 3]>,
 }
 
-base::observed! { End: changes(until, path, energies), stays(settings) }
+harness::observed! { End: changes(until, path, energies), stays(settings) }
 
 impl Observer<Symmetric> for End {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {

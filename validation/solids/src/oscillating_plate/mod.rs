@@ -175,7 +175,7 @@ pub struct Tip {
     series: Vec<[f64; 3]>,
 }
 
-base::observed! { Tip: changes(until, series), stays(settings, energy) }
+harness::observed! { Tip: changes(until, series), stays(settings, energy) }
 
 impl Observer<Symmetric> for Tip {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {

@@ -72,7 +72,7 @@ pub struct Series {
     rows: Vec<[f64; COLUMNS]>,
 }
 
-base::observed! {
+harness::observed! {
     Series:
     changes(next, samples, counted, rows), stays(settings, least_hole, bonds, is_seen)
 }

@@ -75,7 +75,7 @@ pub struct Samples<'a> {
     spilled: BTreeSet<usize>,
 }
 
-base::observed! { Samples<'_>: changes(start, rows, outside, fastest, spilled), stays(dam) }
+harness::observed! { Samples<'_>: changes(start, rows, outside, fastest, spilled), stays(dam) }
 
 impl<'a> Samples<'a> {
     /// None yet.
@@ -243,7 +243,7 @@ fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
         .fold(0.0, |sum, (x, y)| sum + cell * cell * weight(x * x + y * y))
 }
 
-base::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
+harness::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
 
 impl Observer<()> for Gauge {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {

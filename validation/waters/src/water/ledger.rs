@@ -48,7 +48,7 @@ pub struct Ledger {
     rows: Vec<[f64; 9]>,
 }
 
-base::observed! {
+harness::observed! {
     Ledger: changes(account, start, force, impulse, unexplained, rows), stays(water)
 }
 
