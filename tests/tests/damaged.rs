@@ -73,9 +73,9 @@ fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
 fn made(case: &'static dyn Case, damage: Damage, records: &BTreeMap<String, Record>) -> Made {
     let of = |planned: Planned| {
         let any = || records.values().next();
-        let record = records.get(&planned.spec.variant).or_else(any)?;
-        let settings = planned.spec.settings.clone();
-        let record = Record { settings, ..damaged(record, damage) }.of(&planned.spec);
+        let mut record = damaged(records.get(&planned.spec.variant).or_else(any)?, damage);
+        record.run.settings = planned.spec.settings.clone();
+        let record = record.of(&planned.spec);
         Some((planned.spec.key(), record))
     };
     let records = plan::of_case(case, Tier::Quick).into_iter().filter_map(of).collect();

@@ -33,7 +33,8 @@ fn every_planned_run_is_written_as_it_is_read() {
     let tiers = [Tier::Quick, Tier::Full, Tier::Deep];
     for (case, tier) in CASES.iter().flat_map(|case| tiers.map(|tier| (case, tier))) {
         for Planned { spec, .. } in plan::of_case(*case, tier) {
-            let read = RunSpec::from_canonical(&spec.canonical()).expect("a line of a plan");
+            let read =
+                serde_json::from_str::<RunSpec>(&spec.canonical()).expect("a line of a plan");
             let resolved = case::resolved(*case, read).expect("a run that is possible");
             assert_eq!(resolved.canonical(), spec.canonical());
         }

@@ -227,7 +227,7 @@ fn a_run_prints_its_record_or_its_metrics() {
     let output = touchstone(&short("couette", &["--json", "--threads", "2"]));
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
     let record = Record::from_json(&stdout(&output)).unwrap();
-    assert_eq!((record.status, record.settings["rows"].as_u64()), (Status::Completed, Some(8)));
+    assert_eq!((record.status, record.run.settings["rows"].as_u64()), (Status::Completed, Some(8)));
     assert!(record.metrics["l2@0.1"].value < 0.05);
 }
 
@@ -539,7 +539,7 @@ fn a_record_that_cannot_be_written_is_printed() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("cannot write the file \"here/record.json\""));
     let record = Record::from_json(&stdout(&output)).unwrap();
-    assert_eq!((record.case.as_str(), record.status), ("couette", Status::Completed));
+    assert_eq!((record.run.case.as_str(), record.status), ("couette", Status::Completed));
 }
 
 #[test]

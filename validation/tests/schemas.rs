@@ -197,13 +197,13 @@ fn rare_records(record: &Record) -> Vec<Value> {
     rare.status = Status::Interrupted { step: 3, time: f64::INFINITY };
     rare.metrics.insert("none".into(), Metric::new(f64::NAN, "-", "0/0"));
     rare.absent.insert("order".into(), "there is one level".into());
-    rare.allow_unstable = true;
-    rare.keep = Keep { particles: true, pictures: Some(2) };
-    rare.mutation = Some(Mutation { of: Constant::BodyForce, factor: 1.03 });
-    rare.disorder = Some(Disorder { most: 1e-6, seed: 1 });
+    rare.run.allow_unstable = true;
+    rare.run.keep = Keep { particles: true, pictures: Some(2) };
+    rare.run.mutation = Some(Mutation { of: Constant::BodyForce, factor: 1.03 });
+    rare.run.disorder = Some(Disorder { most: 1e-6, seed: 1 });
     let [code, version, scheme, method] = ["code", "1", "WCSPH", "abc"].map(String::from);
     let division = Division::Closed;
-    rare.submission =
+    rare.run.submission =
         Some(Box::new(Submission { code, version, scheme, division, method, seed: Some(1) }));
     rare.cost.alone_s = vec![0.1, 0.2];
     rare.cost.resumed = 1;
@@ -211,7 +211,10 @@ fn rare_records(record: &Record) -> Vec<Value> {
     let setting = "dt".to_string();
     let bisect = Task::Bisect(Bisect { setting, guess: 1.0, unit: 2.0, resolution: 0.1, end });
     let detect = Task::Detect(Detect { of: Constant::Xsph, only_allowed: true });
-    let of = |task| parsed(&Record { task, ..rare.clone() }.to_json().unwrap());
+    let of = |task| {
+        let run = RunSpec { task, ..rare.spec() };
+        parsed(&Record { run, ..rare.clone() }.to_json().unwrap())
+    };
     [bisect, detect, Task::Simulate].map(of).into()
 }
 

@@ -521,7 +521,7 @@ fn the_records_of_other_codes_are_sound() {
         if let [Some(z), Some(away)] = ["z@2", "front_away@2"].map(|name| record.metric(name)) {
             assert!((z - away - front).abs() < 1e-3, "{:?}: of other tables", entry.path());
         }
-        codes.insert(record.submission.expect("the code that made it").code);
+        codes.insert(record.run.submission.expect("the code that made it").code);
         assert!(!record.profiles.contains_key("particles"), "{:?}", entry.path());
     }
     let expected = [

@@ -39,6 +39,15 @@ pub enum FileError {
         #[source]
         reason: io::Error,
     },
+    /// One file or folder could not be read.
+    #[error("cannot read {path}: {reason}", path = .path.display())]
+    Unread {
+        /// the file or folder
+        path: PathBuf,
+        /// what the system said, or what is wrong with its content
+        #[source]
+        reason: io::Error,
+    },
     /// One file could not be written.
     #[error("cannot write the file {path:?}: {reason}")]
     File {

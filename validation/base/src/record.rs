@@ -17,6 +17,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Deref;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -24,11 +25,9 @@ use thiserror::Error;
 
 use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
-use crate::mutation::{Disorder, Mutation};
 use crate::reference::sha256;
 use crate::settings::Settings;
-use crate::spec::{Keep, Measure, RunKey, RunSpec, Task, is_default};
-use crate::submission::Submission;
+use crate::spec::{Measure, RunKey, RunSpec, is_default};
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
@@ -91,32 +90,9 @@ fn unsealed(text: &str) -> Option<String> {
 pub struct Record {
     /// version of the document
     pub schema: u32,
-    /// name of the case
-    #[serde(deserialize_with = "crate::spec::name")]
-    pub case: String,
-    /// name of the variant
-    #[serde(deserialize_with = "crate::spec::name")]
-    pub variant: String,
-    /// settings of the case, all of them
-    pub settings: Value,
-    /// one simulation, or a bisection of many
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub task: Task,
-    /// was a time step beyond the theoretical limit allowed?
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub allow_unstable: bool,
-    /// what the record keeps beside metrics and curves
-    #[serde(default, skip_serializing_if = "is_default")]
-    pub keep: Keep,
-    /// a deliberate error of the scene
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mutation: Option<Mutation>,
-    /// a small disorder of the start
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub disorder: Option<Disorder>,
-    /// the other code that made the run
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub submission: Option<Box<Submission>>,
+    /// the run that it is of, whatever was measured of it
+    #[serde(flatten)]
+    pub run: RunSpec,
     /// how the run ended
     pub status: Status,
     /// measured results by name
@@ -400,6 +376,14 @@ impl Profile {
     }
 }
 
+/// What a record says of its run is found in it directly.
+impl Deref for Record {
+    type Target = RunSpec;
+    fn deref(&self) -> &RunSpec {
+        &self.run
+    }
+}
+
 impl Record {
     /// A record of a run that was refused before its first step, for this reason.
     pub fn refused(spec: &RunSpec, reason: String) -> Self {
@@ -407,28 +391,16 @@ impl Record {
         Self { status: Status::Refused { reason }, ..record }.of(spec)
     }
 
-    /// The same record, which states that it is of this run.
-    pub fn of(self, spec: &RunSpec) -> Self {
-        let RunSpec { task, allow_unstable, keep, mutation, disorder, submission, .. } =
-            spec.clone();
-        Self { task, allow_unstable, keep, mutation, disorder, submission, ..self }
+    /// The same record with its own settings, which states that it is of this run.
+    pub fn of(mut self, spec: &RunSpec) -> Self {
+        let RunSpec { case, variant, settings, .. } = self.run;
+        self.run = RunSpec { case, variant, settings, measure: Measure::default(), ..spec.clone() };
+        self
     }
 
     /// The run that it is of, whatever was measured of it.
     pub fn spec(&self) -> RunSpec {
-        let Self { case, variant, settings, task, allow_unstable, keep, .. } = self;
-        RunSpec {
-            case: case.clone(),
-            variant: variant.clone(),
-            settings: settings.clone(),
-            task: task.clone(),
-            allow_unstable: *allow_unstable,
-            keep: *keep,
-            mutation: self.mutation,
-            disorder: self.disorder,
-            submission: self.submission.clone(),
-            measure: Measure::default(),
-        }
+        self.run.clone()
     }
 
     /// How much was measured of the run: all, unless a metric is absent because it was not asked for.
@@ -449,9 +421,7 @@ impl Record {
     pub fn new(case: &str, variant: &str, settings: Value, threads: usize) -> Self {
         Record {
             schema: SCHEMA,
-            case: case.into(),
-            variant: variant.into(),
-            settings,
+            run: RunSpec::new(case, variant, settings),
             cost: Cost { threads, ..Cost::default() },
             manifest: Manifest::of_this_process(threads),
             ..Record::default()
@@ -529,7 +499,7 @@ impl Record {
 
     /// Names the run, see [`RunSpec::key`].
     pub fn key(&self) -> RunKey {
-        self.spec().key()
+        self.run.key()
     }
 }
 
@@ -708,7 +678,8 @@ mod tests {
         let run = record();
         let slower = Record { cost: Cost::default(), ..run.clone() };
         assert_eq!(run.key(), slower.key());
-        assert_ne!(run.key(), Record { settings: json!({"re": 0.6}), ..run.clone() }.key());
-        assert_ne!(run.key(), Record { variant: "modern".into(), ..run }.key());
+        let key = |other: RunSpec| Record { run: other, ..run.clone() }.key();
+        assert_ne!(run.key(), key(run.spec().with_setting("re", 0.6)));
+        assert_ne!(run.key(), key(RunSpec { variant: "modern".into(), ..run.spec() }));
     }
 }

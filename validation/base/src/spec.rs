@@ -10,7 +10,7 @@
 //! let spec = RunSpec::new("couette", "seed", json!({"rows": 20, "re": 0.5}));
 //! let line = r#"{"case":"couette","settings":{"re":0.5,"rows":20},"variant":"seed"}"#;
 //! assert_eq!(spec.canonical(), line);
-//! assert_eq!(RunSpec::from_canonical(line).unwrap(), spec);
+//! assert_eq!(serde_json::from_str::<RunSpec>(line).unwrap(), spec);
 //! ```
 
 use std::fmt;
@@ -256,18 +256,10 @@ impl RunSpec {
         self
     }
 
-    /// One line of JSON with sorted keys: equal lines are equal runs.
+    /// One line of JSON with sorted keys, which serde reads back: equal lines are equal runs.
     pub fn canonical(&self) -> String {
         // Objects of `serde_json::Value` are sorted by key.
         serde_json::to_value(self).unwrap_or_default().to_string()
-    }
-
-    /// Reads what [`RunSpec::canonical`] wrote, or any JSON document of the same form.
-    ///
-    /// # Errors
-    /// If the text is no such document.
-    pub fn from_canonical(text: &str) -> Result<Self, serde_json::Error> {
-        serde_json::from_str(text)
     }
 
     /// Checks what a document may state and no case checks: all but the names and the settings.
@@ -350,7 +342,7 @@ mod tests {
         assert_eq!(keys.len(), others.len());
         assert!(!keys.contains(&spec.key()));
         for spec in others {
-            assert_eq!(RunSpec::from_canonical(&spec.canonical()).unwrap(), spec);
+            assert_eq!(serde_json::from_str::<RunSpec>(&spec.canonical()).unwrap(), spec);
         }
     }
 
@@ -360,7 +352,7 @@ mod tests {
         let all = spec.clone().measure_all();
         assert_eq!(all.key(), spec.key());
         assert!(all.canonical().contains(r#""measure":"all""#), "{}", all.canonical());
-        assert_eq!(RunSpec::from_canonical(&all.canonical()).unwrap(), all);
+        assert_eq!(serde_json::from_str::<RunSpec>(&all.canonical()).unwrap(), all);
         assert!(spec.measure < all.measure);
     }
 
@@ -369,7 +361,7 @@ mod tests {
     fn a_field_that_no_run_can_have_is_refused_with_its_range() {
         let spec = |rest: &str| {
             let line = format!(r#"{{"case":"c","variant":"v","settings":{{}},{rest}}}"#);
-            RunSpec::from_canonical(&line)
+            serde_json::from_str::<RunSpec>(&line)
                 .map_err(|e| e.to_string())?
                 .check()
                 .map_err(|e| e.to_string())
@@ -420,7 +412,7 @@ mod tests {
     fn a_setting_that_is_given_twice_is_refused() {
         let read = |settings: &str| {
             let line = format!(r#"{{"case":"c","variant":"v","settings":{settings}}}"#);
-            RunSpec::from_canonical(&line).map_err(|error| error.to_string())
+            serde_json::from_str::<RunSpec>(&line).map_err(|error| error.to_string())
         };
         let twice = read(r#"{"rows":8,"re":1,"rows":10}"#).unwrap_err();
         assert!(twice.starts_with("setting rows is given twice, the first time as 8"), "{twice}");
@@ -430,7 +422,7 @@ mod tests {
 
     #[test]
     fn the_order_in_which_settings_were_written_does_not_matter() {
-        let read = |text| RunSpec::from_canonical(text).unwrap().key();
+        let read = |text| serde_json::from_str::<RunSpec>(text).unwrap().key();
         assert_eq!(
             read(r#"{"case":"c","variant":"v","settings":{"a":1,"b":0.1}}"#),
             read(r#"{"settings":{"b":0.1,"a":1},"variant":"v","case":"c"}"#)

@@ -13,23 +13,17 @@
 //! let file = vtk::particles(0.25, &velocity.with("p", "Pa", vec![1.0, 2.0]))?;
 //! let collection = vtk::collection(&[(0.25, "particles_0001.vtp".into())]);
 //! # assert!(file.contains("<Verts>") && collection.contains("timestep=\"0.25\""));
-//! # Ok::<(), vtk::VtkError>(())
+//! # Ok::<(), std::io::Error>(())
 //! ```
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
-
-use thiserror::Error;
+use std::io;
 
 use crate::{
     record::Profile,
     text::{base64, escaped},
 };
-
-/// Why particles cannot be written, in words.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[error("{0}")]
-pub struct VtkError(String);
 
 /// Two columns as vectors in the plane z = 0.
 fn vectors(columns: &Profile, names: [&str; 2]) -> Vec<[f64; 3]> {
@@ -42,13 +36,13 @@ fn vectors(columns: &Profile, names: [&str; 2]) -> Vec<[f64; 3]> {
 ///
 /// # Errors
 /// If a place is not finite, an array has another length, or two have one name.
-pub fn particles(time: f64, columns: &Profile) -> Result<String, VtkError> {
+pub fn particles(time: f64, columns: &Profile) -> io::Result<String> {
     let [points, velocities] = [["x", "y"], ["u", "v"]].map(|names| vectors(columns, names));
     let is_lost = |[x, y, _]: &[f64; 3]| !(x.is_finite() && y.is_finite());
     if let Some(particle) = points.iter().position(is_lost) {
         let [x, y, _] = points[particle];
         let place = format!("particle {particle} is at ({x}, {y})");
-        return Err(VtkError(format!("{place}, which is not finite")));
+        return Err(io::Error::other(format!("{place}, which is not finite")));
     }
     let count = points.len();
     let mut xml = String::from(concat!(
@@ -71,10 +65,10 @@ pub fn particles(time: f64, columns: &Profile) -> Result<String, VtkError> {
         let found = values.len() / components;
         if found != count {
             let words = format!("array {name} has {found} values for {count} particles");
-            return Err(VtkError(words));
+            return Err(io::Error::other(words));
         }
         if !names.insert(name) {
-            return Err(VtkError(format!("there are two arrays called {name}")));
+            return Err(io::Error::other(format!("there are two arrays called {name}")));
         }
         let attributes = format!("Name=\"{}\" NumberOfComponents=\"{components}\"", escaped(name));
         data_array(&mut xml, "Float64", &attributes, &floats(values));

@@ -412,8 +412,8 @@ impl Entry {
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
         let record = case.run(&ours, &context)?;
         let spec = RunSpec { submission: Some(Box::new(self.submission())), ..ours };
-        let settings = problem.spec.settings.clone();
-        let mut record = Record { settings, ..record.of(&spec) };
+        let mut record = record.of(&spec);
+        record.run.settings = problem.spec.settings.clone();
         let why = "the particles of the submission do not determine it";
         record.take_out(|_, metric| !metric.value.is_finite(), why);
         suite::leave_out_ours(case, &mut record);

@@ -147,7 +147,7 @@ pub struct Growth {
     pub beyond_doubt: bool,
 }
 
-crate::observed! { Growth: changes(seen, quarters, beyond_doubt), stays(start, steps) }
+base::observed! { Growth: changes(seen, quarters, beyond_doubt), stays(start, steps) }
 
 impl Growth {
     /// Watches `steps` steps from an energy of `start` > 0.

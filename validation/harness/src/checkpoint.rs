@@ -11,119 +11,17 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use base::{
-    bits::{Bits, OtherBits},
+    bits::{self, Bits, OtherBits},
     files::FileError,
-    record::{Cost, Record, Status},
+    record::{Cost, Status},
 };
 use nalgebra::Vector2;
 use solver::{Checkpoint, Numbers, Particle, Past, Progress, Role, Stepper, Symmetric, Work};
-use thiserror::Error;
 
-/// Why there is no checkpoint, or why a run does not go on from one.
-#[derive(Debug, Error)]
-pub enum CheckpointError {
-    /// The bytes are not those of the run.
-    #[error("the checkpoint is not one of this run: {0}")]
-    Read(#[from] OtherBits),
-    /// The particles have other extra fields than those of the cases, none or a deviatoric stress.
-    #[error("particles with these extra fields have no checkpoint")]
-    Extra,
-    /// No simulation can have that state.
-    #[error("the checkpoint has {0}")]
-    State(&'static str),
-    /// The file was not written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
-
-/// What is observed of a run: it can save what has changed since the start, and take it over again.
-/// [`observed!`](crate::observed!) implements it for a struct of observations.
-pub trait Observed {
-    /// Appends all that has changed.
-    fn save(&self, to: &mut Vec<u8>);
-
-    /// Takes it over.
-    ///
-    /// # Errors
-    /// If the bytes are not those of this observation.
-    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits>;
-}
-
-/// Implements [`Observed`] for a struct: which of its fields change during a run and are [`Bits`], and which
-/// stay as they were at the start. Every field must be named, so that a new one cannot be forgotten.
-#[macro_export]
-macro_rules! observed {
-    ($Struct:ty: changes($($change:ident),*), stays($($stay:ident),*)) => {
-        impl $crate::checkpoint::Observed for $Struct {
-            fn save(&self, to: &mut Vec<u8>) {
-                let Self { $($change,)* $($stay: _,)* } = self;
-                $(base::bits::Bits::write_to($change, to);)*
-            }
-            fn restore(&mut self, from: &mut &[u8]) -> Result<(), base::bits::OtherBits> {
-                let Self { $($change,)* $($stay: _,)* } = self;
-                $(*$change = base::bits::Bits::read_from(from)?;)*
-                Ok(())
-            }
-        }
-    };
-}
-
-/// Implements [`Observed`] for values that change as a whole.
-macro_rules! values {
-    ($($Value:ty $(, $T:ident)?;)+) => {$(
-        impl$(<$T: Bits>)? Observed for $Value {
-            fn save(&self, to: &mut Vec<u8>) {
-                self.write_to(to);
-            }
-            fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-                *self = Bits::read_from(from)?;
-                Ok(())
-            }
-        }
-    )+};
-}
-
-values! { f64; Vec<T>, T; Record; }
-
-/// What is observed of some runs only: the run that goes on has it if and only if the one before had it.
-impl<O: Observed> Observed for Option<O> {
-    fn save(&self, to: &mut Vec<u8>) {
-        self.iter().for_each(|observed| observed.save(to));
-    }
-    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        self.iter_mut().try_for_each(|observed| observed.restore(from))
-    }
-}
-
-impl<O: Observed + ?Sized> Observed for &mut O {
-    fn save(&self, to: &mut Vec<u8>) {
-        (**self).save(to);
-    }
-    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        (**self).restore(from)
-    }
-}
-
-/// Implements [`Observed`] for a tuple, member by member.
-macro_rules! tuple {
-    ($($Member:ident $index:tt),*) => {
-        impl<$($Member: Observed),*> Observed for ($($Member,)*) {
-            fn save(&self, _to: &mut Vec<u8>) {
-                $(self.$index.save(_to);)*
-            }
-            fn restore(&mut self, _from: &mut &[u8]) -> Result<(), OtherBits> {
-                $(self.$index.restore(_from)?;)*
-                Ok(())
-            }
-        }
-    };
-}
-
-tuple!();
-tuple!(A 0, B 1);
-tuple!(A 0, B 1, C 2, D 3);
+use crate::error::RunError;
 
 /// How far a simulation is, apart from its particles and from what is observed of it.
+#[derive(Default)]
 pub(crate) struct Stage {
     /// How many of its times were reached.
     pub reached: usize,
@@ -135,26 +33,26 @@ pub(crate) struct Stage {
     pub ended: Option<Status>,
 }
 
-base::bits! { Stage { reached, cost, frames, ended } }
+base::observed! { Stage: changes(reached, cost, frames, ended), stays() }
 
 /// The extra fields of a particle: none, or those of a deviatoric stress.
+#[derive(Default)]
 struct Extra<X>(X);
 
 impl<X: Numbers> Bits for Extra<X> {
-    fn write_to(&self, to: &mut Vec<u8>) {
+    fn save(&self, to: &mut Vec<u8>) {
         let extra: &dyn Any = &self.0;
         if let Some(s) = extra.downcast_ref::<Symmetric>() {
-            [s.xx, s.yy, s.xy].write_to(to);
+            [s.xx, s.yy, s.xy].save(to);
         }
     }
-    fn read_from(from: &mut &[u8]) -> Result<Self, OtherBits> {
-        let mut read = Self(X::default());
-        let extra: &mut dyn Any = &mut read.0;
+    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
+        let extra: &mut dyn Any = &mut self.0;
         if let Some(s) = extra.downcast_mut::<Symmetric>() {
-            let [xx, yy, xy] = Bits::read_from(from)?;
+            let [xx, yy, xy] = bits::read(from)?;
             *s = Symmetric { xx, yy, xy };
         }
-        Ok(read)
+        Ok(())
     }
 }
 
@@ -184,8 +82,8 @@ fn state<X: Numbers>(of: &Checkpoint<X>) -> State<X> {
     (times, counts, built_inside_a_step, particles)
 }
 
-fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, CheckpointError> {
-    let (times, counts, built_inside_a_step, (stored, past)) = State::read_from(from)?;
+fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError> {
+    let (times, counts, built_inside_a_step, (stored, past)) = bits::read::<State<X>>(from)?;
     let [time, dt, last_approach, lag, call @ ..] = times;
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
@@ -194,7 +92,7 @@ fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, Checkpoi
     for (id, role, [position, velocity, at], ([density, mass], Extra(extra))) in stored {
         let roles = [Role::Fluid, Role::Wall, Role::Interface];
         let role = roles.into_iter().find(|known| *known as u8 == role);
-        let role = role.ok_or(CheckpointError::State("a particle of an unknown role"))?;
+        let role = role.ok_or(RunError::Checkpoint("a particle of an unknown role"))?;
         particles.push((id, Particle { role, position, velocity, density, mass, extra }));
         built_at.push(at);
     }
@@ -210,14 +108,16 @@ fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, Checkpoi
 pub(crate) fn save<X: Numbers>(
     simulation: &(impl Stepper<X> + ?Sized),
     stage: &Stage,
-    seen: &impl Observed,
-) -> Result<Vec<u8>, CheckpointError> {
+    seen: &impl Bits,
+) -> Result<Vec<u8>, RunError> {
     if size_of::<X>() > 0 && TypeId::of::<X>() != TypeId::of::<Symmetric>() {
-        return Err(CheckpointError::Extra);
+        return Err(RunError::Checkpoint(
+            "particles with other extra fields than a deviatoric stress",
+        ));
     }
     let mut to = Vec::new();
-    state(&simulation.checkpoint()).write_to(&mut to);
-    stage.write_to(&mut to);
+    state(&simulation.checkpoint()).save(&mut to);
+    stage.save(&mut to);
     seen.save(&mut to);
     Ok(to)
 }
@@ -226,11 +126,11 @@ pub(crate) fn save<X: Numbers>(
 pub(crate) fn restore<X: Numbers>(
     mut bytes: &[u8],
     simulation: &mut (impl Stepper<X> + ?Sized),
-    seen: &mut impl Observed,
-) -> Result<Stage, CheckpointError> {
+    seen: &mut impl Bits,
+) -> Result<Stage, RunError> {
     let from = &mut bytes;
-    simulation.restore(&restore_state(from)?).map_err(CheckpointError::State)?;
-    let stage = Stage::read_from(from)?;
+    simulation.restore(&restore_state(from)?).map_err(RunError::Checkpoint)?;
+    let stage = bits::read(from)?;
     seen.restore(from)?;
     Ok(stage)
 }
@@ -280,44 +180,12 @@ impl<'a> Checkpoints<'a> {
 
     /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
     /// one, that of an interrupt, none is written.
-    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), CheckpointError> {
+    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), RunError> {
         let mut simulations = self.simulations();
         if simulations.is_over {
             return Ok(());
         }
         simulations.is_over = is_last;
         Ok((self.write)(&[&simulations.ended[..], &[under_way]].concat())?)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    struct Seen {
-        numbers: Vec<f64>,
-        record: Record,
-        width: f64,
-    }
-
-    observed! { Seen: changes(numbers, record), stays(width) }
-
-    fn seen(numbers: Vec<f64>) -> Seen {
-        let record = Record::new("case", "variant", serde_json::json!({"n": 8, "x": 1.0}), 1);
-        Seen { numbers, record, width: 3.0 }
-    }
-
-    #[test]
-    fn what_was_observed_is_taken_over_and_what_stays_is_not() {
-        let mut before = seen(vec![0.1, f64::NAN]);
-        before.record.put(base::record::MetricKey::new("m", "-", "1/3"), 1.0 / 3.0);
-        let mut saved = Vec::new();
-        before.save(&mut saved);
-        let mut after = Seen { width: 5.0, ..seen(Vec::new()) };
-        after.restore(&mut &saved[..]).unwrap();
-        let bits = |seen: &Seen| seen.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-        assert_eq!(bits(&after), bits(&before));
-        assert_eq!(after.record, before.record);
-        assert_eq!(after.width, 5.0, "what stays is not saved");
     }
 }

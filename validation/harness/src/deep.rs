@@ -2,7 +2,7 @@
 //! cell, and tables of what gates detect over every judged run. It is made for clusters: its runs are
 //! independent of each other, and some may take more than a run may unless that is asked for.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use base::functions::powf;
 use base::mutation::Disorder;
@@ -83,37 +83,31 @@ fn relabelled(label: &str, times: f64) -> String {
 /// are disordered.
 fn start_often(map: &mut Map, case: &dyn Case) {
     let cells = || map.panels.iter().flat_map(|panel| &panel.cells).flatten();
-    let mut values: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-    for (one, other) in cells().flat_map(|cell| cell.iter().zip(cell.iter().skip(1))) {
-        for (name, value) in one.settings.as_object().into_iter().flatten() {
-            let pair = [Some(value), other.settings.get(name)].map(|v| v.and_then(Value::as_f64));
-            if let [Some(a), Some(b)] = pair
-                && a != b
-            {
-                values.entry(name.clone()).or_default().extend([a, b]);
+    let varied = cells().find_map(|cell| setting_of_starts(cell));
+    let value = |spec: &RunSpec| spec.settings[varied.as_ref()?].as_f64();
+    let values = cells().flatten().filter_map(value);
+    let (least, most) = values.fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+    let cells = map.panels.iter_mut().flat_map(|panel| &mut panel.cells).flatten();
+    for cell in cells.filter(|cell| !cell.is_empty()) {
+        let (first, more) = (cell[0].clone(), STARTS.saturating_sub(cell.len()));
+        let start = |k: usize| match &varied {
+            None => Some(first.clone().disordered(Disorder { most: DISORDER, seed: 1 + k as u32 })),
+            Some(name) => {
+                // A quarter off the middle of each part, so that none falls on a start that is there.
+                let at = powf(most / least, (k as f64 + 0.25) / more as f64) * least;
+                case::resolved(case, first.clone().with_setting(name, at)).ok()
             }
-        }
+        };
+        cell.extend((0..more).filter_map(start));
     }
-    if values.is_empty() {
-        for cell in map.panels.iter_mut().flat_map(|panel| &mut panel.cells).flatten() {
-            let Some(first) = cell.first().cloned() else { continue };
-            let start = |seed| first.clone().disordered(Disorder { most: DISORDER, seed });
-            cell.extend((1..STARTS as u32).map(start));
-        }
-        return;
-    }
-    let mut values = values.into_iter();
-    let (Some((name, of)), None) = (values.next(), values.next()) else { return };
-    let (least, most) = of.iter().fold((f64::MAX, 0.0_f64), |(a, b), v| (a.min(*v), b.max(*v)));
-    let panels = map.panels.iter_mut().flat_map(|panel| &mut panel.cells);
-    for cell in panels.flatten().filter(|cell| !cell.is_empty() && least > 0.0) {
-        let more = STARTS.saturating_sub(cell.len());
-        // A quarter off the middle of each part, so that none falls on a start that is there.
-        let at = |k| powf(most / least, (k as f64 + 0.25) / more as f64) * least;
-        let start = |k| case::resolved(case, cell[0].clone().with_setting(&name, at(k))).ok();
-        let all: Vec<RunSpec> = (0..more).filter_map(start).collect();
-        cell.extend(all);
-    }
+}
+
+/// The setting in which the first two starts of a cell differ.
+fn setting_of_starts(cell: &[RunSpec]) -> Option<String> {
+    let [one, other, ..] = cell else { return None };
+    let mut settings = one.settings.as_object()?.iter();
+    let differs = settings.find(|(name, value)| other.settings.get(name) != Some(value));
+    differs.map(|(name, _)| name.clone())
 }
 
 /// Errors of constants are searched in every judged run of the case, not in the few of the full tier.

@@ -1,15 +1,14 @@
 //! Why a run was refused before its first step.
 
 use base::{
+    bits::OtherBits,
     files::FileError,
     settings::{SettingError, hint},
     spec::SpecError,
-    vtk::VtkError,
 };
 use thiserror::Error;
 
 use crate::{
-    checkpoint::CheckpointError,
     relation::{NoSymmetry, Relation},
     size::{MOST_BYTES, MOST_SECONDS, Size},
 };
@@ -101,9 +100,9 @@ pub enum RunError {
         /// The settings on which this number depends.
         setting: &'static str,
     },
-    /// The problem of the run was asked for, and no step.
-    #[error("no step was made: the problem of the run was asked for")]
-    Outlined,
+    /// Only the problem of the run or its size was asked for, which was told.
+    #[error("no step was made: only the problem of the run or its size was asked for")]
+    Told,
     /// A relation that is no symmetry of the scene.
     #[error("relation {} does not hold here: {reason}", .relation.name())]
     NoSymmetry {
@@ -126,9 +125,6 @@ pub enum RunError {
         /// The settings on which this depends.
         settings: &'static str,
     },
-    /// Only the size of the run was asked for, which was told.
-    #[error("only the size of the run was asked for")]
-    Estimated,
     /// The solver refuses the scene.
     #[error("the settings make an impossible scene: {0}")]
     Scene(#[from] solver::SceneError),
@@ -138,24 +134,22 @@ pub enum RunError {
     /// A panic, of which the hook of panics has told.
     #[error("it ended by the bug of which was told")]
     Bug,
-    /// A checkpoint could not be written, or is not one of the run.
-    #[error(transparent)]
-    Checkpoint(#[from] CheckpointError),
+    /// The bytes of a checkpoint are not those of the run.
+    #[error("the checkpoint is not one of this run: {0}")]
+    OtherBits(#[from] OtherBits),
+    /// No checkpoint can be made of these particles, or no simulation can have its state.
+    #[error("the checkpoint has {0}")]
+    Checkpoint(&'static str),
     /// A folder or file could not be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A frame has numbers that its file cannot state.
-    #[error(transparent)]
-    Frame(#[from] VtkError),
 }
 
 impl RunError {
     /// Was the run refused because of its settings? Otherwise a file, a reference or a bug is the reason,
     /// which is not a property of the run.
     pub fn is_refusal(&self) -> bool {
-        !matches!(
-            self,
-            Self::File(_) | Self::Frame(_) | Self::Checkpoint(_) | Self::Reference(_) | Self::Bug
-        )
+        use RunError::{Bug, Checkpoint, File, OtherBits, Reference};
+        !matches!(self, File(_) | OtherBits(_) | Checkpoint(_) | Reference(_) | Bug)
     }
 }

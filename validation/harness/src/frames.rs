@@ -11,8 +11,6 @@ use base::{
 };
 use solver::{Numbers, Particle, Stepper, Symmetric};
 
-use crate::error::RunError;
-
 /// Writes `count` frames at equal intervals, each after the first step that reaches its time, and the last
 /// one at the end. In a leapfrog the velocities of a frame are half a step behind the places.
 pub struct Frames<'a> {
@@ -66,11 +64,12 @@ impl<'a> Frames<'a> {
     pub fn write<X: Numbers>(
         &mut self,
         simulation: &(impl Stepper<X> + ?Sized),
-    ) -> Result<(), RunError> {
+    ) -> Result<(), FileError> {
         let name = format!("particles_{:04}.vtp", self.come);
         self.come += 1;
         let columns = columns(&simulation.particles(), self.pressure);
-        let frame = vtk::particles(simulation.time(), &columns)?;
+        let refused = |reason| FileError::File { path: self.folder.path().join(&name), reason };
+        let frame = vtk::particles(simulation.time(), &columns).map_err(refused)?;
         self.folder.write(&name, frame.as_bytes())?;
         self.written.push((simulation.time(), name));
         self.folder.write("particles.pvd", vtk::collection(&self.written).as_bytes())?;

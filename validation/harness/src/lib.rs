@@ -45,3 +45,5 @@ pub mod study;
 pub mod suite;
 pub mod symmetry;
 pub mod table;
+
+pub use base::observed;

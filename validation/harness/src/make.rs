@@ -11,6 +11,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use base::{
+    files::FileError,
     manifest::UNKNOWN,
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
@@ -23,7 +24,7 @@ use crate::{
     context::{self, Context},
     detect,
     runs::{Planned, Tier},
-    store::{Begun, Store, StoreError},
+    store::{Begun, Store},
 };
 
 /// A planned run and the case that it is of.
@@ -113,15 +114,15 @@ pub struct Made {
     pub of_other_sources: usize,
     /// Why the store could not keep some of the records, which are among `records` all the same: what was
     /// computed is not lost with a disk that is full.
-    pub not_kept: BTreeMap<RunKey, StoreError>,
+    pub not_kept: BTreeMap<RunKey, FileError>,
     /// Why records that the store had could not be read; these runs were made again.
-    pub unsound: BTreeMap<RunKey, StoreError>,
+    pub unsound: BTreeMap<RunKey, FileError>,
     /// Why runs have no record. None of them costs another its record.
     pub failed: BTreeMap<RunKey, RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
     /// Why files that say that they are such runs could not be read.
-    pub unread: Vec<StoreError>,
+    pub unread: Vec<FileError>,
     /// Was it stopped from outside?
     pub interrupted: bool,
 }
@@ -464,7 +465,7 @@ fn alone(jobs: &[&Job], batch: &Batch) {
 /// record too, with the reason; the only error is a file that cannot be written.
 ///
 /// # Errors
-/// [`RunError::File`], [`RunError::Frame`] and [`RunError::Reference`].
+/// [`RunError::File`] and [`RunError::Reference`].
 pub fn run(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
     match &spec.task {
         Task::Simulate => case::record_of(case, spec, context),
@@ -536,7 +537,7 @@ mod tests {
                     Ok(record)
                 }
                 Some("k=file") => Err(RunError::Reference("staged".into())),
-                Some("k=long") if !context.allow_long => Err(RunError::Estimated), // a refusal
+                Some("k=long") if !context.allow_long => Err(RunError::Told), // a refusal
                 _ => Ok(record),
             }
         }

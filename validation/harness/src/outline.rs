@@ -164,7 +164,7 @@ impl Sink {
     /// If the run was refused, or is none of a scene.
     pub fn of_run(&self, ended: Result<Record, RunError>, case: &str) -> Result<Outline, RunError> {
         match ended {
-            Err(RunError::Outlined) | Ok(_) => {}
+            Err(RunError::Told) | Ok(_) => {}
             Err(error) => return Err(error),
         }
         let mut inside = self.inside();

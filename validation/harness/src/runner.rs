@@ -4,6 +4,7 @@
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
+use base::bits::Bits;
 use base::breakdown::Breakdown;
 use base::mutation::Constant;
 use base::record::{Cost, Status};
@@ -11,7 +12,7 @@ use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
-    checkpoint::{self, CheckpointError, Checkpoints, Observed, Stage},
+    checkpoint::{self, Checkpoints, Stage},
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
@@ -61,7 +62,7 @@ struct Watch<'a, X, D: ?Sized, S> {
     synchronises: Synchronised,
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
     fn show(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
@@ -98,7 +99,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
         simulation: &(impl Stepper<X> + ?Sized),
         cost: Cost,
         ended: Option<Status>,
-    ) -> Result<Vec<u8>, CheckpointError> {
+    ) -> Result<Vec<u8>, RunError> {
         let frames = self.frames.as_ref().map(Frames::written);
         let stage = Stage { reached: self.reached, cost, frames, ended };
         checkpoint::save(simulation, &stage, &*self.seen)
@@ -114,7 +115,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
         let Some(frames) = &mut self.frames else { return };
         self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
         while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
-            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error));
+            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
         }
     }
 
@@ -138,7 +139,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
             let saved = self.save(simulation, cost, None);
             let is_last = self.context.is_interrupted();
             let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
-            written.unwrap_or_else(|error| self.context.lose(&error.into()));
+            written.unwrap_or_else(|error| self.context.lose(&error));
             self.saved = self.context.now().wall;
         }
         flow
@@ -232,7 +233,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Watch<'_, X, D, S> {
     }
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Observer<X> for Watch<'_, X, D, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observer<X> for Watch<'_, X, D, S> {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
         if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
@@ -272,7 +273,7 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
     }
     if let (true, Some(tell)) = (context.only_estimate, context.estimate) {
         tell(&size);
-        return Err(RunError::Estimated);
+        return Err(RunError::Told);
     }
     Ok(())
 }
@@ -297,7 +298,7 @@ fn outlined<X: Numbers>(
             tell(*until, frames::columns(&simulation.particles(), pressure));
         }
     }
-    Err(RunError::Outlined)
+    Err(RunError::Told)
 }
 
 /// A simulation with what is observed of it on its way through the times of interest.
@@ -317,7 +318,7 @@ pub struct Drive<'a, X, D: ?Sized, S> {
     resumed: Resumed<'a, D, S>,
 }
 
-impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
+impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
     /// the pressure of this equation of state.
     pub fn new(
@@ -437,7 +438,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Observed> Drive<'a, X, D, S> {
             None => {
                 let status = watch.step_through(simulation, times, dt, least);
                 if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
-                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error));
+                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error.into()));
                 }
                 (status, watch.counted(simulation))
             }

@@ -9,40 +9,14 @@ use std::time::{Duration, Instant, SystemTime};
 
 use base::{
     files::{self, FileError, OutputFolder},
-    record::{Record, RecordError, Status},
+    record::{Record, Status},
     spec::RunSpec,
 };
-use thiserror::Error;
 
 /// A folder of records.
 #[derive(Debug)]
 pub struct Store {
     folder: OutputFolder,
-}
-
-/// Why a record of a store was not read or not written.
-#[derive(Debug, Error)]
-pub enum StoreError {
-    /// Its folder or file.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// It cannot be read.
-    #[error("cannot read {path}: {reason}", path = .path.display())]
-    Unreadable {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        #[source]
-        reason: io::Error,
-    },
-    /// Its content.
-    #[error("{path}: {reason}", path = .path.display())]
-    Record {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        reason: RecordError,
-    },
 }
 
 /// More than this is no record \[bytes\]: one with a million particles has 100 MB.
@@ -130,7 +104,7 @@ impl Store {
 
     /// The records of runs that other codes made of a case, sorted by file name; a file that cannot be read
     /// as one is an error in its place.
-    pub fn submissions(&self, case: &str) -> Vec<Result<Record, StoreError>> {
+    pub fn submissions(&self, case: &str) -> Vec<Result<Record, FileError>> {
         let begin = format!("{SUBMITTED}{case}-");
         let of_its_name = |path: PathBuf| {
             let record = read(path.clone())?;
@@ -141,7 +115,7 @@ impl Store {
             // A copy would count twice.
             let what = format!("its content belongs to {expected}");
             let reason = io::Error::new(io::ErrorKind::InvalidData, what);
-            Err(StoreError::Unreadable { path, reason })
+            Err(FileError::Unread { path, reason })
         };
         let paths = paths(self.path(), &begin).unwrap_or_default();
         paths.into_iter().map(of_its_name).collect()
@@ -152,11 +126,9 @@ impl Store {
     ///
     /// # Errors
     /// If a file in its place cannot be read as a record.
-    pub fn find(&self, spec: &RunSpec) -> Result<Option<Record>, StoreError> {
+    pub fn find(&self, spec: &RunSpec) -> Result<Option<Record>, FileError> {
         let record = match read(self.path().join(Self::name(spec))) {
-            Err(StoreError::Unreadable { reason, .. })
-                if reason.kind() == io::ErrorKind::NotFound =>
-            {
+            Err(FileError::Unread { reason, .. }) if reason.kind() == io::ErrorKind::NotFound => {
                 return Ok(None);
             }
             read => read?,
@@ -171,11 +143,11 @@ impl Store {
     ///
     /// # Errors
     /// If the file cannot be written, or the record holds what a document cannot.
-    pub fn write(&self, record: &Record) -> Result<PathBuf, StoreError> {
+    pub fn write(&self, record: &Record) -> Result<PathBuf, FileError> {
         let name = Self::name(&record.spec());
         let path = self.path().join(&name);
-        let text = record.to_json().map_err(|reason| StoreError::Record { path, reason })?;
-        Ok(self.folder.write(&name, text.as_bytes())?)
+        let refused = |reason| FileError::File { path, reason: io::Error::other(reason) };
+        self.folder.write(&name, record.to_json().map_err(refused)?.as_bytes())
     }
 
     /// Says that a run is under way.
@@ -203,8 +175,8 @@ impl Store {
     ///
     /// # Errors
     /// If the folder or a file of it cannot be read, or a `.json` file is no record.
-    pub fn all(path: &Path) -> Result<Vec<Record>, StoreError> {
-        let refused = |reason| StoreError::Unreadable { path: path.to_path_buf(), reason };
+    pub fn all(path: &Path) -> Result<Vec<Record>, FileError> {
+        let refused = |reason| FileError::Unread { path: path.to_path_buf(), reason };
         paths(path, "").map_err(refused)?.into_iter().map(read).collect()
     }
 }
@@ -222,11 +194,10 @@ fn paths(folder: &Path, begin: &str) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-fn read(path: PathBuf) -> Result<Record, StoreError> {
-    match files::read_text(&path, MOST_BYTES) {
-        Err(reason) => Err(StoreError::Unreadable { path, reason }),
-        Ok(text) => Record::from_json(&text).map_err(|reason| StoreError::Record { path, reason }),
-    }
+fn read(path: PathBuf) -> Result<Record, FileError> {
+    let text = files::read_text(&path, MOST_BYTES);
+    let record = text.and_then(|text| Record::from_json(&text).map_err(io::Error::other));
+    record.map_err(|reason| FileError::Unread { path, reason })
 }
 
 #[cfg(test)]
@@ -335,11 +306,12 @@ mod tests {
         fs::write(folder.path().join(".unfinished-1-0-c.json"), "{").unwrap();
         assert_eq!(Store::all(store.path()).unwrap().len(), 1);
         fs::write(&path, "{").unwrap();
-        assert!(matches!(store.find(&cut.spec()), Err(StoreError::Record { .. })));
-        assert!(matches!(Store::all(store.path()), Err(StoreError::Record { .. })));
+        let words = |error: FileError| error.to_string();
+        assert!(words(store.find(&cut.spec()).unwrap_err()).contains("the record cannot be read"));
+        assert!(words(Store::all(store.path()).unwrap_err()).contains("the record cannot be read"));
         fs::remove_file(&path).unwrap();
         fs::create_dir(&path).unwrap();
         let found = store.find(&cut.spec());
-        assert!(matches!(found, Err(StoreError::Unreadable { .. })), "{found:?}");
+        assert!(matches!(found, Err(FileError::Unread { .. })), "{found:?}");
     }
 }

@@ -85,9 +85,7 @@ fn solve(
     };
     let record = match case.run(spec, &context) {
         // Nothing was measured of what an observer sees, and nothing was counted.
-        Err(RunError::Outlined) => {
-            Record::new(case.name(), &spec.variant, spec.settings.clone(), 1)
-        }
+        Err(RunError::Told) => Record::new(case.name(), &spec.variant, spec.settings.clone(), 1),
         made => made?,
     };
     if world.is_interrupted() || matches!(record.status, Status::Interrupted { .. }) {

@@ -37,13 +37,14 @@ mod verify;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
+use base::files::FileError;
 use base::manifest::{Known, Source, UNKNOWN, tell_source};
 use base::reference::{Reference, ReferenceError};
 use base::spec::RunKey;
 use clap::{CommandFactory, Parser};
 use harness::case::{Case, RunError, Tier};
 use harness::make::{self, Done, Job, Made, Making, Stored};
-use harness::store::{Store, StoreError};
+use harness::store::Store;
 use harness::suite::Plans;
 use validation::cases;
 
@@ -207,13 +208,13 @@ fn tell(lines: &[String]) {
 
 /// Says which records could not be read, kept or made.
 fn tell_trouble(made: &Made) {
-    let again = |error: &StoreError| format!("{error}; a record in this place does not count");
+    let again = |error: &FileError| format!("{error}; a record in this place does not count");
     tell(&made.unsound.values().map(again).collect::<Vec<_>>());
-    let lost = |error: &StoreError| format!("a record could not be stored: {error}");
+    let lost = |error: &FileError| format!("a record could not be stored: {error}");
     tell(&made.not_kept.values().map(lost).collect::<Vec<_>>());
     let failed = |(key, failed): (&RunKey, &RunError)| format!("run {key} has no record: {failed}");
     tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
-    let unread = |error: &StoreError| format!("{error}; the submission does not count");
+    let unread = |error: &FileError| format!("{error}; the submission does not count");
     tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
 }
 

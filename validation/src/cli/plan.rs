@@ -287,7 +287,7 @@ fn read(file: &Path) -> io::Result<String> {
 
 /// The run that a line describes, or what is wrong with the line.
 fn spec(line: &str, world: &World) -> Result<RunSpec, String> {
-    let spec = RunSpec::from_canonical(line).map_err(|error| {
+    let spec = serde_json::from_str::<RunSpec>(line).map_err(|error| {
         let words = error.to_string();
         let (what, column) = words.split_once(" at line 1 column ").unwrap_or((&words, "1"));
         format!("{what} (column {column})")

@@ -423,14 +423,14 @@ fn figure(record: &Record, curves: &[Curve]) -> Figure {
 
 /// What a person wants to know of a record.
 fn summary(record: &Record) -> String {
-    let Record { case, variant, cost, .. } = record;
+    let Record { run, cost, .. } = record;
     let value = |value: &Value| match value.as_f64() {
         Some(number) if !value.is_u64() => report::sig(number, 4),
         _ => value.as_str().map_or_else(|| value.to_string(), String::from),
     };
     let numerics: Vec<String> =
         record.numerics.iter().map(|(name, number)| format!("{name} {}", value(number))).collect();
-    let mut text = format!("{case}, variant {variant}\n");
+    let mut text = format!("{}, variant {}\n", run.case, run.variant);
     text += &output::wrap(&numerics.join(", "), "    ");
     let rate = cost.particle_rhs as f64 / cost.wall_s.max(1e-9) / 1e6;
     text += &format!(

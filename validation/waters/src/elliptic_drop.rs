@@ -179,7 +179,7 @@ fn run(
     let mut ledger = context.measures_all().then(|| Ledger::new(medium));
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
-    let mut seen = (&mut history, &mut ledger);
+    let mut seen = (&mut history, ledger.as_mut_slice());
     (record.status, record.cost) =
         Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
             .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))

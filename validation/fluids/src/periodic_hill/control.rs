@@ -20,7 +20,7 @@ pub struct Controller {
     pub last: f64,
 }
 
-base::bits! { Controller { wanted, response, force, last } }
+harness::observed! { Controller: changes(wanted, response, force, last), stays() }
 
 impl Controller {
     /// Looks at the mean velocity after `dt` \[s\].

@@ -154,7 +154,7 @@ pub struct Window {
     samples: usize,
 }
 
-base::bits! { Window { sections, wall, forces, samples } }
+harness::observed! { Window: changes(sections, wall, forces, samples), stays() }
 
 /// The places of the stations: x, y, weight of the section's height.
 fn places(setup: &Setup) -> Vec<[f64; 2]> {

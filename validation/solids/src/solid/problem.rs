@@ -5,12 +5,12 @@ use solver::{Domain, Observer, Particle, PlaneWall, Stepper, Symmetric};
 
 use super::{Energy, Material, lagrangian, limits};
 use base::{
+    bits::Bits,
     record::{self, Record},
     settings::Settings,
 };
 use harness::{
     case::{Rules, RunError, Step},
-    checkpoint::Observed,
     composed::{Composition, Program, Variants},
     context::Context,
     method::{Medium, Method, Parts},
@@ -101,7 +101,7 @@ pub trait Problem: SharedSettings {
 }
 
 /// Sees every step of a run and measures it.
-pub trait Watch: Observer<Symmetric> + Observed {
+pub trait Watch: Observer<Symmetric> + Bits {
     /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
     fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &Context, _: &mut Record) {}
     /// Puts metrics and profiles; `simulation` is at its end.

@@ -50,7 +50,7 @@ fn run(
     let filled = water_mass(&simulation.particles());
     let (times, shares) = stops(dam, context);
     let is_balanced = ledger.is_some();
-    let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
+    let mut seen = (&mut gauge, &mut samples, ledger.as_mut_slice(), &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
