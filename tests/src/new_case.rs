@@ -61,7 +61,7 @@ fn declaration(tier: Tier) -> Declaration {
     Declaration { budgets, limits, accuracy, ..Declaration::default() }
 }
 
-/// The case: add it to `CASES` of its crate.
+/// The case: add it to the list of cases.
 pub const DECAY: Composed<Decay> = Composed {
     name: "decay",
     problem: "A shear wave decays in a periodic box",

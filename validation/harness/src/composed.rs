@@ -185,6 +185,10 @@ impl<T: Settings + 'static> Case for Composed<T> {
         self.name
     }
 
+    fn family(&self) -> &'static str {
+        T::MODULE.split("::").next().unwrap_or_default()
+    }
+
     fn problem(&self) -> &'static str {
         self.problem
     }
@@ -193,8 +197,8 @@ impl<T: Settings + 'static> Case for Composed<T> {
         self.about
     }
 
-    fn best(&self) -> Option<Best> {
-        Some(self.best)
+    fn best(&self) -> Best {
+        self.best
     }
 
     fn variants(&self) -> Vec<Variant> {
