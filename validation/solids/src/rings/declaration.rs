@@ -106,7 +106,6 @@ fn card(accuracy: &Accuracy) -> Card {
         runs: accuracy.finest(&SHOWN),
         against: "finite elements",
         uncertainty: reference.map(|reference| reference.uncertainty),
-        reach: ("speed", "speeds of", " c0 each"),
     }
 }
 
