@@ -1,12 +1,9 @@
 //! What lies outside of its bound for a known reason, grouped by cause.
 
-use std::cmp::Reverse;
-use std::collections::BTreeMap;
-
 use base::{gate::Cause, spec::Task};
 use harness::{
     case::{self, Planned},
-    runs::{Judged, JudgedRun},
+    runs::{Judged, JudgedRun, by_cause},
     suite::{CaseResults, Of, Suite},
 };
 use report::{Block, Section, sig};
@@ -16,23 +13,6 @@ struct Found<'a> {
     results: &'a CaseResults,
     of: Of<'a>,
     judged: &'a Judged,
-}
-
-/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and
-/// last those whose cause is their own.
-pub fn by_cause<'a, T>(
-    all: impl IntoIterator<Item = T>,
-    judged: impl Fn(&T) -> &'a Judged,
-) -> Vec<(Option<&'a Cause>, Vec<T>)> {
-    let mut causes: BTreeMap<Option<&Cause>, Vec<T>> = BTreeMap::new();
-    for one in all {
-        if let Some(known) = judged(&one).limitation() {
-            causes.entry(known.cause.as_ref()).or_default().push(one);
-        }
-    }
-    let mut causes: Vec<_> = causes.into_iter().collect();
-    causes.sort_by_key(|(cause, gates)| (cause.is_none(), Reverse(gates.len())));
-    causes
 }
 
 /// A part of the page for each cause.

@@ -486,9 +486,7 @@ pub struct Curves {
     pub title: String,
     /// Caption of the figure.
     pub caption: String,
-    /// Panels a row.
-    pub columns: usize,
-    /// The panels.
+    /// The panels, as many a row as there are rows.
     pub panels: Vec<CurvePanel>,
 }
 

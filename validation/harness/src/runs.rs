@@ -1,10 +1,11 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 use base::{
-    gate::{Gate, Judgement, Known, Purpose, Verdict},
+    gate::{Cause, Gate, Judgement, Known, Purpose, Verdict},
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
@@ -137,6 +138,23 @@ impl Judged {
         let reason = self.limitation().map(|known| format!(": {}", known.reason));
         self.judgement.verdict.to_string() + &reason.unwrap_or_default()
     }
+}
+
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and
+/// last those whose cause is their own.
+pub fn by_cause<'a, T>(
+    all: impl IntoIterator<Item = T>,
+    judged: impl Fn(&T) -> &'a Judged,
+) -> Vec<(Option<&'a Cause>, Vec<T>)> {
+    let mut causes: BTreeMap<Option<&Cause>, Vec<T>> = BTreeMap::new();
+    for one in all {
+        if let Some(known) = judged(&one).limitation() {
+            causes.entry(known.cause.as_ref()).or_default().push(one);
+        }
+    }
+    let mut causes: Vec<_> = causes.into_iter().collect();
+    causes.sort_by_key(|(cause, gates)| (cause.is_none(), Reverse(gates.len())));
+    causes
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not

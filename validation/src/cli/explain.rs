@@ -11,10 +11,10 @@ use base::spec::RunSpec;
 use harness::case::{self, Case, Tier};
 use harness::make::Stored;
 use harness::plan;
-use harness::runs::Judged;
+use harness::runs::{self, Judged};
 use harness::store::Store;
 use harness::suite::{self, Of};
-use validation::{cases, limitations};
+use validation::cases;
 
 use super::{
     Failure, World, arguments,
@@ -164,7 +164,7 @@ fn table(gates: &[&Judged]) -> String {
 fn by_cause(gates: &[&Judged]) -> String {
     let of_none = "Gates with a cause of their own, which `touchstone explain GATE` states:";
     let mut text = String::new();
-    for (cause, gates) in limitations::by_cause(gates.iter().copied(), |judged| judged) {
+    for (cause, gates) in runs::by_cause(gates.iter().copied(), |judged| judged) {
         let words = cause.map_or(of_none.into(), Cause::to_string);
         text += &output::wrap(&words, "");
         text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();

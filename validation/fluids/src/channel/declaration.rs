@@ -136,7 +136,6 @@ fn curves(flow: Flow) -> Curves {
             "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
              (left) and `{best}` (right). Symbols are means over a row, and lines the exact series."
         ),
-        columns: 2,
         panels: vec![panel("seed"), panel(best)],
     }
 }

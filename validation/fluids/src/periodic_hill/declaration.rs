@@ -135,7 +135,7 @@ fn profiles(table: &Table) -> Curves {
         panels.push(shear(&rows, reference));
     }
     let (id, title) = ("periodic-hill-profiles".into(), "Profiles over finite elements".into());
-    Curves { id, title, caption: caption.into(), columns: 2, panels }
+    Curves { id, title, caption: caption.into(), panels }
 }
 
 /// The velocity along the channel, every tenth point of a station.

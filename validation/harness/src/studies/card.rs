@@ -1,14 +1,12 @@
 //! What the report says first of a case: errors, costs and time steps of two variants, verdicts.
 
-use std::collections::BTreeMap;
-
 use base::{record::Record, spec::RunSpec};
 use report::{Block, Card, Counts, Figure, Legend, Panel, percent, sci, seconds, sig};
 
 use super::limit;
 use crate::{
     declare::{self, Declaration},
-    runs::{Judged, Runs},
+    runs::{Judged, Runs, by_cause},
     study::Study,
 };
 
@@ -23,13 +21,16 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
+    // The two causes that most gates share.
+    let causes = by_cause(judged.iter().copied(), |judged| judged).into_iter();
+    let main = causes.filter_map(|(cause, _)| cause).take(2);
     Some(Card {
         id: case.into(),
         title: card.title.into(),
         picture: picture(card.picture, studies),
         facts,
         counts: Counts::of(judged.iter().map(|judged| judged.judgement.verdict)),
-        limitations: main_limitations(&judged),
+        limitations: main.map(|cause| cause.what.to_string()).collect(),
     })
 }
 
@@ -95,15 +96,4 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
     let mut small = Figure::new(format!("{id}-small"), figure.caption.clone());
     small.panels.push(panel);
     Some(small.panel_size(150.0, 90.0))
-}
-
-/// The two causes that most gates share.
-fn main_limitations(judged: &[&Judged]) -> Vec<String> {
-    let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
-    for cause in judged.iter().filter_map(|judged| judged.limitation()?.cause.as_ref()) {
-        *causes.entry(&cause.what).or_default() += 1;
-    }
-    let mut causes: Vec<(&str, usize)> = causes.into_iter().collect();
-    causes.sort_by_key(|(_, gates)| std::cmp::Reverse(*gates));
-    causes.into_iter().take(2).map(|(what, _)| what.to_string()).collect()
 }

@@ -9,7 +9,8 @@ use crate::{
 };
 
 pub fn study(curves: &Curves, runs: &Runs) -> Study {
-    let figure = Figure::new(&curves.id, &curves.caption).columns(curves.columns);
+    let columns = (curves.panels.len() as f64).sqrt().ceil() as usize;
+    let figure = Figure::new(&curves.id, &curves.caption).columns(columns.max(1));
     let mut names: Vec<&str> = Vec::new();
     for line in curves.panels.iter().flat_map(|panel| &panel.lines) {
         if !names.contains(&line.name.as_str()) {
@@ -83,7 +84,6 @@ mod tests {
             id: "case-curves".into(),
             title: "Curves".into(),
             caption: "Made up.".into(),
-            columns: 2,
             panels,
         };
         let runs = runs([(spec("seed", 1), 1.5), (spec("best", 1), 2.5)]);

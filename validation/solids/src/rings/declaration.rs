@@ -135,7 +135,6 @@ fn histories(tier: Tier) -> Curves {
                   paper's. Black: finite elements with the law of the best, from which those with the law of \
                   the paper differ little; their uncertainty is less than the width of the line."
             .into(),
-        columns: 2,
         panels: labels.into_iter().enumerate().map(panel).collect(),
     }
 }
