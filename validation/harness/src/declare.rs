@@ -282,12 +282,14 @@ impl Accuracy {
 
 impl StepLimit {
     /// The bisection of a setting that is the time step over its theoretical limit, or in proportion to it:
-    /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step.
+    /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step. The
+    /// gate judges the largest stable step over the limit.
     pub fn proportional(
         scene: &str,
         spec: RunSpec,
         (setting, unit): (&str, f64),
         rules: &Rules,
+        gate: Option<Gate>,
     ) -> Self {
         let setting = setting.to_string();
         let bisect = Bisect { setting, guess: 1.0, unit, resolution: 0.02, end: None };
@@ -297,8 +299,7 @@ impl StepLimit {
             theory_at: 1.0,
             theory: rules.dt_limit(),
             default_at: rules.dt() / rules.dt_limit(),
-            of_theory: Vec::new(),
-            of_default: Vec::new(),
+            gate,
         }
     }
 }
@@ -331,10 +332,8 @@ pub struct StepLimit {
     pub theory_at: f64,
     /// The x of the bisection at the default step.
     pub default_at: f64,
-    /// Gates on the largest stable step over the theoretical limit.
-    pub of_theory: Vec<Gate>,
-    /// Gates on the largest stable step over the default one.
-    pub of_default: Vec<Gate>,
+    /// A gate on the largest stable step over the theoretical limit.
+    pub gate: Option<Gate>,
 }
 
 /// Which errors of the constants of a case the gates of some of its runs must detect.
