@@ -511,9 +511,9 @@ pub struct CurvePanel {
     pub y: Axis,
     /// Curves of runs.
     pub lines: Vec<CurveOf>,
-    /// Curves of references: name and points.
+    /// Curves of references: name and points. What has no name is drawn as a guide.
     pub references: Vec<(String, Vec<(f64, f64)>)>,
-    /// Are lines drawn as symbols, one colour with the reference of the same position?
+    /// Are curves of runs drawn as symbols?
     pub symbols: bool,
 }
 
