@@ -105,9 +105,12 @@ pub enum Knob {
     WallGravity,
 }
 
+/// Puts a number where a medium has it.
+type Set = fn(&mut Medium, f64);
+
 impl Knob {
     /// All of them with their names among the settings, and where a medium has the numbers.
-    const ALL: [(Self, &'static str, fn(&mut Medium, f64)); 10] = [
+    const ALL: [(Self, &'static str, Set); 10] = [
         (Self::Eta2, "eta2_over_h2", |medium, value| medium.eta2_over_h2 = value),
         (Self::Alpha, "alpha", |medium, value| medium.alpha = value),
         (Self::Beta, "beta", |medium, value| medium.beta = value),
