@@ -89,6 +89,9 @@ pub struct Card {
     pub against: &'static str,
     /// Standard uncertainty of what it is compared with, in the unit of the error; none if it is exact.
     pub uncertainty: Option<f64>,
+    /// The setting that is varied the farthest, such as the Reynolds number, with what stands before and
+    /// after its values.
+    pub reach: (&'static str, &'static str, &'static str),
 }
 
 /// A comparison with a reference, whose uncertainty is that of ASME V&V 20.

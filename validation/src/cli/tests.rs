@@ -123,6 +123,7 @@ impl Case for Staged {
             runs: vec![run()],
             against: "nothing",
             uncertainty: None,
+            reach: ("re", "", ""),
         };
         Declaration { card: (self.name == "main").then(card), ..Declaration::default() }
     }

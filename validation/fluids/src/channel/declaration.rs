@@ -76,6 +76,7 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         runs: accuracy.finest(&[flow.case().best.variant, "seed"]),
         against: "the exact series",
         uncertainty: None,
+        reach: ("re", "Re", ""),
     }
 }
 

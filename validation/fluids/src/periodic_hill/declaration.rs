@@ -66,6 +66,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         runs: accuracy.finest(&[BEST, "interface-wall"]),
         against: "finite elements",
         uncertainty: reference(re).map(|reference| reference.uncertainty),
+        reach: ("re", "Re", ""),
     }
 }
 

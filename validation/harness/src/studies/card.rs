@@ -1,9 +1,12 @@
-//! What the report says first of a case: errors, costs and time steps of two variants, verdicts.
+//! What the report says first of a case: errors and costs of two variants, how far they got, verdicts.
 
-use base::{record::Record, spec::RunSpec};
-use report::{Block, Card, Counts, Figure, Legend, Panel, percent, sci, seconds, sig};
+use base::{
+    record::{Record, Status},
+    spec::RunSpec,
+};
+use report::{Block, Card, Counts, Figure, Legend, Panel, exact, percent, sci, seconds, sig};
 
-use super::limit;
+use super::{limit, validation};
 use crate::{
     declare::{self, Declaration},
     runs::{Judged, Runs, by_cause},
@@ -21,6 +24,9 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
+    let compared = validation::line(&declared.comparisons, runs);
+    facts.extend(compared.map(|text| ("Comparisons by V&V 20:".into(), text)));
+    facts.extend(reach(card, runs).map(|text| ("Completed for".into(), text)));
     // The two causes that most gates share.
     let causes = by_cause(judged.iter().copied(), |judged| judged).into_iter();
     let main = causes.filter_map(|(cause, _)| cause).take(2);
@@ -80,6 +86,19 @@ fn stable(declared: &Declaration, specs: &[RunSpec], runs: &Runs) -> Option<Stri
     };
     let found: Vec<String> = specs.iter().filter_map(of).collect();
     (!found.is_empty()).then(|| found.join(", "))
+}
+
+/// The smallest and the largest value of a setting with which a run reached its end.
+fn reach(card: &declare::Card, runs: &Runs) -> Option<String> {
+    let (setting, name, unit) = card.reach;
+    let completed = |record: &&Record| record.status == Status::Completed;
+    let values: Vec<f64> = runs
+        .simulations()
+        .filter(completed)
+        .filter_map(|record| record.settings[setting].as_f64())
+        .collect();
+    let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick));
+    Some(format!("{name} {} to {}{unit}", exact(low?), exact(high?)))
 }
 
 /// One panel of a figure of the studies, as small as a card is.

@@ -38,6 +38,19 @@ pub struct Found {
     pub reference: f64,
 }
 
+/// What can be said of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Said {
+    /// |E| < u_val.
+    NotDistinguishable,
+    /// |E| > u_val.
+    ModelError,
+    /// |E| < u_val, and u_val is too large to say anything.
+    TooUncertain,
+    /// A run or its ladder is missing.
+    Unknown,
+}
+
 impl Found {
     /// From the records of a comparison.
     pub fn of(comparison: &Comparison, runs: &Runs) -> Self {
@@ -65,17 +78,27 @@ impl Found {
         parts.into_iter().fold(0.0, |sum, part| sum + part * part).sqrt()
     }
 
+    /// The verdict.
+    pub fn said(&self) -> Said {
+        let (error, uncertainty) = (self.error.abs(), self.uncertainty());
+        match error > uncertainty {
+            _ if !(error.is_finite() && uncertainty.is_finite()) => Said::Unknown,
+            true => Said::ModelError,
+            false if uncertainty > TELLS => Said::TooUncertain,
+            false => Said::NotDistinguishable,
+        }
+    }
+
     /// The verdict in words.
     pub fn in_words(&self) -> String {
-        let (error, uncertainty) = (self.error.abs(), self.uncertainty());
-        let shown = percent(uncertainty, 2);
-        match error > uncertainty {
-            _ if !(error.is_finite() && uncertainty.is_finite()) => {
-                "runs are missing: nothing can be said".into()
+        let [error, uncertainty] = [self.error, self.uncertainty()].map(|value| percent(value, 2));
+        match self.said() {
+            Said::NotDistinguishable => {
+                "not distinguishable from the reference at this uncertainty".into()
             }
-            true => format!("model error {} ± {shown}", percent(self.error, 2)),
-            false if uncertainty > TELLS => format!("uncertain by {shown}: nothing can be said"),
-            false => "not distinguishable from the reference at this uncertainty".into(),
+            Said::ModelError => format!("model error {error} ± {uncertainty}"),
+            Said::TooUncertain => format!("uncertain by {uncertainty}: nothing can be said"),
+            Said::Unknown => "runs are missing: nothing can be said".into(),
         }
     }
 }
@@ -154,6 +177,22 @@ pub fn study(case: &str, comparisons: &[Comparison], runs: &Runs) -> Study {
     Study::new(&anchor(case, "uncertainty"), "Uncertainty of every comparison").block(table)
 }
 
+/// One line for the card of a case: how many comparisons ended how.
+pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
+    let said: Vec<Said> = comparisons.iter().map(|of| Found::of(of, runs).said()).collect();
+    let names = [
+        (Said::NotDistinguishable, "not distinguishable from the reference"),
+        (Said::ModelError, "with an error beyond the uncertainty"),
+        (Said::TooUncertain, "too uncertain"),
+        (Said::Unknown, "without a run"),
+    ];
+    let counted = names.into_iter().filter_map(|(of, name)| {
+        let count = said.iter().filter(|said| **said == of).count();
+        (count > 0).then(|| format!("{count} {name}"))
+    });
+    (!said.is_empty()).then(|| counted.collect::<Vec<_>>().join(", "))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -209,16 +248,13 @@ mod tests {
             input: parts[1],
             reference: parts[2],
         };
-        let has = |found: &Found, words: &str| {
-            assert!(found.in_words().starts_with(words), "{found:?}");
-        };
         near(found(0.0, [0.02, 0.03, 0.06]).uncertainty(), 0.07);
-        has(&found(-0.069, [0.02, 0.03, 0.06]), "not distinguishable");
-        has(&found(-0.071, [0.02, 0.03, 0.06]), "model error");
-        has(&found(0.1, [0.2, 0.0, 0.0]), "uncertain by");
-        has(&found(0.3, [0.2, 0.0, 0.0]), "model error");
+        assert_eq!(found(-0.069, [0.02, 0.03, 0.06]).said(), Said::NotDistinguishable);
+        assert_eq!(found(-0.071, [0.02, 0.03, 0.06]).said(), Said::ModelError);
+        assert_eq!(found(0.1, [0.2, 0.0, 0.0]).said(), Said::TooUncertain);
+        assert_eq!(found(0.3, [0.2, 0.0, 0.0]).said(), Said::ModelError);
         for missing in [found(f64::NAN, [0.0; 3]), found(0.1, [f64::NAN, 0.0, 0.0])] {
-            has(&missing, "runs are missing");
+            assert_eq!(missing.said(), Said::Unknown);
         }
         let words = found(-0.071, [0.02, 0.03, 0.06]).in_words().replace('\u{a0}', " ");
         assert_eq!(words, "model error −7.1 % ± 7.0 %");
@@ -242,11 +278,15 @@ mod tests {
         near(found.input, 0.05);
         near(found.numerical.0, 0.025 * 1.25 / 1.15);
         near(found.error, 0.125);
-        assert!(found.in_words().starts_with("model error"));
-        let table = study("a_case", &[comparison], &runs);
+        assert_eq!(found.said(), Said::ModelError);
+        let all = [comparison];
+        let table = study("a_case", &all, &runs);
         assert_eq!(
             (&*table.id, &*column(tables(&table)[0], "E")[0]),
             ("a-case-uncertainty", "12 %")
         );
+        let said = line(&all, &runs).expect("a line");
+        assert_eq!(said, "1 with an error beyond the uncertainty");
+        assert_eq!(line(&[], &runs), None);
     }
 }

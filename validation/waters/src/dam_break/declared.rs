@@ -23,6 +23,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         runs: accuracy.finest(&[DAM_BREAK.best.variant, "seed"]),
         against: "the experiment of Martin & Moyce",
         uncertainty: Some(FRONT_SPREAD),
+        reach: ("n", "", " spacings across the column"),
     };
     let comparisons = comparisons(tier);
     Declaration {
