@@ -141,7 +141,8 @@ fn verdicts(suite: &Suite) -> Section {
 const READING: [&str; 2] = [
     "A cost diagram shows one point for each run. The number at a point is the resolution. Run time is the \
      processor time of the time stepping on one core, the median of repeated runs with no other run at work; \
-     bars reach from the fastest to the slowest.",
+     bars reach from the fastest to the slowest. The pale band joins the points that no other beats in both \
+     error and cost.",
     "A convergence diagram shows the error over the spacing of particles. The triangle has the slope of the \
      order that theory expects. The order in the table below it is a least-squares fit over all levels, with \
      the 95 % interval of Student's t distribution.",

@@ -3,7 +3,9 @@
 //! which do not depend on the machine or on other programs.
 
 use base::record::median;
-use report::{Axis, Cell, Figure, Legend, Plot, Series, Table, exact, first_sentence, percent};
+use report::{
+    Axis, Cell, Colour, Figure, Legend, Plot, Series, Table, exact, first_sentence, percent,
+};
 
 use crate::{
     columns::Columns,
@@ -59,6 +61,22 @@ fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
         }
     });
     of.collect()
+}
+
+/// What a run costs.
+type Cost = fn(&Point) -> f64;
+
+/// Points that no other point beats in both error and cost, cheapest first.
+fn pareto<'a>(points: impl Iterator<Item = &'a Point>, cost: Cost) -> Vec<&'a Point> {
+    let mut sorted: Vec<&Point> = points.filter(|p| p.error.is_finite()).collect();
+    sorted.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let mut front: Vec<&Point> = Vec::new();
+    for point in sorted {
+        if front.last().is_none_or(|best| point.error < best.error) {
+            front.push(point);
+        }
+    }
+    front
 }
 
 /// The least median of a point of a ladder with at most this error, of those whose finer levels have at most
@@ -126,21 +144,27 @@ fn short(label: &str) -> String {
     label.split_whitespace().find(is_number).unwrap_or(label).into()
 }
 
-/// Error over what a run costs; the error is named at the panel on the left.
-fn panel(title: &str, cost_label: &str, rows: &[Row], cost: fn(&Point) -> f64) -> Plot {
-    let series = |(k, row): (usize, &Row)| {
+fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
+    // The error is named at the panel on the left.
+    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(""));
+    let all = rows.iter().flat_map(|row| &row.points);
+    let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
+    plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
+    for (k, row) in rows.iter().enumerate() {
         let own: Vec<&Point> = row.points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let series = Series::line_markers(row.of.variant, line).cycle(k);
-        if !title.contains("time") {
-            return series;
+        let mut series = Series::line_markers(row.of.variant, line).cycle(k);
+        if title.contains("time") {
+            series = series.labels(own.iter().map(|p| short(&p.label)));
+            series.x_bars = own.iter().map(|p| p.spread()).collect();
         }
-        let x_bars = own.iter().map(|p| p.spread()).collect();
-        Series { x_bars, ..series.labels(own.iter().map(|p| short(&p.label))) }
-    };
-    let plot = Plot::new(title, Axis::log(cost_label), Axis::log(""));
-    rows.iter().enumerate().map(series).fold(plot, Plot::layer)
+        plot = plot.layer(series);
+    }
+    plot
 }
+
+/// Behind everything else.
+const PALE: Colour = Colour(222, 222, 222);
 
 const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
     every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
@@ -177,6 +201,42 @@ mod tests {
     fn point(label: &str, error: f64, seconds: &[f64]) -> Point {
         let (label, seconds) = (label.into(), seconds.to_vec());
         Point { spacing: 0.1, label, error, seconds, pairs: 1.0 }
+    }
+
+    #[test]
+    fn the_front_keeps_what_nothing_beats_and_ignores_failures() {
+        let points = [
+            point("slow and good", 1e-4, &[1.0, 2.0, 3.0]),
+            point("fast and bad", 1e-2, &[0.1]),
+            point("slow and bad", 2e-2, &[1.5]),
+            point("failed", f64::NAN, &[0.01]),
+        ];
+        let front = pareto(points.iter(), Point::median);
+        assert_eq!(names(front), ["fast and bad", "slow and good"]);
+        assert_eq!(points[0].median(), 2.0);
+        assert_eq!(points[0].spread(), (1.0, 3.0));
+    }
+
+    fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a str> {
+        points.into_iter().map(|p| p.label.as_str()).collect()
+    }
+
+    /// What is a tenth worse at a higher cost is beaten, what is a hundredth better is not.
+    #[test]
+    fn the_front_drops_what_is_a_little_worse_and_keeps_what_is_a_little_better() {
+        let points = [
+            point("a hundredth better", 0.99e-2, &[4.0]),
+            point("a tenth worse", 1.1e-2, &[2.0]),
+            point("cheapest", 1e-2, &[1.0]),
+            point("a thousandth worse", 1.001e-2, &[3.0]),
+            point("equal and dearer", 1e-2, &[1.5]),
+            point("worse than the best alone", 0.9901e-2, &[5.0]),
+        ];
+        assert_eq!(names(pareto(points.iter(), Point::median)), ["cheapest", "a hundredth better"]);
+        // By work, of which they all have as much as the number of their place, the first comes first.
+        let work = |k: usize| Point { pairs: k as f64, ..points[k].clone() };
+        let work: Vec<Point> = (0..points.len()).map(work).collect();
+        assert_eq!(names(pareto(work.iter(), |p| p.pairs)), ["a hundredth better"]);
     }
 
     /// The median, not the mean or the fastest, is what a level costs.
