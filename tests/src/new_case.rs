@@ -56,12 +56,12 @@ fn declaration(tier: Tier) -> Declaration {
     let budgets = Budgets { about: String::new(), of: vec![Budget { variant: "cubic", changes }] };
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
     let rules = DECAY.rules(&long).unwrap_or(Rules::REFUSED);
-    let limit = StepLimit::proportional("the wave", long, ("step", 1.0), &rules);
+    let limit = StepLimit::proportional("the wave", long, ("step", 1.0), &rules, None);
     let limits = StepLimits { about: "Stable is what reaches its end.".into(), of: vec![limit] };
     Declaration { budgets, limits, accuracy, ..Declaration::default() }
 }
 
-/// The case: add it to `CASES` of its crate.
+/// The case: add it to the list of cases.
 pub const DECAY: Composed<Decay> = Composed {
     name: "decay",
     problem: "A shear wave decays in a periodic box",

@@ -128,6 +128,9 @@ pub trait Settings:
     /// All settings in the order of declaration.
     const FIELDS: &'static [Field];
 
+    /// The path of the module that declares them, which begins with the name of its crate.
+    const MODULE: &'static str;
+
     /// Every setting with its value, for tables.
     fn entries(&self) -> Vec<(&'static Field, Value)>;
 
@@ -343,6 +346,8 @@ macro_rules! settings {
         }
 
         impl $crate::settings::Settings for $Struct {
+            const MODULE: &'static str = module_path!();
+
             // The unit and the range of a flag are the last of their lists, those of a number the first.
             const FIELDS: &'static [$crate::settings::Field] = &[$($crate::settings::Field {
                 name: stringify!($name),

@@ -65,18 +65,6 @@ pub fn graded(case: &str) -> Vec<(&'static str, String)> {
     found.filter_map(|name| Some((name, Reference::load(name).ok()?.graded()))).collect()
 }
 
-/// The family that a case belongs to, by the name of its crate.
-pub fn family(case: &str) -> Option<&'static str> {
-    let families = [
-        ("fluids", fluids::CASES),
-        ("waters", waters::CASES),
-        ("solids", solids::CASES),
-        ("lattice", lattice::CASES),
-    ];
-    let has = |cases: &[&dyn Case]| cases.iter().any(|known| known.name() == case);
-    families.into_iter().find(|(_, cases)| has(cases)).map(|(name, _)| name)
-}
-
 #[cfg(test)]
 mod tests {
     use std::fs;

@@ -338,7 +338,6 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
         caption: format!(
             "Mean velocity with {finest} spacings a side at the places of Ghia et al., joined by lines."
         ),
-        columns: 2,
         panels: panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect(),
     }
 }

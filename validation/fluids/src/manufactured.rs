@@ -232,11 +232,7 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
                 value: runs.completed(&row.run.spec).and_then(error).unwrap_or(f64::NAN),
             };
             let levels = table.of(of).filter(|row| row.variant == name).map(level).collect();
-            let [kind, expected] = match has_ghosts(name) {
-                true => ["ghosts", "2"],
-                false => ["interface and wall", "2, as dx → 0 1"],
-            };
-            Line { name, kind, levels, expected, gate: gate(of, name) }
+            Line { name, levels, gate: gate(of, name) }
         };
         let (axes, slopes) = (["dx/L [-]", "error of the velocity [-]"], &[1.0, 2.0]);
         Refinement {

@@ -274,7 +274,7 @@ fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
     let panel = CurvePanel::linear("", axes, lines, ("exact", exact));
     let panel = CurvePanel { symbols: true, ..panel };
     let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());
-    Curves { id, title, caption, columns: 1, panels: vec![panel] }
+    Curves { id, title, caption, panels: vec![panel] }
 }
 
 #[cfg(test)]

@@ -186,7 +186,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Planned, Tier, Variant},
+        case::{Best, Planned, Tier, Variant},
         runs::Runs,
         study::Study,
     };
@@ -253,6 +253,12 @@ mod tests {
     struct Spring(std::sync::Mutex<Vec<(f64, f64)>>);
 
     impl Case for Spring {
+        fn family(&self) -> &'static str {
+            ""
+        }
+        fn best(&self) -> Best {
+            Best { variant: "only", because: "it is staged", papers: None }
+        }
         fn name(&self) -> &'static str {
             "spring"
         }

@@ -40,16 +40,16 @@ pub struct Best {
 pub trait Case: Sync {
     /// Name on the command line.
     fn name(&self) -> &'static str;
+    /// The family that it belongs to, by the name of its crate.
+    fn family(&self) -> &'static str;
     /// The problem in at most ten words, for lists.
     fn problem(&self) -> &'static str;
     /// The problem in words, a paragraph.
     fn about(&self) -> &'static str;
     /// The variants to compare.
     fn variants(&self) -> Vec<Variant>;
-    /// The best of them, if that is known.
-    fn best(&self) -> Option<Best> {
-        None
-    }
+    /// The best of them.
+    fn best(&self) -> Best;
     /// The settings.
     fn fields(&self) -> &'static [Field];
     /// All settings of a variant with `key=value` texts applied, as the record states them.

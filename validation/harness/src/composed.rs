@@ -185,6 +185,10 @@ impl<T: Settings + 'static> Case for Composed<T> {
         self.name
     }
 
+    fn family(&self) -> &'static str {
+        T::MODULE.split("::").next().unwrap_or_default()
+    }
+
     fn problem(&self) -> &'static str {
         self.problem
     }
@@ -193,8 +197,8 @@ impl<T: Settings + 'static> Case for Composed<T> {
         self.about
     }
 
-    fn best(&self) -> Option<Best> {
-        Some(self.best)
+    fn best(&self) -> Best {
+        self.best
     }
 
     fn variants(&self) -> Vec<Variant> {
@@ -209,14 +213,12 @@ impl<T: Settings + 'static> Case for Composed<T> {
         let (chosen, mut settings) = self.composition(variant)?;
         settings::apply(&mut settings, set)?;
         settings.validate()?;
-        for assignment in set {
-            let key = assignment.split('=').next().unwrap_or_default().trim();
-            if chosen.lacks.contains(&key) {
-                let (key, variant) = (key.to_string(), variant.to_string());
-                return Err(RunError::Unused { key, variant });
-            }
+        let mut keys =
+            set.iter().filter_map(|text| text.split_once('=')).map(|(key, _)| key.trim());
+        match keys.find(|key| chosen.lacks.contains(key)) {
+            Some(key) => Err(RunError::Unused { key: key.into(), variant: variant.into() }),
+            None => Ok(serde_json::to_value(settings).unwrap_or_default()),
         }
-        Ok(serde_json::to_value(settings).unwrap_or_default())
     }
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {

@@ -121,21 +121,12 @@ fn label(order: f64, local: &[f64]) -> Label {
     }
 }
 
-/// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees: a table to 10, beyond it the
-/// expansion in 1/n of Abramowitz & Stegun 26.7.5 (error below 1e-5).
+/// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees; beyond ten that of ten, which is wider by
+/// at most 14 %, for no ladder has so many levels.
 fn student_t(freedom: usize) -> f64 {
     const TABLE: [f64; 10] =
         [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
-    let z = 1.959_964;
-    let n = freedom as f64;
-    let [z3, z5, z7, z9] = [3, 5, 7, 9].map(|power| f64::powi(z, power));
-    let expansion = z
-        + (z3 + z) / (4.0 * n)
-        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n)
-        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n)
-        + (79.0 * z9 + 776.0 * z7 + 1482.0 * z5 - 1920.0 * z3 - 945.0 * z)
-            / (92160.0 * n * n * n * n);
-    TABLE.get(freedom.wrapping_sub(1)).copied().unwrap_or(expansion)
+    TABLE[freedom.clamp(1, TABLE.len()) - 1]
 }
 
 #[cfg(test)]
@@ -276,13 +267,5 @@ mod tests {
         }
         let twins = levels([0.2, 0.1, 0.1], |h| h);
         assert!(convergence(&twins).unwrap_err().ends_with("the same spacing 0.1"));
-    }
-
-    #[test]
-    fn quantiles_continue_their_table() {
-        assert_relative_eq!(student_t(10), 2.2281, epsilon = 1e-9);
-        assert_relative_eq!(student_t(11), 2.200_985, epsilon = 1e-5);
-        assert_relative_eq!(student_t(30), 2.042_272, epsilon = 1e-5);
-        assert_relative_eq!(student_t(1_000_000), 1.95997, epsilon = 1e-4);
     }
 }

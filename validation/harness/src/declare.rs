@@ -285,12 +285,14 @@ impl Accuracy {
 
 impl StepLimit {
     /// The bisection of a setting that is the time step over its theoretical limit, or in proportion to it:
-    /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step.
+    /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step. The
+    /// gate judges the largest stable step over the limit.
     pub fn proportional(
         scene: &str,
         spec: RunSpec,
         (setting, unit): (&str, f64),
         rules: &Rules,
+        gate: Option<Gate>,
     ) -> Self {
         let setting = setting.to_string();
         let bisect = Bisect { setting, guess: 1.0, unit, resolution: 0.02, end: None };
@@ -300,8 +302,7 @@ impl StepLimit {
             theory_at: 1.0,
             theory: rules.dt_limit(),
             default_at: rules.dt() / rules.dt_limit(),
-            of_theory: Vec::new(),
-            of_default: Vec::new(),
+            gate,
         }
     }
 }
@@ -334,10 +335,8 @@ pub struct StepLimit {
     pub theory_at: f64,
     /// The x of the bisection at the default step.
     pub default_at: f64,
-    /// Gates on the largest stable step over the theoretical limit.
-    pub of_theory: Vec<Gate>,
-    /// Gates on the largest stable step over the default one.
-    pub of_default: Vec<Gate>,
+    /// A gate on the largest stable step over the theoretical limit.
+    pub gate: Option<Gate>,
 }
 
 /// Which errors of the constants of a case the gates of some of its runs must detect.
@@ -489,9 +488,7 @@ pub struct Curves {
     pub title: String,
     /// Caption of the figure.
     pub caption: String,
-    /// Panels a row.
-    pub columns: usize,
-    /// The panels.
+    /// The panels, as many a row as there are rows.
     pub panels: Vec<CurvePanel>,
 }
 
@@ -517,9 +514,9 @@ pub struct CurvePanel {
     pub y: Axis,
     /// Curves of runs.
     pub lines: Vec<CurveOf>,
-    /// Curves of references: name and points.
+    /// Curves of references: name and points. What has no name is drawn as a guide.
     pub references: Vec<(String, Vec<(f64, f64)>)>,
-    /// Are lines drawn as symbols, one colour with the reference of the same position?
+    /// Are curves of runs drawn as symbols?
     pub symbols: bool,
 }
 

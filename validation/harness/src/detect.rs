@@ -132,7 +132,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Planned, Variant},
+        case::{Best, Planned, Variant},
         declare::Declaration,
         runs::Runs,
         study::Study,
@@ -146,6 +146,12 @@ mod tests {
     struct Balance;
 
     impl Case for Balance {
+        fn family(&self) -> &'static str {
+            ""
+        }
+        fn best(&self) -> Best {
+            Best { variant: "only", because: "it is staged", papers: None }
+        }
         fn name(&self) -> &'static str {
             "balance"
         }

@@ -492,7 +492,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Variant, spec},
+        case::{Best, Variant, spec},
         runs::Runs,
         study::Study,
         suite,
@@ -504,6 +504,12 @@ mod tests {
     const ERROR: MetricKey = MetricKey::new("error", "-", "as staged");
 
     impl Case for Quick {
+        fn family(&self) -> &'static str {
+            ""
+        }
+        fn best(&self) -> Best {
+            Best { variant: "v", because: "it is staged", papers: None }
+        }
         fn name(&self) -> &'static str {
             "quick"
         }

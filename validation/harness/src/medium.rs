@@ -52,22 +52,12 @@ impl Medium {
     /// With the values that settings have by the names of [`Knob`]s.
     #[must_use]
     pub fn set_by(mut self, settings: &impl Settings) -> Self {
-        let parameters = [
-            (Knob::Eta2, &mut self.eta2_over_h2),
-            (Knob::Alpha, &mut self.alpha),
-            (Knob::Beta, &mut self.beta),
-            (Knob::Xsph, &mut self.xsph),
-            (Knob::Xi, &mut self.xi),
-            (Knob::Diffusion, &mut self.diffusion),
-            (Knob::Shift, &mut self.shift),
-        ];
-        for (knob, parameter) in parameters {
-            if let Some(Value::Real(value)) = settings.get(knob.name()) {
-                *parameter = value;
+        for (_, name, set) in Knob::ALL {
+            match settings.get(name) {
+                Some(Value::Real(value)) => set(&mut self, value),
+                Some(Value::Count(value)) => set(&mut self, value as f64),
+                _ => {}
             }
-        }
-        if let Some(Value::Count(exponent)) = settings.get(Knob::Exponent.name()) {
-            self.exponent = exponent as u32;
         }
         self
     }
@@ -115,28 +105,27 @@ pub enum Knob {
     WallGravity,
 }
 
-impl Knob {
-    const ALL: [(Self, &'static str); 10] = [
-        (Self::Eta2, "eta2_over_h2"),
-        (Self::Alpha, "alpha"),
-        (Self::Beta, "beta"),
-        (Self::Xsph, "xsph"),
-        (Self::Xi, "xi"),
-        (Self::Exponent, "exponent"),
-        (Self::Diffusion, "diffusion"),
-        (Self::Shift, "shift"),
-        (Self::WallCurvature, "wall_curvature"),
-        (Self::WallGravity, "wall_gravity"),
-    ];
+/// Puts a number where a medium has it.
+type Set = fn(&mut Medium, f64);
 
-    /// Its name among the settings.
-    pub fn name(self) -> &'static str {
-        Self::ALL[self as usize].1
-    }
+impl Knob {
+    /// All of them with their names among the settings, and where a medium has the numbers.
+    const ALL: [(Self, &'static str, Set); 10] = [
+        (Self::Eta2, "eta2_over_h2", |medium, value| medium.eta2_over_h2 = value),
+        (Self::Alpha, "alpha", |medium, value| medium.alpha = value),
+        (Self::Beta, "beta", |medium, value| medium.beta = value),
+        (Self::Xsph, "xsph", |medium, value| medium.xsph = value),
+        (Self::Xi, "xi", |medium, value| medium.xi = value),
+        (Self::Exponent, "exponent", |medium, value| medium.exponent = value as u32),
+        (Self::Diffusion, "diffusion", |medium, value| medium.diffusion = value),
+        (Self::Shift, "shift", |medium, value| medium.shift = value),
+        (Self::WallCurvature, "wall_curvature", |_, _| {}),
+        (Self::WallGravity, "wall_gravity", |_, _| {}),
+    ];
 
     /// The names of all settings but these.
     pub fn others(uses: &[Self]) -> impl Iterator<Item = &'static str> {
-        let others = Self::ALL.into_iter().filter(|(knob, _)| !uses.contains(knob));
-        others.map(|(_, name)| name)
+        let others = Self::ALL.into_iter().filter(|(knob, ..)| !uses.contains(knob));
+        others.map(|(_, name, _)| name)
     }
 }

@@ -1,14 +1,17 @@
-//! The order at which an error falls as something is refined, for studies of one case alone: a figure with a
-//! panel for each refinement, one table, and a gate a line.
+//! The order at which an error falls as something is refined: columns of a table and a panel of a figure for
+//! any study, and a whole study for those of one case alone.
 
 use base::gate::Gate;
 use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
-    convergence::{Convergence, Level, convergence},
+    convergence::{Convergence, Label, Level, convergence},
     study::Study,
 };
+
+/// An order, or why there is none.
+pub type Found = Result<Convergence, String>;
 
 /// Something that is refined.
 pub struct Refinement {
@@ -26,17 +29,11 @@ pub struct Refinement {
 pub struct Line {
     /// Name of the variant.
     pub name: &'static str,
-    /// What else tells it from others, in a word.
-    pub kind: &'static str,
     /// Errors, coarse to fine.
     pub levels: Vec<Level>,
-    /// The order that theory expects.
-    pub expected: &'static str,
     /// Judges the order.
     pub gate: Gate,
 }
-
-type Found = Result<Convergence, String>;
 
 /// Adds the figure, the table and the judged orders to a study; lines that `is_drawn` refuses are not drawn.
 pub fn study(
@@ -46,39 +43,73 @@ pub fn study(
     is_drawn: fn(&Line) -> bool,
 ) -> Study {
     let panel = |(k, of): (usize, &Refinement)| {
-        let plot = Plot::new(of.title, Axis::log(of.axes[0]), Axis::log(of.axes[1]));
-        let plot = plot.legend(if k == 0 { Legend::Outside } else { Legend::Hidden });
-        let lines = of.lines.iter().filter(|line| is_drawn(line)).enumerate();
-        let plot = lines.fold(plot, |plot, (k, line)| {
-            let points = line.levels.iter().map(|level| (level.spacing, level.value)).collect();
-            plot.layer(Series::line_markers(line.name, points).cycle(k))
-        });
-        of.slopes.iter().fold(plot, |plot, order| plot.layer(Layer::Slope(*order)))
+        let drawn = of.lines.iter().filter(|line| is_drawn(line));
+        let lines = drawn.map(|line| (line.name, line.levels.as_slice()));
+        let legend = if k == 0 { Legend::Outside } else { Legend::Hidden };
+        plot(of.title, of.axes, lines, of.slopes).legend(legend)
     };
     let panels = all.iter().enumerate().map(panel);
     let figure = Figure::new(study.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
-    let rows: Vec<(&str, &Line, Found)> = all
+    type Row<'a> = (&'a str, &'a Line, Found);
+    let rows: Vec<Row> = all
         .iter()
         .flat_map(|of| of.lines.iter().map(|line| (of.title, line, convergence(&line.levels))))
         .collect();
-    let shown = |show: fn(&Convergence) -> String| {
-        move |(.., found): &(_, _, Found)| Cell::text(found.as_ref().map_or("–".into(), show))
-    };
-    let errors = |(_, line, _): &(_, &Line, _)| {
-        let errors: Vec<String> = line.levels.iter().map(|level| sig(level.value, 3)).collect();
-        errors.join(", ")
-    };
-    let table = Columns::default()
-        .text("refined", |(title, ..): &(&str, &Line, Found)| *title)
+    let errors = |(_, line, _): &Row| listed(line.levels.iter().map(|level| level.value), 3);
+    let table = Columns::<Row>::default()
+        .text("refined", |(title, ..)| *title)
         .code("variant", |(_, line, _)| line.name)
-        .text("kind", |(_, line, _)| line.kind)
         .text("errors, coarse to fine", errors)
-        .num(["order", "-"], shown(|c| sig(c.order, 3)))
-        .num(["95 % interval", "-"], shown(|c| c.interval.map(|end| sig(end, 2)).join(" … ")))
-        .num(["expected", "-"], |(_, line, _)| Cell::text(line.expected))
+        .order(|(.., found)| found)
         .table(table, &rows);
     let study = study.block(panels.fold(figure, Figure::panel)).block(table);
     rows.into_iter().fold(study, |study, (_, line, found)| {
         study.judge(line.gate.clone(), found.map_or(f64::NAN, |found| found.order))
     })
+}
+
+/// Errors over what is refined, by the name of each line, and orders as slopes.
+pub fn plot<'a>(
+    title: &str,
+    [x, y]: [&str; 2],
+    lines: impl Iterator<Item = (&'a str, &'a [Level])>,
+    slopes: &[f64],
+) -> Plot {
+    let series = |(k, (name, levels)): (usize, (&str, &[Level]))| {
+        let usable = levels.iter().filter(|level| level.value.is_finite());
+        let points = usable.map(|level| (level.spacing, level.value)).collect();
+        Series::line_markers(name, points).cycle(k)
+    };
+    let plot = Plot::new(title, Axis::log(x), Axis::log(y));
+    let plot = lines.enumerate().map(series).fold(plot, Plot::layer);
+    slopes.iter().fold(plot, |plot, order| plot.layer(Layer::Slope(*order)))
+}
+
+/// Numbers with so many digits, one after the other.
+fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {
+    numbers.map(|number| sig(number, digits)).collect::<Vec<_>>().join(", ")
+}
+
+impl<'a, T> Columns<'a, T> {
+    /// More columns: the order of an item, how sure it is, and whether to believe it.
+    #[must_use]
+    pub fn order(self, found: impl Fn(&T) -> &Found + Copy + 'a) -> Self {
+        let of = |show: fn(&Convergence) -> String| {
+            move |item: &T| found(item).as_ref().map_or("–".into(), show)
+        };
+        let order = of(|of| format!("{} ± {}", sig(of.order, 3), sig(of.standard_error, 2)));
+        let label = move |item: &T| match found(item) {
+            Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
+            Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
+            Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
+            Err(error) => format!("no order: {error}"),
+        };
+        self.num(["order ± standard error", "-"], move |item| Cell::text(order(item)))
+            .text("95 % interval", of(|of| of.interval.map(|end| sig(end, 2)).join(" … ")))
+            .text(
+                "local orders, coarse to fine",
+                of(|of| listed(of.local_orders.iter().copied(), 2)),
+            )
+            .text("label", label)
+    }
 }

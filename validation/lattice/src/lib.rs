@@ -5,18 +5,9 @@ pub mod operators;
 pub mod resting_box;
 pub mod wave;
 
-use harness::{case::Case, context::Context, method::*};
+use harness::{context::Context, method::*};
 use nalgebra::Vector2;
 use solver::{Domain, Particle};
-
-/// The cases of the family.
-pub const CASES: &[&dyn Case] = &[
-    &wave::ACOUSTIC_WAVE,
-    &wave::SHEAR_WAVE,
-    &resting_box::RESTING_BOX,
-    &operators::OPERATORS,
-    &extremes::EXTREMES,
-];
 
 /// A periodic square with this side \[m\] and n × n particles. `start` gives a particle's place and velocity
 /// from its place on the lattice, first counted in spacings and then in metres.

@@ -289,8 +289,7 @@ fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
         theory: s.courant * h(&s),
         theory_at: s.courant,
         default_at: BoxSettings::default().courant,
-        of_theory: run.gates,
-        of_default: Vec::new(),
+        gate: run.gates.into_iter().next(),
     }
 }
 

@@ -30,17 +30,14 @@ use harness::{
 use serde_json::{Value, json};
 use validation::cases;
 
-use super::{
-    Exit, Failure, Outcome, World, arguments, judged, list::default_variant, output,
-    summary::outcome,
-};
+use super::{Exit, Failure, Outcome, World, arguments, judged, output, summary::outcome};
 
 /// More than this is no description of a method \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
 pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Result<(), Failure> {
     let case = cases::find_in(world.cases, &arguments.case)?;
-    let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
     let problem = Problem::seen(case, spec, arguments.relation)?;
     let folder = OutputFolder::create(&arguments.out)?;
@@ -139,7 +136,7 @@ fn series(case: &dyn Case, record: &Record) -> Result<Option<CsvTable>, Failure>
 
 pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
     let case = cases::find_in(world.cases, &arguments.case)?;
-    let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
     let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
         Failure::usage(format!("cannot read {}: {reason}", arguments.method.display()))
     })?;
@@ -270,7 +267,7 @@ fn problem(
         }
         Some(asked) => spec_of(case, asked)?,
         None => {
-            let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+            let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
             case::spec(case, variant, &arguments.set)?
         }
     };

@@ -7,12 +7,6 @@ use validation::cases;
 
 use super::{Failure, World, arguments, output};
 
-/// The variant that runs unless another one is named: the best one of the case, if that is known.
-pub fn default_variant(case: &dyn Case) -> &'static str {
-    let first = || case.variants().first().map_or("", |variant| variant.name);
-    case.best().map_or_else(first, |best| best.variant)
-}
-
 pub fn list(arguments: &arguments::List, world: &World) -> Result<(), Failure> {
     let Some(name) = &arguments.case else {
         let all = || world.cases.iter().map(|case| json(*case)).collect();
@@ -25,16 +19,17 @@ pub fn list(arguments: &arguments::List, world: &World) -> Result<(), Failure> {
 /// A line a case: the problem, and the variants for it; then why each is the best.
 fn overview(world: &World) -> String {
     let row = |case: &&dyn Case| {
-        let papers = case.best().and_then(|best| best.papers).unwrap_or_default();
-        [case.name(), case.problem(), default_variant(*case), papers].map(String::from).to_vec()
+        let Best { variant, papers, .. } = case.best();
+        let names = [case.name(), case.problem(), variant, papers.unwrap_or_default()];
+        names.map(String::from).to_vec()
     };
     let heads = ["case", "problem", "best variant", "the paper's"];
     let reason = |case: &&dyn Case| {
-        let Best { variant, because, .. } = case.best()?;
+        let Best { variant, because, .. } = case.best();
         let words = format!("{} {variant}: {because}", case.name());
-        Some(format!("  {}", output::wrap(&words, "    ").trim_start()))
+        format!("  {}", output::wrap(&words, "    ").trim_start())
     };
-    let reasons: String = world.cases.iter().filter_map(reason).collect();
+    let reasons: String = world.cases.iter().map(reason).collect();
     output::table(&heads, world.cases.iter().map(row))
         + "\nThe best variant runs unless another one is named. It is the best because\n"
         + &reasons
@@ -45,9 +40,8 @@ fn overview(world: &World) -> String {
 /// What a variant is, in words.
 fn marks(case: &dyn Case, variant: &str) -> &'static str {
     match case.best() {
-        Some(best) if best.variant == variant => " (runs by default, best)",
-        Some(best) if best.papers == Some(variant) => " (the paper's)",
-        None if default_variant(case) == variant => " (runs by default)",
+        best if best.variant == variant => " (runs by default, best)",
+        best if best.papers == Some(variant) => " (the paper's)",
         _ => "",
     }
 }
@@ -63,10 +57,8 @@ fn details(case: &dyn Case) -> String {
             text += &output::wrap(&differs, &" ".repeat(21));
         }
     }
-    if let Some(best) = case.best() {
-        let reason = format!("`{}` is the best: {}", best.variant, best.because);
-        text += &output::wrap(&reason, "  ");
-    }
+    let Best { variant, because, .. } = case.best();
+    text += &output::wrap(&format!("`{variant}` is the best: {because}"), "  ");
     let row = |field: &Field| {
         vec![field.name.into(), (field.default)().to_string(), field.range.into(), field.doc.into()]
     };
@@ -100,10 +92,10 @@ fn json(case: &dyn Case) -> Value {
     let best = case.best();
     json!({
         "name": case.name(), "problem": case.problem(), "about": case.about(),
-        "default_variant": default_variant(case),
-        "best_variant": best.map(|best| best.variant),
-        "best_because": best.map(|best| best.because),
-        "papers_variant": best.and_then(|best| best.papers),
+        "default_variant": best.variant,
+        "best_variant": best.variant,
+        "best_because": best.because,
+        "papers_variant": best.papers,
         "variants": case.variants().iter().map(variant).collect::<Value>(),
         "settings": case.fields().iter().map(setting).collect::<Value>(),
     })

@@ -238,7 +238,7 @@ const SOURCE: Source = Source {
 
 /// The digest of the sources of the family that a case belongs to.
 fn sources(case: &str) -> String {
-    let family = cases::family(case).unwrap_or_default();
+    let family = cases::find(case).map_or("", |case| case.family());
     let digests = env!("TOUCHSTONE_SOURCES").split(' ').filter_map(|of| of.split_once('='));
     let digest = digests.into_iter().find(|(name, _)| *name == family);
     digest.map_or(UNKNOWN, |(_, digest)| digest).into()

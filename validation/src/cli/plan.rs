@@ -25,9 +25,7 @@ use harness::{
 use rayon::prelude::*;
 use validation::cases;
 
-use super::{
-    Exit, Failure, Outcome, World, arguments, list::default_variant, output, tell, trouble,
-};
+use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
 
 pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
     let cases = world.choose(&arguments.cases)?;
@@ -72,7 +70,7 @@ fn sweep(
     set: &[String],
     world: &World,
 ) -> Result<Vec<Job>, Failure> {
-    let default = [default_variant(case).to_string()];
+    let default = [case.best().variant.to_string()];
     let variants = if variants.is_empty() { &default } else { variants };
     let values = |assignment: &String| assignment.matches(',').count() as f64 + 1.0;
     let count = variants.len() as f64 * set.iter().map(values).product::<f64>();

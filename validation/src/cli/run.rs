@@ -31,9 +31,7 @@ use super::{
     Exit, Failure, Outcome, World, arguments,
     checkpoint::{self, Asked, CHECKPOINT},
     interrupt::Hold,
-    judged,
-    list::default_variant,
-    on_threads, output, profile,
+    judged, on_threads, output, profile,
     progress::Bar,
     summary::outcome,
 };
@@ -52,7 +50,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     world.check_references(&[case])?;
-    let variant = arguments.variant.as_deref().unwrap_or_else(|| default_variant(case));
+    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
     let mut spec = case::spec(case, variant, &set(arguments)?)?;
     spec.allow_unstable = arguments.allow_unstable;
     spec.measure = arguments.metrics;

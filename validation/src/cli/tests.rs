@@ -17,7 +17,7 @@ use base::{
 };
 use clap::Parser;
 use harness::{
-    case::{self, Case, Planned, RunError, Tier, Variant},
+    case::{self, Best, Case, Planned, RunError, Tier, Variant},
     context::Context,
     declare::{Card, Declaration},
     make::{self, Made, Making},
@@ -46,6 +46,12 @@ fn gate(of: &str, metric: &str) -> Gate {
 }
 
 impl Case for Staged {
+    fn family(&self) -> &'static str {
+        ""
+    }
+    fn best(&self) -> Best {
+        Best { variant: "right", because: "it is staged", papers: None }
+    }
     fn name(&self) -> &'static str {
         self.name
     }
@@ -687,7 +693,7 @@ fn the_next_run_has_half_the_spacing() {
     for (name, finer) in [("rubber_rings", "spacing=0.05"), ("dam_break", "n=40")] {
         let case = cases::find(name).expect("a case");
         let declared = case.declaration(Tier::Quick);
-        let spec = case::spec(case, super::list::default_variant(case), &[]).expect("settings");
+        let spec = case::spec(case, case.best().variant, &[]).expect("settings");
         let words = super::summary::finer(case, &declared, &spec);
         assert!(words.as_ref().is_some_and(|words| words.ends_with(finer)), "{name}: {words:?}");
     }
@@ -697,14 +703,12 @@ fn the_next_run_has_half_the_spacing() {
 #[test]
 fn a_plain_run_is_of_the_best_variant_and_list_says_why() {
     for case in cases::CASES {
-        let (name, best) = (case.name(), case.best().expect("a best variant"));
+        let (name, best) = (case.name(), case.best());
         for variant in [Some(best.variant), best.papers].into_iter().flatten() {
             let is_one = case.variants().iter().any(|one| one.name == variant);
             assert!(is_one, "{name} has no variant {variant}, which its declaration names");
         }
-        let default = super::list::default_variant(*case);
-        assert_eq!(default, best.variant, "a plain run of {name} is of its best variant");
-        assert!(best.because.len() > 30, "why {default} is the best of {name}: {:?}", best.because);
+        assert!(best.because.len() > 30, "why it is the best of {name}: {:?}", best.because);
         let card = case.declaration(Tier::Quick).card;
         let shown = card.map(|card| card.runs.into_iter().map(|spec| spec.variant));
         let shown: Vec<String> = shown.into_iter().flatten().collect();
@@ -712,7 +716,7 @@ fn a_plain_run_is_of_the_best_variant_and_list_says_why() {
         assert!(shown.is_empty() || shown == named, "{name}: {shown:?} on the card, not {named:?}");
     }
     let bar = cases::find("elastic_bar").expect("a case");
-    let spec = case::spec(bar, super::list::default_variant(bar), &[]).expect("settings");
+    let spec = case::spec(bar, bar.best().variant, &[]).expect("settings");
     let record = bar.run(&spec, &Context::default()).expect("a run");
     let error = record.metrics["travel_error"].value;
     assert!(error.abs() < 2e-3, "a pulse in a plain bar comes {error} of its time late, not 0.002");

@@ -137,7 +137,6 @@ fn curves(flow: Flow) -> Curves {
             "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
              (left) and `{best}` (right). Symbols are means over a row, and lines the exact series."
         ),
-        columns: 2,
         panels: vec![panel("seed"), panel(best)],
     }
 }
@@ -238,16 +237,15 @@ fn limit(flow: Flow, variant: &'static str) -> StepLimit {
         Flow::Poiseuille => format!("poiseuille.time-step.{variant}"),
     };
     let because = "The default time step must be below the measured limit of stability.";
-    let (id, metric) = (format!("{name}.stable"), "longest stable dt/default dt");
-    let stable = Gate::new(id, metric, Bound::Above(1.0), Evidence::Theory, because);
+    let (id, bound) = (format!("{name}.stable"), Bound::Above(rules.dt() / theory));
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
     StepLimit {
         scene: "20 rows".into(),
         spec: spec.bisect(bisect),
         theory,
         theory_at: theory,
         default_at: rules.dt(),
-        of_theory: Vec::new(),
-        of_default: vec![stable],
+        gate: Some(gate),
     }
 }
 
@@ -323,8 +321,8 @@ mod tests {
     /// The gates of a variant whose default settings were refused were not there at all.
     #[test]
     fn a_variant_that_is_refused_keeps_its_gates() {
-        let refused = limit(Flow::Couette, "no such variant");
-        assert_eq!(refused.of_default[0].id, "stability.default.no such variant.stable");
-        assert!(refused.of_default[0].judge(None).verdict.is_failure());
+        let gate = limit(Flow::Couette, "no such variant").gate.expect("a gate");
+        assert_eq!(gate.id, "stability.default.no such variant.stable");
+        assert!(gate.judge(None).verdict.is_failure());
     }
 }

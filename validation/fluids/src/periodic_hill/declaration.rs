@@ -136,7 +136,7 @@ fn profiles(table: &Table) -> Curves {
         panels.push(shear(&rows, reference));
     }
     let (id, title) = ("periodic-hill-profiles".into(), "Profiles over finite elements".into());
-    Curves { id, title, caption: caption.into(), columns: 2, panels }
+    Curves { id, title, caption: caption.into(), panels }
 }
 
 /// The velocity along the channel, every tenth point of a station.
@@ -208,10 +208,8 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
     let theory = "The default step is stable, and disorder makes neither sound slower nor the stencil \
                   softer by a fifth.";
     let (id, bound) = (format!("{NAME}.step.{variant}.theory"), Bound::Within(default, 1.2));
-    StepLimit {
-        of_theory: vec![Gate::new(id, "measured/theory", bound, Evidence::Theory, theory)],
-        ..StepLimit::proportional(&scene, spec, at_limit, &rules)
-    }
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, theory);
+    StepLimit::proportional(&scene, spec, at_limit, &rules, Some(gate))
 }
 
 const BOUNDS: &str = "The error of the method at ten spacings a hill takes up most of the bounds.";

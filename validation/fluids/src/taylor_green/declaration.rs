@@ -80,7 +80,7 @@ fn histories(table: &Table) -> Curves {
     let panel = CurvePanel::linear("", axes, shown.map(line).collect(), bound);
     let panel = CurvePanel { y: Axis::log(axes[1]), ..panel };
     let (id, title) = ("taylor-green-histories".into(), "Error through time".into());
-    Curves { id, title, caption: caption.into(), columns: 1, panels: vec![panel] }
+    Curves { id, title, caption: caption.into(), panels: vec![panel] }
 }
 
 /// The error over time, without the start, at which there is none.

@@ -27,13 +27,15 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     let compared = validation::line(&declared.comparisons, runs);
     facts.extend(compared.map(|text| ("Comparisons by V&V 20:".into(), text)));
     facts.extend(reach(card, runs).map(|text| ("Completed for".into(), text)));
+    // The two causes that most gates share.
+    let causes = by_cause(judged.iter().copied(), |judged| judged).into_iter().take(2);
     Some(Card {
         id: case.into(),
         title: card.title.into(),
         picture: picture(card.picture, studies),
         facts,
         counts: Counts::of(judged.iter().map(|judged| judged.judgement.verdict)),
-        limitations: main_limitations(&judged),
+        limitations: causes.map(|(cause, _)| cause.what.to_string()).collect(),
     })
 }
 
@@ -112,10 +114,4 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
     let mut small = Figure::new(format!("{id}-small"), figure.caption.clone());
     small.panels.push(panel);
     Some(small.panel_size(150.0, 90.0))
-}
-
-/// The two causes that most gates share.
-fn main_limitations(judged: &[&Judged]) -> Vec<String> {
-    let causes = by_cause(judged.iter().copied(), |judged| judged);
-    causes.into_iter().take(2).map(|(cause, _)| cause.what.to_string()).collect()
 }

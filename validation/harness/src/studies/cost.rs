@@ -2,16 +2,16 @@
 //! reach an error with the least work, in seconds of a run that was made alone, and in pair interactions,
 //! which do not depend on the machine or on other programs.
 
-use base::record::{Status, median};
+use base::record::median;
 use report::{
-    Axis, Cell, Colour, Figure, Layer, Legend, Plot, Series, Table, exact, first_sentence, percent,
-    sig,
+    Axis, Cell, Colour, Figure, Legend, Plot, Series, Table, exact, first_sentence, percent,
 };
 
 use crate::{
     columns::Columns,
-    convergence::{Convergence, Label, Level, convergence},
+    convergence::{Level, convergence},
     declare::{Accuracy, Ladder, error_of},
+    orders::{self, Found},
     runs::Runs,
     study::Study,
 };
@@ -29,8 +29,6 @@ struct Point {
     seconds: Vec<f64>,
     /// Pair interactions.
     pairs: f64,
-    /// Did the run end early?
-    has_failed: bool,
 }
 
 impl Point {
@@ -60,7 +58,6 @@ fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
             error: error.unwrap_or(f64::NAN),
             seconds,
             pairs: record.map_or(f64::NAN, |record| record.cost.pair_interactions as f64),
-            has_failed: record.is_some_and(|record| record.status != Status::Completed),
         }
     });
     of.collect()
@@ -99,8 +96,8 @@ const GOALS: [f64; 2] = [1e-2, 1e-3];
 struct Row<'a> {
     of: &'a Ladder,
     points: Vec<Point>,
-    /// Its order, or why it has none.
-    found: Result<Convergence, String>,
+    levels: Vec<Level>,
+    found: Found,
 }
 
 /// The study of the errors of all ladders.
@@ -108,8 +105,9 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let row = |of| {
         let points = points(accuracy, of, runs);
         let level = |point: &Point| Level { spacing: point.spacing, value: point.error };
-        let found = convergence(&points.iter().map(level).collect::<Vec<_>>());
-        Row { of, points, found }
+        let levels: Vec<Level> = points.iter().map(level).collect();
+        let found = convergence(&levels);
+        Row { of, points, levels, found }
     };
     let rows: Vec<Row> = accuracy.ladders.iter().map(row).collect();
     let id = format!("{}-work-precision", accuracy.id);
@@ -124,49 +122,20 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
 /// Error over spacing, over run time and over work.
 fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
     let slope = accuracy.slope.map(|order| format!(" The triangle shows order {}.", exact(order)));
-    let failed = rows.iter().flat_map(|row| {
-        let points = row.points.iter().filter(|point| point.has_failed);
-        points.map(|point| format!("{}, {}", row.of.variant, point.label))
-    });
-    let failed = match failed.collect::<Vec<_>>() {
-        failed if failed.is_empty() => String::new(),
-        failed => format!(" Runs that failed: {}.", failed.join("; ")),
-    };
     let caption = format!(
-        "{} {} over spacing (left), run time on one core (middle) and work (right).{}{failed}",
+        "{} Over spacing (left), run time on one core (middle) and work (right): {}.{}",
         first_sentence(&accuracy.about).0,
-        name_of_error(&accuracy.label),
+        accuracy.label,
         slope.unwrap_or_default(),
     );
+    let axes = [accuracy.spacing, accuracy.label.as_str()];
+    let lines = rows.iter().map(|row| (row.of.variant, row.levels.as_slice()));
+    let spacing = orders::plot("Error against spacing", axes, lines, accuracy.slope.as_slice());
     let clock = panel("Error against run time", "run time on one core [s]", rows, Point::median);
     let counted = panel("Error against work", "pair interactions [-]", rows, |p| p.pairs);
-    let panels = [orders(accuracy, rows), clock, counted];
+    let panels = [spacing.legend(Legend::Hidden), clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
-}
-
-/// Error over spacing.
-fn orders(accuracy: &Accuracy, rows: &[Row]) -> Plot {
-    let axes = (Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
-    let plot = Plot::new("Error against spacing", axes.0, axes.1).legend(Legend::Hidden);
-    let plot = rows.iter().enumerate().fold(plot, |plot, (k, row)| {
-        let usable = row.points.iter().filter(|p| p.error.is_finite());
-        let line = usable.map(|p| (p.spacing, p.error)).collect();
-        plot.layer(Series::line_markers(row.of.variant, line).cycle(k))
-    });
-    accuracy.slope.into_iter().map(Layer::Slope).fold(plot, Plot::layer)
-}
-
-/// The label of an axis without the mark of a number without unit, as the beginning of a sentence.
-fn name_of_error(label: &str) -> String {
-    let name = label.trim_end_matches(" [-]");
-    let mut letters = name.chars();
-    // An abbreviation or a symbol stays as it is.
-    let is_word = name.split(' ').next().is_some_and(|word| word.len() > 3);
-    match letters.next().filter(|_| is_word) {
-        Some(first) => first.to_uppercase().chain(letters).collect(),
-        None => format!("The {name}"),
-    }
 }
 
 /// The first number of a resolution in words.
@@ -203,30 +172,9 @@ const TIMES: &str = "Times are the least median run time on one core of a level 
 /// Orders, intervals, and what errors cost.
 fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
     let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
-    let of = |show: fn(&Convergence) -> String| {
-        move |row: &Row| row.found.as_ref().map_or("–".into(), show)
-    };
-    let order = of(|found| format!("{} ± {}", sig(found.order, 3), sig(found.standard_error, 2)));
-    let interval = of(|found| {
-        let [low, high] = found.interval.map(|end| sig(end, 2));
-        format!("{low} … {high}")
-    });
-    let local = of(|found| {
-        let orders: Vec<String> = found.local_orders.iter().map(|p| sig(*p, 2)).collect();
-        orders.join(", ")
-    });
-    let label = |row: &Row| match &row.found {
-        Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
-        Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
-        Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
-        Err(error) => format!("no order: {error}"),
-    };
     let columns = Columns::default()
         .code("variant", |row: &Row| row.of.variant)
-        .num(["order ± standard error", "-"], move |row| Cell::text(order(row)))
-        .text("95 % interval", interval)
-        .text("local orders, coarse to fine", local)
-        .text("label", label)
+        .order(|row: &Row| &row.found)
         .of(
             ["finest error", "-"],
             |row| row.points.last().map_or(f64::NAN, |p| p.error),
@@ -252,7 +200,7 @@ mod tests {
 
     fn point(label: &str, error: f64, seconds: &[f64]) -> Point {
         let (label, seconds) = (label.into(), seconds.to_vec());
-        Point { spacing: 0.1, label, error, seconds, pairs: 1.0, has_failed: false }
+        Point { spacing: 0.1, label, error, seconds, pairs: 1.0 }
     }
 
     #[test]
@@ -300,12 +248,6 @@ mod tests {
         // A failure has no error, so what is coarser than it does not count either.
         let failed = Point { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
         assert!(cheapest(&[point("failed later", 1e-3, &[1.0]), failed], 1e-2).is_nan());
-    }
-
-    #[test]
-    fn captions_begin_with_a_whole_sentence() {
-        assert_eq!(name_of_error("relative error of u [-]"), "Relative error of u");
-        assert_eq!(name_of_error("rms error of u [U_b]"), "The rms error of u [U_b]");
     }
 
     #[test]

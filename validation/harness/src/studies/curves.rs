@@ -9,7 +9,8 @@ use crate::{
 };
 
 pub fn study(curves: &Curves, runs: &Runs) -> Study {
-    let figure = Figure::new(&curves.id, &curves.caption).columns(curves.columns);
+    let columns = (curves.panels.len() as f64).sqrt().ceil() as usize;
+    let figure = Figure::new(&curves.id, &curves.caption).columns(columns.max(1));
     let mut names: Vec<&str> = Vec::new();
     for line in curves.panels.iter().flat_map(|panel| &panel.lines) {
         if !names.contains(&line.name.as_str()) {
@@ -24,14 +25,10 @@ pub fn study(curves: &Curves, runs: &Runs) -> Study {
 /// A name has one colour in all panels, which is that of its position among `names`.
 fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     let mut plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
-    let has_partners = of.symbols && of.references.len() >= of.lines.len();
-    for (k, (name, points)) in of.references.iter().enumerate() {
-        let is_partner = has_partners && k < of.lines.len();
-        let line = Series::line(if is_partner { "" } else { name }, points.clone());
-        plot = plot.layer(match is_partner {
-            true => line.colour(Colour::cycle(k)),
-            // A guide.
-            false if name.is_empty() => line.colour(Colour::GREY).width(0.8),
+    for (name, points) in &of.references {
+        let line = Series::line(name, points.clone());
+        plot = plot.layer(match name.is_empty() {
+            true => line.colour(Colour::GREY).width(0.8),
             false => line.colour(Colour::BLACK),
         });
     }
@@ -83,7 +80,6 @@ mod tests {
             id: "case-curves".into(),
             title: "Curves".into(),
             caption: "Made up.".into(),
-            columns: 2,
             panels,
         };
         let runs = runs([(spec("seed", 1), 1.5), (spec("best", 1), 2.5)]);
@@ -123,28 +119,16 @@ mod tests {
     }
 
     #[test]
-    fn symbols_have_the_colour_of_the_line_at_the_same_place() {
-        let both = || vec![line("", "seed", 1), line("", "best", 1)];
-        let panels = drawn(vec![
-            panel_of(both(), &["one", "two", "guide"], true),
-            panel_of(both(), &["one"], true),
-        ]);
-        let colours = |panel: &[Drawn]| -> Vec<(String, Option<Colour>, bool)> {
-            panel.iter().map(|(name, _, colour, marks)| (name.clone(), *colour, *marks)).collect()
-        };
-        let is = |name: &str, colour, marks| (name.to_string(), Some(colour), marks);
-        let [first, second] = [0, 1].map(Colour::cycle);
-        assert_eq!(
-            colours(&panels[0]),
-            [
-                is("", first, false),
-                is("", second, false),
-                is("guide", Colour::BLACK, false),
-                is("", first, true),
-                is("", second, true)
-            ]
-        );
-        // One line for two runs is nobody's partner.
-        assert_eq!(colours(&panels[1])[0], is("one", Colour::BLACK, false));
+    fn symbols_stand_on_grey_lines_that_have_no_name() {
+        let both = vec![line("", "seed", 1), line("", "best", 1)];
+        let panels = drawn(vec![panel_of(both, &["", "exact"], true)]);
+        let shown = panels[0].iter().map(|(_, _, colour, is_marks)| (*colour, *is_marks));
+        let expected = [
+            (Colour::GREY, false),
+            (Colour::BLACK, false),
+            (Colour::cycle(0), true),
+            (Colour::cycle(1), true),
+        ];
+        assert!(shown.eq(expected.map(|(colour, is_marks)| (Some(colour), is_marks))));
     }
 }

@@ -201,13 +201,9 @@ fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
         let until: Curve = curve.iter().filter(|(t, _)| *t <= end).copied().collect();
         Series::line("", until).colour(Colour::BLACK).width(0.8)
     });
-    let least = quantiles.iter().map(|(_, all)| all[0]).fold(0.0, f64::min);
-    let most = quantiles.iter().map(|(_, all)| all[4]).fold(least, f64::max);
-    let shown = measured.clone().flat_map(|series| series.points);
-    let top = 1.05 * shown.map(|(_, y)| y).fold(most, f64::max);
-    let axes = (Axis::linear(format!("{time} [{unit}]")), Axis::linear(&followed.of.name));
-    let x = if end > 0.0 { axes.0.range(0.0, end) } else { axes.0 };
-    let y = if top > least { axes.1.range(least, top) } else { axes.1 };
+    let least = quantiles.iter().map(|(_, all)| all[0]).fold(f64::NAN, f64::min);
+    let most = quantiles.iter().map(|(_, all)| all[4]).fold(f64::NAN, f64::max);
+    let (x, y) = (Axis::linear(format!("{time} [{unit}]")), Axis::linear(&followed.of.name));
     let mut plot = Plot::new(title, x, y)
         .layer(Layer::band("", band([0, 4]), Colour::GREY))
         .layer(Layer::band("", band([1, 3]), Colour::BLUE))
@@ -216,7 +212,7 @@ fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
     if let Ok(Horizon { time, .. }) = &followed.horizon
         && time.is_finite()
     {
-        let line = Series::line("", vec![(*time, least), (*time, top)]).dash(Dash::Dashed);
+        let line = Series::line("", vec![(*time, least), (*time, most)]).dash(Dash::Dashed);
         plot = plot.layer(line.colour(Colour::VERMILLION).width(1.0));
     }
     plot.legend(Legend::Hidden)

@@ -27,11 +27,8 @@ pub fn study(case: &str, limits: &StepLimits, runs: &Runs) -> Study {
         .num(["measured/default", "-"], |limit| ratio(of_default(limit)))
         .table(caption, &limits.of);
     let mut study = Study::new(&anchor(case, "time-step"), "Largest stable time step");
-    for limit in &limits.of {
-        let judge = |value: Option<f64>| move |gate: &_| Judged::new(Clone::clone(gate), value);
-        study.judged.extend(limit.of_theory.iter().map(judge(of_theory(limit))));
-        study.judged.extend(limit.of_default.iter().map(judge(of_default(limit))));
-    }
+    let judged = |limit: &StepLimit| Some(Judged::new(limit.gate.clone()?, of_theory(limit)));
+    study.judged.extend(limits.of.iter().filter_map(judged));
     study.block(table)
 }
 
@@ -62,17 +59,15 @@ mod tests {
     fn a_limit_is_stated_over_theory_and_over_the_default_step() {
         let bisect =
             Bisect { setting: "n".into(), guess: 1.0, unit: 1.0, resolution: 0.02, end: None };
-        let gate = |id: &str, low: f64, high: f64| {
-            Gate::new(id, STABLE, Bound::Within(low, high), Evidence::Theory, "made up")
-        };
+        let bound = Bound::Within(1.49, 1.51);
+        let gate = Gate::new("of theory", STABLE, bound, Evidence::Theory, "made up");
         let limit = |n: usize| StepLimit {
             scene: "made up".into(),
             spec: spec("seed", n).bisect(bisect.clone()),
             theory: 4e-3,
             theory_at: 0.8,
             default_at: 0.6,
-            of_theory: vec![gate("of theory", 1.49, 1.51)],
-            of_default: vec![gate("of default", 1.99, 2.01)],
+            gate: Some(gate.clone()),
         };
         let limits = StepLimits { about: "Made up.".into(), of: vec![limit(8), limit(9)] };
         let stable = |record: &mut Record| {
@@ -94,15 +89,7 @@ mod tests {
             .iter()
             .map(|judged| (judged.gate.id.as_str(), judged.judgement.verdict))
             .collect();
-        // The second was not made, so its gates fail.
-        assert_eq!(
-            verdicts,
-            [
-                ("of theory", Verdict::Pass),
-                ("of default", Verdict::Pass),
-                ("of theory", Verdict::Fail),
-                ("of default", Verdict::Fail),
-            ]
-        );
+        // The second was not made, so its gate fails.
+        assert_eq!(verdicts, [("of theory", Verdict::Pass), ("of theory", Verdict::Fail)]);
     }
 }

@@ -87,7 +87,7 @@ fn better(marks: &[Mark]) -> Option<String> {
     })
 }
 
-/// Error against run time, a panel a division.
+/// Error against run time, a panel for each division in which other codes are.
 fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     let caption = "Runs of other codes (in parentheses the variant whose problem they ran), and ours of \
                    the same session in black: error over the time of the loop on one core. Labels are \
@@ -98,6 +98,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         let is_of = |mark: &&Mark| mark.of.division == division || mark.of.code == OURS;
         let shown: Vec<&Mark> =
             marks.iter().filter(|mark| mark.seconds.is_finite()).filter(is_of).collect();
+        let has_others = shown.iter().any(|mark| mark.of.code != OURS);
         let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
         let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
         let series = |(k, all): (usize, &[&Mark])| {
@@ -110,15 +111,10 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
             if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
         };
         let layers = shown.chunk_by(|a, b| a.name == b.name).enumerate().map(series);
-        layers.fold(plot, Plot::layer)
+        has_others.then(|| layers.fold(plot, Plot::layer))
     };
-    let has = |division: &Division| {
-        let is_of = |mark: &Mark| mark.of.code != OURS && mark.of.division == *division;
-        marks.iter().any(|mark| is_of(mark) && mark.seconds.is_finite())
-    };
-    let panels: Vec<Plot> =
-        [Division::Closed, Division::Open].into_iter().filter(has).map(panel).collect();
-    panels.into_iter().fold(figure.columns(1), Figure::panel)
+    let panels = [Division::Closed, Division::Open].into_iter().filter_map(panel);
+    panels.fold(figure, Figure::panel)
 }
 
 /// Where and when the runs that the program contains were made.

@@ -126,15 +126,7 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
                 spacing: refined.spacing(&row.settings),
                 value: runs.completed(&row.run.spec).and_then(value).unwrap_or(f64::NAN),
             };
-            let kind = if of.is_corrected { "corrected" } else { "plain" };
-            let expected = match refined.expected(of) as i32 {
-                -1 => "−1",
-                0 => "0",
-                1 => "1",
-                _ => "2",
-            };
-            let (levels, gate) = (rows.map(level).collect(), refined.gate(of));
-            Line { name: of.name, kind, levels, expected, gate }
+            Line { name: of.name, levels: rows.map(level).collect(), gate: refined.gate(of) }
         });
         let is_second = matches!(refined, For::Lattice | For::Neighbours);
         let slopes: &[f64] = if is_second { &[2.0] } else { &[1.0] };

@@ -136,7 +136,6 @@ fn histories(tier: Tier) -> Curves {
                   paper's. Black: finite elements with the law of the best, from which those with the law of \
                   the paper differ little; their uncertainty is less than the width of the line."
             .into(),
-        columns: 2,
         panels: labels.into_iter().enumerate().map(panel).collect(),
     }
 }
@@ -209,10 +208,9 @@ fn step_limit(variant: &'static str) -> StepLimit {
     let rules = RUBBER_RINGS.rules(&spec).unwrap_or(Rules::REFUSED);
     let because = "Nothing drives the rings, so at the default step their energy must not rise.";
     let id = format!("rubber_rings.{variant}.step_limit");
-    let bound = Bound::Above(1.0);
-    let gate = Gate::new(id, "stable dt/default dt", bound, Evidence::Invariant, because);
-    let limit = StepLimit::proportional("collision", spec, ("dt", rules.dt_limit()), &rules);
-    StepLimit { of_default: vec![gate], ..limit }
+    let bound = Bound::Above(rules.dt() / rules.dt_limit());
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Invariant, because);
+    StepLimit::proportional("collision", spec, ("dt", rules.dt_limit()), &rules, Some(gate))
 }
 
 /// Whole, torn or in pieces.

@@ -12,7 +12,6 @@ use harness::{
 use validation::cases;
 
 use super::super::arguments::{Arguments, Command};
-use super::super::list::default_variant;
 
 /// What stands for `touchstone` before it is installed.
 const FROM_SOURCES: &str = "cargo run --release -- ";
@@ -59,7 +58,7 @@ fn find(name: &str) -> Result<&'static dyn Case, String> {
 /// Does the first of these variants have these settings, the first of several values each?
 fn check_run(name: &str, variant: Option<&String>, set: &[String]) -> Result<(), String> {
     let case = find(name)?;
-    let variant = variant.map_or(default_variant(case), String::as_str);
+    let variant = variant.map_or(case.best().variant, String::as_str);
     let first = |set: &String| set.split(',').next().unwrap_or_default().to_string();
     let set: Vec<String> = set.iter().map(first).collect();
     case::spec(case, variant, &set).map(|_| ()).map_err(|error| error.to_string())

@@ -71,7 +71,6 @@ fn column(tier: Tier) -> Curves {
         id: "dam-break-martin-moyce".into(),
         title: "Martin & Moyce 1952: front and height".into(),
         caption: caption.into(),
-        columns: 2,
         panels: panels.of,
     }
 }
@@ -119,7 +118,6 @@ fn tank(tier: Tier) -> Curves {
         id: "dam-break-lobovsky".into(),
         title: "Lobovsky et al. 2014: front, levels, pressures".into(),
         caption: caption.into(),
-        columns: 3,
         panels: panels.of,
     }
 }

@@ -225,8 +225,7 @@ fn limit(variant: &'static str) -> StepLimit {
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
     // The limit as the record's dt and dt/limit state it.
     let setting = ("dt", rules.dt() / default_at);
-    let limit = StepLimit::proportional("Martin & Moyce", spec, setting, &rules);
-    StepLimit { of_theory: vec![gate], ..limit }
+    StepLimit::proportional("Martin & Moyce", spec, setting, &rules, Some(gate))
 }
 
 const DENSITY: &str = "Times and lengths of a collapse do not depend on the density. Water at rest \
