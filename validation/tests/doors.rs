@@ -181,7 +181,6 @@ fn a_pipe_in_place_of_what_a_run_or_a_report_left_is_not_waited_for() {
     for (line, exit, words) in [
         ("compare . .", 2, not_regular),
         ("explain couette --reports .", 2, not_regular),
-        ("explain --status fail --reports .", 2, not_regular),
         ("run --resume .", 2, not_regular),
         // The checkpoint is given up, and the record takes the place of the pipe.
         (
@@ -213,20 +212,6 @@ fn verdicts_that_cannot_be_read_are_told_and_not_passed_over() {
         assert_eq!(output.status.code(), Some(2), "{line}: {message}");
         assert!(message.contains("cannot read report/verdicts.json"), "{line}: {message}");
     }
-}
-
-/// The second file took the place of the first.
-#[test]
-fn one_file_for_two_documents_is_refused_before_anything_is_made() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::create_dir(folder.path().join("store")).unwrap();
-    for line in ["judge couette --store store", "verify couette --store s", "report --out r"] {
-        let line = format!("{line} --junit f --markdown f");
-        let output = touchstone(folder.path(), &line);
-        assert_eq!(output.status.code(), Some(2), "{line}: {}", said(&output));
-        assert!(said(&output).contains("name the same file, f"), "{line}: {}", said(&output));
-    }
-    assert_eq!(names(folder.path()), ["store"]);
 }
 
 /// A figure of runs that were missing was empty, which was called a bug of the program.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use base::{gate::Verdict, spec::Measure};
+use base::spec::Measure;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use exchange::write::Format;
@@ -345,17 +345,6 @@ pub struct Reuse {
     pub fresh: bool,
 }
 
-/// Verdicts for other programs.
-#[derive(Clone, Debug, Default, Args)]
-pub struct Export {
-    /// Write the verdicts as JUnit XML, one test case per gate
-    #[arg(long, value_name = "FILE")]
-    pub junit: Option<PathBuf>,
-    /// Write the verdicts as a Markdown table
-    #[arg(long, value_name = "FILE")]
-    pub markdown: Option<PathBuf>,
-}
-
 /// What is judged, and how the verdicts are told.
 #[derive(Debug, Args)]
 pub struct Judged {
@@ -364,8 +353,9 @@ pub struct Judged {
     /// The tier whose plan is judged
     #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
-    #[command(flatten)]
-    pub export: Export,
+    /// Write the verdicts as JUnit XML, one test case per gate
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
     /// Print every gate, before the line that each case has
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
@@ -418,8 +408,9 @@ pub struct Report {
     pub partial: bool,
     #[command(flatten)]
     pub reuse: Reuse,
-    #[command(flatten)]
-    pub export: Export,
+    /// Write the verdicts as JUnit XML, one test case per gate
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
     /// Number of runs made in parallel, 1 to 1024; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
@@ -457,35 +448,11 @@ pub struct Stability {
 #[derive(Debug, Args)]
 pub struct Explain {
     /// Name of the gate, or the beginning of the names of several gates
-    #[arg(required_unless_present = "status")]
-    pub gate: Option<String>,
-    /// List the gates with this verdict in the last report, one per line
-    #[arg(long, value_name = "VERDICT", value_parser = one_of(&VERDICTS))]
-    pub status: Option<Verdict>,
+    pub gate: String,
     /// Folder of the last report, which gives the verdicts and the gates of studies
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub reports: PathBuf,
 }
-
-/// A verdict by name.
-const VERDICTS: [Named<Verdict>; 4] = [
-    ("pass", Verdict::Pass, "Inside its bound"),
-    (
-        "fail",
-        Verdict::Fail,
-        "Outside its bounds, not finite, missing, or of a run that ended early",
-    ),
-    (
-        "limitation",
-        Verdict::Limitation,
-        "Outside its bound and inside that of its known limitation",
-    ),
-    (
-        "expected-failure",
-        Verdict::ExpectedFailure,
-        "A control that lies outside its bound, as it must",
-    ),
-];
 
 #[derive(Debug, Args)]
 pub struct Doctor {
