@@ -8,6 +8,7 @@ use base::{
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
+use serde::{Deserialize, Serialize};
 
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -95,12 +96,14 @@ impl JudgedRun {
     }
 }
 
-/// A gate and its judgement.
-#[derive(Clone, Debug)]
+/// A gate and its judgement, in JSON one object.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Judged {
     /// The gate.
+    #[serde(flatten)]
     pub gate: Gate,
     /// The judgement.
+    #[serde(flatten)]
     pub judgement: Judgement,
     /// Unit of the metric; none of one that the record lacks.
     pub unit: Option<String>,
