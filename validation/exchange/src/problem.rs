@@ -1,6 +1,10 @@
 //! A problem as a document: every number with its unit, every equation with its text.
 
-use base::{gate::Gate, spec::RunSpec};
+use base::{
+    gate::Gate,
+    record::{Column, Profile},
+    spec::RunSpec,
+};
 use harness::{
     case::{Case, RunError},
     context::Context,
@@ -138,6 +142,7 @@ impl Problem {
         };
         let gate =
             |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
+        let column = |column: &Column| json!({ "name": column.name, "unit": column.unit });
         let mut document = json!({
             "schema": SCHEMA,
             "spec": self.spec,
@@ -159,7 +164,7 @@ impl Problem {
                 "count": self.outline.particles.column("id").len(),
                 "spacing": with_unit(m.dx, "m"),
                 "roles": { "0": "moves", "1": "behind a wall", "2": "on a wall" },
-                "columns": self.columns(),
+                "columns": self.particles().columns.iter().map(column).collect::<Vec<_>>(),
             },
             "times": with_unit(times, "s"),
             "end": with_unit(times.last(), "s"),
@@ -182,12 +187,12 @@ impl Problem {
         document
     }
 
-    /// Names and units of the columns of the particles.
-    pub fn columns(&self) -> Vec<Value> {
-        let columns = self.outline.particles.columns.iter();
-        let columns = columns.map(|c| json!({ "name": c.name, "unit": c.unit }));
-        let body = json!({ "name": "body", "unit": "-" });
-        columns.chain((!self.outline.bodies.is_empty()).then_some(body)).collect()
+    /// All particles, with the number of the body to which each belongs if there are bodies.
+    pub fn particles(&self) -> Profile {
+        let Outline { particles, bodies, .. } = &self.outline;
+        let bodies: Vec<f64> = bodies.iter().map(|body| f64::from(*body)).collect();
+        let particles = particles.clone();
+        if bodies.is_empty() { particles } else { particles.with("body", "-", bodies) }
     }
 
     /// The equations in words.

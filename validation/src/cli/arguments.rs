@@ -126,8 +126,8 @@ pub struct Run {
     #[arg(long, value_name = "WHICH", value_parser = one_of(&METRICS), default_value = "headline")]
     pub metrics: Measure,
     /// Write record.json, the curves of the record (series.csv and others) and profile.csv into this folder:
-    /// the velocity across a channel, with profile.png, or all fields of the particles at the end; without
-    /// --out and --vtk no file is written
+    /// the velocity across a channel, or all fields of the particles at the end; without --out and --vtk no
+    /// file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write into the folder even if it holds the record of another case; files of both are then mixed
