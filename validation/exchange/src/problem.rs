@@ -63,7 +63,8 @@ const HAND_IN: &str = "A folder with these files:\n\n\
 /// What a reader needs of the document: the run that is asked for.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Asked {
-    schema: u32,
+    /// version of the document
+    pub schema: u32,
     /// the run
     pub spec: RunSpec,
     /// what it was drawn from
@@ -72,20 +73,6 @@ pub struct Asked {
     /// name of the relation by which it is seen
     #[serde(default)]
     pub relation: Option<String>,
-}
-
-impl Asked {
-    /// Reads the document.
-    ///
-    /// # Errors
-    /// What is wrong with it, with line and column.
-    pub fn from_json(text: &str) -> Result<Self, String> {
-        let asked: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        match asked.schema {
-            SCHEMA => Ok(asked),
-            other => Err(format!("schema is {other}; this program reads schema {SCHEMA}")),
-        }
-    }
 }
 
 /// A number with its unit.

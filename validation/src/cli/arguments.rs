@@ -224,7 +224,7 @@ pub struct Plan {
 /// For whom a problem is written.
 const FORMATS: [Named<Format>; 4] = [
     ("csv", Format::Csv, "Tables of comma-separated values"),
-    ("vtu", Format::Vtu, "Also an unstructured grid of ParaView"),
+    ("vtk", Format::Vtk, "Also particles.vtp for ParaView"),
     ("lammps", Format::Lammps, "Also a data file and an input script of LAMMPS"),
     ("pysph", Format::Pysph, "Also a Python script that runs PySPH"),
 ];

@@ -13,7 +13,7 @@ use ::exchange::{
 };
 use base::{
     files::{self, OutputFolder},
-    record::{Profile, Record, Status},
+    record::{Profile, Record},
     reference::sha256,
     spec::RunSpec,
     submission::OURS,
@@ -89,9 +89,7 @@ fn solve(
         }
         made => made?,
     };
-    if world.is_interrupted() || matches!(record.status, Status::Interrupted { .. }) {
-        return Err(Failure::interrupted("the problem is written, its results are not"));
-    }
+    world.go_on("the problem is written, its results are not")?;
     let method = json!({
         "code": OURS,
         "version": env!("CARGO_PKG_VERSION"),
@@ -234,7 +232,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         )));
     }
     let end = same.outline.times.last().copied().unwrap_or_default();
-    let steps = ours.system.steps.number().unwrap_or(end / same.outline.dt);
+    let steps = ours.system.steps.unwrap_or(end / same.outline.dt);
     let (ours, theirs) = (&*ours.results.frames, &*theirs.results.frames);
     let found = symmetry::difference((&same.outline, ours), (&other.outline, theirs), steps);
     super::symmetry::show(vec![super::symmetry::row(case, &same.spec, by, &found)])?;

@@ -50,9 +50,7 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
         let making = world.making(Tier::Quick);
         let of = |job: &Job| if making.is_interrupted() { None } else { size(job, true) };
         let sizes: Vec<Option<Size>> = jobs.par_iter().map(of).collect();
-        if world.is_interrupted() {
-            return Err(Failure::interrupted("no plan is printed"));
-        }
+        world.go_on("no plan is printed")?;
         if let Some(path) = &arguments.estimates {
             files::write_atomically(path, table(&jobs, &sizes).to_csv().as_bytes())?;
         }
@@ -99,9 +97,7 @@ fn sweep(
     let mut jobs = Vec::new();
     for variant in variants {
         for set in &combinations {
-            if world.is_interrupted() {
-                return Err(Failure::interrupted("no plan is printed"));
-            }
+            world.go_on("no plan is printed")?;
             jobs.push(Job { case, planned: Planned::new(case::spec(case, variant, set)?) });
         }
     }
@@ -247,9 +243,7 @@ fn planned(
     }
     let (mut planned, mut refused) = (Vec::new(), Vec::new());
     for (number, line) in lines {
-        if world.is_interrupted() {
-            return Err(Failure::interrupted("no run was made"));
-        }
+        world.go_on("no run was made")?;
         match spec(line, world) {
             Ok(spec) => planned.push(Planned::new(spec)),
             Err(why) => refused.push(format!("line {} of {}: {why}", number + 1, file.display())),

@@ -1,9 +1,11 @@
 //! Writes a problem into a folder, with the files that another code reads.
 
 mod lammps;
-mod vtu;
 
-use base::files::{FileError, OutputFolder};
+use base::{
+    files::{FileError, OutputFolder},
+    vtk::{self, VtkError},
+};
 use thiserror::Error;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
@@ -20,8 +22,8 @@ const PYSPH: &str = include_str!("run_pysph.py");
 pub enum Format {
     /// Tables alone.
     Csv,
-    /// ParaView's unstructured grid.
-    Vtu,
+    /// ParaView.
+    Vtk,
     /// LAMMPS with its package SPH: a data file and an input script.
     Lammps,
     /// PySPH: a script of Python.
@@ -34,6 +36,9 @@ pub enum WriteError {
     /// A file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Particles for ParaView.
+    #[error(transparent)]
+    Vtk(#[from] VtkError),
     /// The other code cannot do it.
     #[error("{code} cannot run {case}, variant {variant}: {why}")]
     Cannot {
@@ -59,7 +64,7 @@ pub fn write(
 ) -> Result<Vec<String>, WriteError> {
     let own: Vec<(&str, String)> = match format {
         Format::Csv => Vec::new(),
-        Format::Vtu => vec![("particles.vtu", vtu::particles(problem))],
+        Format::Vtk => vec![("particles.vtp", vtk::particles(0.0, &problem.particles())?)],
         Format::Lammps => lammps::files(problem)?,
         Format::Pysph => {
             check_fluid("PySPH", problem)?;
