@@ -154,10 +154,12 @@ impl Verdicts {
         let of_cases = suite.cases.iter().flat_map(|results| {
             results.studies.iter().map(|study| of_study(results.case.name(), study))
         });
+        let counts = suite.counts();
+        let there_are = Verdict::ALL.into_iter().filter(|of| counts.count(*of) > 0);
         Verdicts {
             tier: tier_name(suite.tier),
             commit: super::SOURCE.commit.into(),
-            counts: counts(suite),
+            counts: there_are.map(|of| (of.name().to_string(), counts.count(of))).collect(),
             runs: suite
                 .cases
                 .iter()
@@ -171,14 +173,6 @@ impl Verdicts {
 /// The verdicts of a suite as JSON.
 pub fn json(suite: &Suite) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(&Verdicts::of(suite)).map_err(Failure::bug)? + "\n")
-}
-
-fn counts(suite: &Suite) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
-    for judged in suite.judged() {
-        *counts.entry(judged.judgement.verdict.name().to_string()).or_default() += 1;
-    }
-    counts
 }
 
 /// Writes the verdicts as JUnit XML into a file, if it was asked for.
