@@ -48,19 +48,19 @@ fn is_inside(bound: &Value, value: f64) -> bool {
 
 /// The verdict by what `docs/records.md` says of the keys.
 fn judged_again(gate: &Value, is_completed: bool) -> &'static str {
-    let is_control = gate["purpose"] == "expect-failure";
+    let is = |key: &str| gate[key].as_bool().unwrap();
     let Some(value) = gate["value"].as_f64() else {
-        return match !is_completed && gate["may_end_early"] == true && gate["value"].is_null() {
-            true if is_control => "expected-failure",
+        return match !is_completed && is("may_end_early") && gate["value"].is_null() {
+            true if is("control") => "expected-failure",
             true => "limitation",
             false => "fail",
         };
     };
     let is_known = !gate["known"].is_null() && is_inside(&gate["known"], value);
     match is_inside(&gate["bound"], value) {
-        true if is_control => "fail",
+        true if is("control") => "fail",
         true => "pass",
-        false if is_control => "expected-failure",
+        false if is("control") => "expected-failure",
         false if is_known => "limitation",
         false => "fail",
     }
@@ -72,7 +72,7 @@ fn a_script_can_judge_every_gate_from_its_own_numbers() {
     let mut kinds = std::collections::BTreeSet::new();
     for (verdicts, _) in of_a_case() {
         for (gate, is_completed) in entries(&verdicts) {
-            for key in ["metric", "unit", "bound", "purpose", "evidence", "because"] {
+            for key in ["metric", "unit", "bound", "known", "evidence", "because", "cause"] {
                 assert!(gate.get(key).is_some(), "{key} is not stated: {gate}");
             }
             let verdict = gate["verdict"].as_str().unwrap();

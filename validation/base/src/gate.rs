@@ -138,8 +138,7 @@ pub enum Evidence {
 }
 
 /// What a gate does with its judgement.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "purpose", rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Purpose {
     /// inside passes, outside fails
     Judge,
@@ -150,10 +149,9 @@ pub enum Purpose {
 }
 
 /// How far outside the bound of its gate a metric is known to lie, and why.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Known {
     /// from the evidence for the cause: outside of it, the gate fails
-    #[serde(rename = "known")]
     pub bound: Bound,
     /// what causes it, and where its bound comes from
     pub reason: String,
@@ -184,10 +182,9 @@ impl fmt::Display for Cause {
 }
 
 /// A metric, its bound and its reasons.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Gate {
     /// dotted name, starting with the case
-    #[serde(rename = "gate")]
     pub id: String,
     /// name of the metric in the record
     pub metric: String,
@@ -198,7 +195,6 @@ pub struct Gate {
     /// why the bound is where it is
     pub because: String,
     /// what the judgement is for
-    #[serde(flatten)]
     pub purpose: Purpose,
     /// is a run that ends early the limitation or the failure that is expected?
     pub may_end_early: bool,
@@ -420,15 +416,13 @@ impl fmt::Display for Verdict {
 }
 
 /// A verdict with the number it rests on.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Judgement {
     /// what came of it
     pub verdict: Verdict,
     /// the metric, if it was measured
-    #[serde(with = "crate::number::optional")]
     pub value: Option<f64>,
     /// what is left of the allowance, of the gate or else of its limitation, see [`Bound::margin`]
-    #[serde(with = "crate::number::optional")]
     pub margin: Option<f64>,
 }
 

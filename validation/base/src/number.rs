@@ -3,8 +3,8 @@
 //! JSON has no NaN and no infinity, and `serde_json` writes both as `null`, which a reader would take
 //! for "not measured". Here they are written as objects with one key and read back without change:
 //! `{"not_finite": "NaN"}`, `{"not_finite": "inf"}`, `{"not_finite": "-inf"}`.
-//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field, `crate::number::optional`
-//! on an `Option<f64>`, which is `null` if it is missing, and `crate::number::list` on a `Vec<f64>`.
+//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field, `Option<Number>` for
+//! one that may be missing, and `crate::number::list` on a `Vec<f64>`.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -91,21 +91,6 @@ pub mod list {
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
         let numbers = Vec::<Number>::deserialize(from)?;
         Ok(numbers.into_iter().map(|number| number.0).collect())
-    }
-}
-
-/// The same for an `Option<f64>`.
-pub mod optional {
-    use super::{Deserialize, Deserializer, Number, Serialize, Serializer};
-
-    /// Writes the number or `null`.
-    pub fn serialize<S: Serializer>(value: &Option<f64>, to: S) -> Result<S::Ok, S::Error> {
-        value.map(Number).serialize(to)
-    }
-
-    /// Reads the number, unless it is `null`.
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
-        Ok(Option::<Number>::deserialize(from)?.map(|number| number.0))
     }
 }
 

@@ -8,7 +8,6 @@ use base::{
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
-use serde::{Deserialize, Serialize};
 
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -96,14 +95,12 @@ impl JudgedRun {
     }
 }
 
-/// A gate and its judgement, in JSON one object.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+/// A gate and its judgement.
+#[derive(Clone, Debug)]
 pub struct Judged {
     /// The gate.
-    #[serde(flatten)]
     pub gate: Gate,
     /// The judgement.
-    #[serde(flatten)]
     pub judgement: Judgement,
     /// Unit of the metric; none of one that the record lacks.
     pub unit: Option<String>,

@@ -5,7 +5,8 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use base::files::{self, write_atomically};
-use base::gate::{Judgement, Verdict};
+use base::gate::{Bound, Cause, Evidence, Gate, Judgement, Known, Purpose, Verdict};
+use base::number::Number;
 use base::record;
 use base::text::escaped;
 use harness::case::{self, Case, Tier};
@@ -106,6 +107,7 @@ pub struct RunVerdicts {
     #[serde(with = "base::number")]
     pub wall_s: f64,
     /// the judgements
+    #[serde(with = "entries")]
     pub judged: Vec<Judged>,
 }
 
@@ -119,7 +121,98 @@ pub struct StudyVerdicts {
     /// its title
     pub title: String,
     /// the judgements
+    #[serde(with = "entries")]
     pub judged: Vec<Judged>,
+}
+
+/// Judgements as objects of one level.
+mod entries {
+    use super::{Entry, Judged};
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(all: &[Judged], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(all.iter().cloned().map(Entry::from))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Judged>, D::Error> {
+        Ok(Vec::<Entry>::deserialize(from)?.into_iter().map(Judged::from).collect())
+    }
+}
+
+/// A gate and its judgement in one object, from whose numbers the verdict follows.
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    gate: String,
+    metric: String,
+    unit: Option<String>,
+    bound: Bound,
+    known: Option<Bound>,
+    evidence: Evidence,
+    because: String,
+    reason: Option<String>,
+    cause: Option<Cause>,
+    control: bool,
+    may_end_early: bool,
+    even_if_diverged: bool,
+    value: Option<Number>,
+    margin: Option<Number>,
+    verdict: Verdict,
+}
+
+impl From<Judged> for Entry {
+    fn from(judged: Judged) -> Self {
+        let Judged { gate, judgement, unit } = judged;
+        let control = gate.purpose == Purpose::ExpectFailure;
+        let (known, reason, cause) = match gate.purpose {
+            Purpose::Limitation(Known { bound, reason, cause }) => {
+                (Some(bound), Some(reason), cause)
+            }
+            _ => (None, None, None),
+        };
+        Entry {
+            gate: gate.id,
+            metric: gate.metric,
+            unit,
+            bound: gate.bound,
+            known,
+            evidence: gate.evidence,
+            because: gate.because,
+            reason,
+            cause,
+            control,
+            may_end_early: gate.may_end_early,
+            even_if_diverged: gate.even_if_diverged,
+            value: judgement.value.map(Number),
+            margin: judgement.margin.map(Number),
+            verdict: judgement.verdict,
+        }
+    }
+}
+
+impl From<Entry> for Judged {
+    fn from(entry: Entry) -> Self {
+        let purpose = match entry.known {
+            Some(bound) => {
+                let reason = entry.reason.unwrap_or_default();
+                Purpose::Limitation(Known { bound, reason, cause: entry.cause })
+            }
+            None if entry.control => Purpose::ExpectFailure,
+            None => Purpose::Judge,
+        };
+        let [value, margin] = [entry.value, entry.margin].map(|number| number.map(|n| n.0));
+        let gate = Gate {
+            id: entry.gate,
+            metric: entry.metric,
+            bound: entry.bound,
+            evidence: entry.evidence,
+            because: entry.because,
+            purpose,
+            may_end_early: entry.may_end_early,
+            even_if_diverged: entry.even_if_diverged,
+        };
+        let judgement = Judgement { verdict: entry.verdict, value, margin };
+        Judged { gate, judgement, unit: entry.unit }
+    }
 }
 
 /// The name of a tier on the command line.
