@@ -156,7 +156,7 @@ pub struct Known {
     /// what causes it, and where its bound comes from
     pub reason: String,
     /// the cause that it shares with other gates
-    pub cause: Cause,
+    pub cause: Option<Cause>,
 }
 
 /// Why numbers lie outside of their bounds, for any number of gates.
@@ -233,7 +233,7 @@ impl Gate {
     /// # Panics
     /// If the gate is unsound with it (see [`Gate::check`]).
     pub fn with_limitation(self, bound: Bound, reason: impl Into<String>, cause: &Cause) -> Self {
-        let known = Known { bound, reason: reason.into(), cause: cause.clone() };
+        let known = Known { bound, reason: reason.into(), cause: Some(cause.clone()) };
         Gate { purpose: Purpose::Limitation(known), ..self }.sound()
     }
 
@@ -511,7 +511,7 @@ mod tests {
     #[test]
     fn a_limitation_has_a_bound_that_is_wider_than_the_gates() {
         let known = |bound: Bound, known: Bound| {
-            let known = Known { bound: known, reason: "it is soft".into(), cause: CAUSE };
+            let known = Known { bound: known, reason: "it is soft".into(), cause: None };
             Gate { purpose: Purpose::Limitation(known), ..gate(bound) }.check()
         };
         let within = Bound::Within(-0.1, 0.1);
@@ -566,7 +566,7 @@ mod tests {
         let refused = |gate: Gate| gate.check().unwrap_err();
         let silent = Gate { because: " ".into(), ..sound.clone() };
         assert_eq!(refused(silent), "gate case.metric does not say why its bound has this value");
-        let known = Known { bound: Bound::Below(2.0), reason: String::new(), cause: CAUSE };
+        let known = Known { bound: Bound::Below(2.0), reason: String::new(), cause: None };
         let causeless = Gate { purpose: Purpose::Limitation(known), ..sound.clone() };
         assert!(refused(causeless).contains("does not say why"));
         let nameless = Gate { metric: String::new(), ..sound.clone() };

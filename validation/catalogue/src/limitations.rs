@@ -18,16 +18,17 @@ struct Found<'a> {
     judged: &'a Judged,
 }
 
-/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.
-fn by_cause<'a>(all: impl Iterator<Item = Found<'a>>) -> Vec<(&'a Cause, Vec<Found<'a>>)> {
-    let mut causes: BTreeMap<&Cause, Vec<Found>> = BTreeMap::new();
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and
+/// last those whose cause is their own.
+fn by_cause<'a>(all: impl Iterator<Item = Found<'a>>) -> Vec<(Option<&'a Cause>, Vec<Found<'a>>)> {
+    let mut causes: BTreeMap<Option<&Cause>, Vec<Found>> = BTreeMap::new();
     for found in all {
         if let Some(known) = found.judged.limitation() {
-            causes.entry(&known.cause).or_default().push(found);
+            causes.entry(known.cause.as_ref()).or_default().push(found);
         }
     }
     let mut causes: Vec<_> = causes.into_iter().collect();
-    causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
+    causes.sort_by_key(|(cause, gates)| (cause.is_none(), Reverse(gates.len())));
     causes
 }
 
@@ -45,8 +46,9 @@ pub fn section(suite: &Suite) -> Section {
     causes.iter().fold(section, |section, (cause, found)| {
         let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
         cases.dedup();
+        let what = cause.map_or("Other causes.".into(), Cause::to_string);
         let command = found.first().map(command).unwrap_or_default();
-        let text = format!("{cause} Cases: {}. To see it: `{command}`.", cases.join(", "));
+        let text = format!("{what} Cases: {}. To see it: `{command}`.", cases.join(", "));
         section.prose(text).block(Block::Details {
             summary: format!("The gates ({})", found.len()),
             blocks: vec![Block::List(found.iter().map(gate).collect())],

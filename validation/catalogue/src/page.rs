@@ -152,7 +152,8 @@ fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Not
     let Judged { gate, judgement, .. } = judged;
     let mut reasons = vec![notes.number(&gate.because)];
     if let Some(known) = judged.limitation() {
-        reasons.extend([&*known.cause.what, &known.reason].map(|text| notes.number(text)));
+        let cause = known.cause.as_ref().map(|cause| &*cause.what);
+        reasons.extend(cause.into_iter().chain([&*known.reason]).map(|text| notes.number(text)));
     }
     let of = match of {
         Of::Run(run) => {

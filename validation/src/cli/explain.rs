@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use base::gate::{Evidence, Gate, Known, Purpose};
+use base::gate::{Evidence, Gate, Purpose};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
@@ -22,7 +22,7 @@ use super::{
 };
 
 /// A gate, what it is judged on, and what came of it last.
-struct Told {
+struct Known {
     gate: Gate,
     tiers: Vec<String>,
     on: String,
@@ -30,7 +30,7 @@ struct Told {
     status: Option<record::Status>,
 }
 
-impl Told {
+impl Known {
     /// Not judged yet.
     fn new(gate: Gate, on: String) -> Self {
         Self { gate, tiers: Vec::new(), on, last: None, status: None }
@@ -41,7 +41,7 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Fail
     let asked = arguments.gate.as_str();
     let verdicts = last_verdicts(&arguments.reports, asked, world)?;
     let gates = all(world, verdicts.as_ref());
-    let mut chosen: Vec<&Told> = gates.iter().filter(|known| known.gate.id == asked).collect();
+    let mut chosen: Vec<&Known> = gates.iter().filter(|known| known.gate.id == asked).collect();
     if chosen.is_empty() {
         chosen.extend(gates.iter().filter(|known| known.gate.id.starts_with(asked)));
     }
@@ -79,7 +79,7 @@ pub fn in_full(case: &dyn Case, of: Of, judged: &Judged) -> String {
         Of::Run(run) => (command(case, &run.planned.spec), Some(run.record.status.clone())),
         Of::Study(study) => (of_study(&study.title, case.name()), None),
     };
-    words(&Told { last: Some(judged.clone()), status, ..Told::new(judged.gate.clone(), on) })
+    words(&Known { last: Some(judged.clone()), status, ..Known::new(judged.gate.clone(), on) })
 }
 
 /// The command that makes a run.
@@ -92,8 +92,8 @@ fn of_study(title: &str, case: &str) -> String {
 }
 
 /// Gates of the plans; then those on many runs, which only a report names.
-fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Told> {
-    let mut gates: Vec<Told> = Vec::new();
+fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
+    let mut gates: Vec<Known> = Vec::new();
     for case in world.cases {
         for tier in [Tier::Quick, Tier::Full] {
             for planned in plan::of_case(*case, tier) {
@@ -103,7 +103,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Told> {
                         Some(known) => known.tiers.push(tier_name(tier)),
                         None => {
                             let tiers = vec![tier_name(tier)];
-                            gates.push(Told { tiers, ..Told::new(gate, on.clone()) });
+                            gates.push(Known { tiers, ..Known::new(gate, on.clone()) });
                         }
                     }
                 }
@@ -119,9 +119,9 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Told> {
     }
     for study in verdicts.iter().flat_map(|verdicts| &verdicts.studies) {
         let on = of_study(&study.title, &study.case);
-        gates.extend(study.judged.iter().map(|judged| Told {
+        gates.extend(study.judged.iter().map(|judged| Known {
             last: Some(judged.clone()),
-            ..Told::new(judged.gate.clone(), on.clone())
+            ..Known::new(judged.gate.clone(), on.clone())
         }));
     }
     gates
@@ -130,7 +130,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Told> {
 /// Names that an error suggests, at most.
 const SUGGESTED: usize = 5;
 
-fn unknown(asked: &str, gates: &[Told]) -> Failure {
+fn unknown(asked: &str, gates: &[Known]) -> Failure {
     let ids: BTreeSet<&str> = gates.iter().map(|known| known.gate.id.as_str()).collect();
     let mut near = by_similarity(&ids.iter().copied().collect::<Vec<_>>(), asked);
     near.truncate(SUGGESTED);
@@ -144,8 +144,8 @@ fn unknown(asked: &str, gates: &[Told]) -> Failure {
     ))
 }
 
-fn words(known: &Told) -> String {
-    let Told { gate, on, last, .. } = known;
+fn words(known: &Known) -> String {
+    let Known { gate, on, last, .. } = known;
     let judged_as =
         |judged: &Judged| format!("{}: {}", judged::value(&judged.judgement), judged.words());
     let lines = [
@@ -184,8 +184,14 @@ fn evidence(gate: &Gate) -> String {
 fn purpose(purpose: &Purpose) -> String {
     match purpose {
         Purpose::Judge => "inside passes, outside fails".into(),
-        Purpose::Limitation(Known { bound, reason, cause }) => {
-            format!("known limitation, may lie outside, but {bound}: {} {reason}", cause.what)
+        Purpose::Limitation(known) => {
+            let cause = known.cause.as_ref().map_or("", |cause| &cause.what);
+            let reasons = format!("{cause} {}", known.reason);
+            format!(
+                "known limitation, may lie outside, but {}: {}",
+                known.bound,
+                reasons.trim_start()
+            )
         }
         Purpose::ExpectFailure => "a control, which must lie outside".into(),
     }

@@ -119,8 +119,8 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
 /// The two causes that most gates share.
 fn main_limitations(judged: &[&Judged]) -> Vec<String> {
     let mut causes: BTreeMap<&str, usize> = BTreeMap::new();
-    for known in judged.iter().filter_map(|judged| judged.limitation()) {
-        *causes.entry(&known.cause.what).or_default() += 1;
+    for cause in judged.iter().filter_map(|judged| judged.limitation()?.cause.as_ref()) {
+        *causes.entry(&cause.what).or_default() += 1;
     }
     let mut causes: Vec<(&str, usize)> = causes.into_iter().collect();
     causes.sort_by_key(|(_, gates)| std::cmp::Reverse(*gates));
