@@ -42,7 +42,7 @@ pub fn summary(suite: &Suite) -> String {
     let counts = suite.counts();
     let limited = counts.count(Verdict::Limitation);
     if limited > 0 {
-        text += "\n`touchstone report` lists known limitations by cause.\n";
+        text += "\n`touchstone report` lists what limits these gates, by cause.\n";
     }
     text + &format!("\n{}\n", counts.headline())
 }
