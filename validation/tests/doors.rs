@@ -181,6 +181,7 @@ fn a_pipe_in_place_of_what_a_run_or_a_report_left_is_not_waited_for() {
     for (line, exit, words) in [
         ("compare . .", 2, not_regular),
         ("explain couette --reports .", 2, not_regular),
+        ("explain --status fail --reports .", 2, not_regular),
         ("run --resume .", 2, not_regular),
         // The checkpoint is given up, and the record takes the place of the pipe.
         (

@@ -20,11 +20,14 @@ struct Found<'a> {
 
 /// The gates that are outside of their bounds for a known reason by its cause, that of most gates first, and
 /// last those whose cause is their own.
-fn by_cause<'a>(all: impl Iterator<Item = Found<'a>>) -> Vec<(Option<&'a Cause>, Vec<Found<'a>>)> {
-    let mut causes: BTreeMap<Option<&Cause>, Vec<Found>> = BTreeMap::new();
-    for found in all {
-        if let Some(known) = found.judged.limitation() {
-            causes.entry(known.cause.as_ref()).or_default().push(found);
+pub fn by_cause<'a, T>(
+    all: impl IntoIterator<Item = T>,
+    judged: impl Fn(&T) -> &'a Judged,
+) -> Vec<(Option<&'a Cause>, Vec<T>)> {
+    let mut causes: BTreeMap<Option<&Cause>, Vec<T>> = BTreeMap::new();
+    for one in all {
+        if let Some(known) = judged(&one).limitation() {
+            causes.entry(known.cause.as_ref()).or_default().push(one);
         }
     }
     let mut causes: Vec<_> = causes.into_iter().collect();
@@ -38,7 +41,7 @@ pub fn section(suite: &Suite) -> Section {
         let judged = CaseResults::judged(results);
         judged.map(move |(of, judged)| Found { results, of, judged })
     };
-    let causes = by_cause(suite.cases.iter().flat_map(of_case));
+    let causes = by_cause(suite.cases.iter().flat_map(of_case), |found| found.judged);
     let section = Section::new("limitations", "Limitations by cause").prose(
         "Each gate below is outside of its bound, and inside the wider bound that its cause explains; \
          beyond that it would fail.",

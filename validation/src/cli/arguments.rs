@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use base::spec::Measure;
+use base::{gate::Verdict, spec::Measure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use exchange::write::Format;
@@ -448,11 +448,35 @@ pub struct Stability {
 #[derive(Debug, Args)]
 pub struct Explain {
     /// Name of the gate, or the beginning of the names of several gates
-    pub gate: String,
+    #[arg(required_unless_present = "status")]
+    pub gate: Option<String>,
+    /// List the gates with this verdict in the last report, one per line
+    #[arg(long, value_name = "VERDICT", value_parser = one_of(&VERDICTS))]
+    pub status: Option<Verdict>,
     /// Folder of the last report, which gives the verdicts and the gates of studies
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub reports: PathBuf,
 }
+
+/// A verdict by name.
+const VERDICTS: [Named<Verdict>; 4] = [
+    ("pass", Verdict::Pass, "Inside its bound"),
+    (
+        "fail",
+        Verdict::Fail,
+        "Outside its bounds, not finite, missing, or of a run that ended early",
+    ),
+    (
+        "limitation",
+        Verdict::Limitation,
+        "Outside its bound and inside that of its known limitation",
+    ),
+    (
+        "expected-failure",
+        Verdict::ExpectedFailure,
+        "A control that lies outside its bound, as it must",
+    ),
+];
 
 #[derive(Debug, Args)]
 pub struct Doctor {

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use base::gate::{Evidence, Gate, Purpose};
+use ::report;
+use base::gate::{Cause, Evidence, Gate, Purpose, Verdict};
 use base::record;
 use base::settings::by_similarity;
 use base::spec::RunSpec;
@@ -13,7 +14,7 @@ use harness::plan;
 use harness::runs::Judged;
 use harness::store::Store;
 use harness::suite::{self, Of};
-use validation::cases;
+use validation::{cases, limitations};
 
 use super::{
     Failure, World, arguments,
@@ -38,8 +39,22 @@ impl Known {
 }
 
 pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Failure> {
-    let asked = arguments.gate.as_str();
+    let asked = arguments.gate.as_deref().unwrap_or_default();
     let verdicts = last_verdicts(&arguments.reports, asked, world)?;
+    if let Some(status) = arguments.status {
+        let Some(verdicts) = verdicts else {
+            return Err(Failure::usage(format!(
+                "{} holds no verdicts; touchstone verify or touchstone report makes them",
+                arguments.reports.display()
+            )));
+        };
+        let begins = |judged: &&Judged| judged.gate.id.starts_with(asked);
+        let of_name: Vec<&Judged> = verdicts.judged().filter(begins).collect();
+        if of_name.is_empty() {
+            return Err(unknown(asked, &all(world, Some(&verdicts))));
+        }
+        return output::print(&listed(of_name, status));
+    }
     let gates = all(world, verdicts.as_ref());
     let mut chosen: Vec<&Known> = gates.iter().filter(|known| known.gate.id == asked).collect();
     if chosen.is_empty() {
@@ -125,6 +140,37 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
         }));
     }
     gates
+}
+
+/// Those of the gates that have this verdict, one per line; limitations by cause.
+pub fn listed(gates: Vec<&Judged>, verdict: Verdict) -> String {
+    let has = |judged: &&Judged| judged.judgement.verdict == verdict;
+    let chosen: Vec<&Judged> = gates.into_iter().filter(has).collect();
+    if chosen.is_empty() {
+        return "no gate has this verdict\n".into();
+    }
+    if verdict == Verdict::Limitation { by_cause(&chosen) } else { table(&chosen) }
+}
+
+fn table(gates: &[&Judged]) -> String {
+    let row = |judged: &&Judged| {
+        let value = judged.judgement.value.map_or("-".into(), |value| report::sig(value, 5));
+        vec![judged.gate.id.clone(), value, judged.gate.bounds()]
+    };
+    output::table(&["gate", "value", "bound"], gates.iter().map(row))
+}
+
+/// Each cause, that of most gates first, with what would remove it and its gates.
+fn by_cause(gates: &[&Judged]) -> String {
+    let of_none = "Gates with a cause of their own, which `touchstone explain GATE` states:";
+    let mut text = String::new();
+    for (cause, gates) in limitations::by_cause(gates.iter().copied(), |judged| judged) {
+        let words = cause.map_or(of_none.into(), Cause::to_string);
+        text += &output::wrap(&words, "");
+        text += &table(&gates).lines().map(|line| format!("    {line}\n")).collect::<String>();
+        text.push('\n');
+    }
+    text + "`touchstone explain GATE` gives the reason of each bound and a command that shows it.\n"
 }
 
 /// Names that an error suggests, at most.

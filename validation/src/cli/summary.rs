@@ -42,7 +42,11 @@ pub fn summary(suite: &Suite) -> String {
     let counts = suite.counts();
     let limited = counts.count(Verdict::Limitation);
     if limited > 0 {
-        text += "\n`touchstone report` lists what limits these gates, by cause.\n";
+        let limited = Counts::of(std::iter::repeat_n(Verdict::Limitation, limited));
+        text += &format!(
+            "\n{}; `touchstone explain --status limitation` lists what limits them, by cause.\n",
+            limited.headline()
+        );
     }
     text + &format!("\n{}\n", counts.headline())
 }

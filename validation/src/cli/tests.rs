@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use ::report::check_page;
 use base::{
     files::OutputFolder,
-    gate::{Bound, Cause, Evidence, Gate},
+    gate::{Bound, Cause, Evidence, Gate, Verdict},
     record::{MetricKey, Record, Status},
     reference::Reference,
     settings::Field,
@@ -616,7 +616,7 @@ fn verify_is_a_line_a_case_then_each_failure_in_full() {
         assert!(text.contains(part), "{part}: {text}");
     }
     assert!(text.ends_with("1 gate fails, 4 gates pass\n"), "{text}");
-    assert!(!text.contains("limits these gates"), "nothing is limited: {text}");
+    assert!(!text.contains("explain"), "nothing is limited: {text}");
 }
 
 #[test]
@@ -704,4 +704,32 @@ fn every_command_has_a_page_of_the_manual_and_every_shell_its_completions() {
     for shell in ["bash", "zsh", "fish"] {
         assert_eq!(exit(&format!("completions {shell}")), Exit::Pass);
     }
+}
+
+#[test]
+fn gates_are_listed_by_their_last_verdict() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let in_folder = |line: &str| run_on(&SOUND, &NEVER, line, folder.path());
+    let line = "explain --status fail --reports OUT";
+    assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
+    assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
+    assert_eq!(in_folder(line), Exit::Pass);
+    assert_eq!(in_folder("explain staged.right.r --status pass --reports OUT"), Exit::Pass);
+}
+
+fn limited(id: &str, cause: &Cause) -> Judged {
+    let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
+    Judged::new(gate.with_limitation(Bound::Below(4.0), "why", cause), Some(3.0))
+}
+
+#[test]
+fn limitations_are_listed_by_cause_those_of_most_gates_first() {
+    let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
+    let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
+    let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
+    let text = super::explain::listed(all.iter().collect(), Verdict::Limitation);
+    let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
+    assert!(at("Two. What would remove it: Mend two.") < at("    b"));
+    assert!(at("    b") < at("    c") && at("    c") < at("One."), "{text}");
+    assert!(!text.contains("since"), "a date that says nothing: {text}");
 }

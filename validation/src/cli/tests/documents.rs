@@ -103,7 +103,7 @@ fn check(line: &str) -> Result<(), String> {
         }
         Command::Verify(verify) => all(&verify.of.cases),
         Command::Stability(stability) => all(&stability.cases),
-        Command::Explain(explain) => check_gate(&explain.gate),
+        Command::Explain(explain) => explain.gate.map_or(Ok(()), |name| check_gate(&name)),
         _ => Ok(()),
     }
 }
