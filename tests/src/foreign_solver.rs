@@ -58,8 +58,8 @@ impl Solver for FiniteDifferences {
             };
             tell(time, places.iter().enumerate().map(placed).collect());
         }
-        let [threads, seconds, interactions] = [Known::Unknown(Unknown::Unknown); 3];
-        let steps = Known::Number(steps as f64);
-        System { machine: "unknown".into(), threads, seconds, steps, interactions }
+        let steps = Some(steps as f64);
+        let machine = "unknown".into();
+        System { machine, threads: None, seconds: None, steps, interactions: None }
     }
 }

@@ -215,20 +215,6 @@ fn verdicts_that_cannot_be_read_are_told_and_not_passed_over() {
     }
 }
 
-/// The second file took the place of the first.
-#[test]
-fn one_file_for_two_documents_is_refused_before_anything_is_made() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::create_dir(folder.path().join("store")).unwrap();
-    for line in ["judge couette --store store", "verify couette --store s", "report --out r"] {
-        let line = format!("{line} --junit f --markdown f");
-        let output = touchstone(folder.path(), &line);
-        assert_eq!(output.status.code(), Some(2), "{line}: {}", said(&output));
-        assert!(said(&output).contains("name the same file, f"), "{line}: {}", said(&output));
-    }
-    assert_eq!(names(folder.path()), ["store"]);
-}
-
 /// A figure of runs that were missing was empty, which was called a bug of the program.
 #[test]
 fn a_report_of_older_records_fails_its_gates_and_is_no_bug() {
@@ -375,12 +361,12 @@ fn a_limit_of_the_size_of_files_is_told_and_leaves_no_part() {
 #[test]
 fn a_run_with_a_frame_that_cannot_be_written_has_its_record_and_ends_with_2() {
     let folder = tempfile::tempdir().unwrap();
-    fs::create_dir_all(folder.path().join("out/vtk/particles_0001.vtp/in the way")).unwrap();
+    fs::create_dir_all(folder.path().join("out/vtk/particles_0001.vtu/in the way")).unwrap();
     let line = "run couette --variant seed --rows 8 --set end=0.01 --out out --vtk 3";
     let output = touchstone(folder.path(), line);
     let message = said(&output);
     assert_eq!(output.status.code(), Some(2), "{message}");
-    for words in ["particles_0001.vtp", "the run goes on", "frames or checkpoints not written: 1"] {
+    for words in ["particles_0001.vtu", "the run goes on", "frames or checkpoints not written: 1"] {
         assert!(message.contains(words), "{words}: {message}");
     }
     let record = fs::read_to_string(folder.path().join("out/record.json")).unwrap();

@@ -1,4 +1,4 @@
-//! Output files, each either complete or absent; tables without NaN.
+//! Output files, each either complete or absent.
 //!
 //! A file is written under a temporary name in the folder of its final place, and renamed when complete.
 //! Temporary names are random, so they do not collide with those of another process or with files left by an
@@ -8,11 +8,10 @@
 //!
 //! ```no_run
 //! # fn main() -> Result<(), base::files::FileError> {
-//! use base::files::{CsvTable, OutputFolder};
+//! use base::{files::OutputFolder, record::Profile};
 //! let folder = OutputFolder::create("out".as_ref())?;
-//! let mut profile = CsvTable::new(&["t[s]", "y[m]", "u[m/s]"])?;
-//! profile.numbers(&[0.1, 2.5e-5, 1.2e-4])?;
-//! folder.write("profile.csv", &profile.into_bytes())?;
+//! let profile = Profile::of_rows(&[("y", "m"), ("u", "m/s")], &[[2.5e-5, 1.2e-4]]);
+//! folder.write("profile.csv", profile.to_csv().as_bytes())?;
 //! # Ok(())
 //! # }
 //! ```
@@ -57,9 +56,6 @@ pub enum FileError {
         #[source]
         reason: io::Error,
     },
-    /// A table cannot have such a header or such a row.
-    #[error("{0}")]
-    Table(String),
 }
 
 /// Temporary files that exist now.
@@ -255,99 +251,6 @@ impl OutputFolder {
         }
         write_atomically(&path, bytes)?;
         Ok(path)
-    }
-}
-
-/// One cell of a table.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Cell {
-    /// written as the shortest text that reads back to the same bits
-    Number(f64),
-    /// written as it is, quoted if need be
-    Text(String),
-    /// not measured
-    Empty,
-}
-
-impl From<f64> for Cell {
-    fn from(number: f64) -> Self {
-        Cell::Number(number)
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Cell::Text(text.into())
-    }
-}
-
-impl From<Option<f64>> for Cell {
-    fn from(number: Option<f64>) -> Self {
-        number.map_or(Cell::Empty, Cell::Number)
-    }
-}
-
-/// A CSV table under a header with units; refuses NaN and infinity.
-#[derive(Debug)]
-pub struct CsvTable {
-    columns: Vec<String>,
-    rows: usize,
-    writer: csv::Writer<Vec<u8>>,
-}
-
-impl CsvTable {
-    /// A table with its header row, each column as `name[unit]`.
-    pub fn new(columns: &[&str]) -> Result<Self, FileError> {
-        let lacks_unit = |column: &&&str| !(column.contains('[') && column.ends_with(']'));
-        if let Some(column) = columns.iter().find(lacks_unit) {
-            let header = format!("the column header {column:?} lacks a unit");
-            return Err(FileError::Table(format!(
-                "{header}: write name[unit], or name[-] for none"
-            )));
-        }
-        let mut table = CsvTable {
-            columns: columns.iter().map(|column| (*column).into()).collect(),
-            rows: 0,
-            writer: csv::Writer::from_writer(Vec::new()),
-        };
-        table.write(columns);
-        Ok(table)
-    }
-
-    /// Adds a row of numbers.
-    pub fn numbers(&mut self, row: &[f64]) -> Result<(), FileError> {
-        self.cells(&row.iter().copied().map(Cell::Number).collect::<Vec<_>>())
-    }
-
-    /// Adds a row of numbers, texts and gaps; on error the table stays as it was.
-    pub fn cells(&mut self, row: &[Cell]) -> Result<(), FileError> {
-        if row.len() != self.columns.len() {
-            let cells = format!("row {} has {} cells", self.rows, row.len());
-            let expected = self.columns.len();
-            return Err(FileError::Table(format!("{cells}, but the header has {expected}")));
-        }
-        let texts = row.iter().zip(&self.columns).map(|(cell, column)| match cell {
-            Cell::Number(value) if value.is_finite() => Ok(format!("{value:?}")),
-            Cell::Number(value) => {
-                let cell = format!("column {column} of row {} is {value}", self.rows);
-                Err(FileError::Table(format!("{cell}, which is not finite")))
-            }
-            Cell::Text(text) => Ok(text.clone()),
-            Cell::Empty => Ok(String::new()),
-        });
-        let texts = texts.collect::<Result<Vec<_>, _>>()?;
-        self.write(&texts);
-        self.rows += 1;
-        Ok(())
-    }
-
-    /// The whole table, lines ended by `\n`.
-    pub fn into_bytes(self) -> Vec<u8> {
-        self.writer.into_inner().expect("writing into memory cannot fail")
-    }
-
-    fn write(&mut self, cells: &[impl AsRef<[u8]>]) {
-        self.writer.write_record(cells).expect("writing rows of one width into memory cannot fail");
     }
 }
 
@@ -553,29 +456,5 @@ mod tests {
         assert!(names(output.path()).is_empty(), "the probe is gone");
         let written = output.write("vtk/step.vtp", b"<x/>").unwrap();
         assert_eq!(fs::read(written).unwrap(), b"<x/>");
-    }
-
-    #[test]
-    fn a_table_has_units_and_keeps_every_bit() {
-        let mut table = CsvTable::new(&["t[s]", "u[m/s]", "code[-]"]).unwrap();
-        table.cells(&[0.1.into(), 1e-300.into(), "SPH, plain".into()]).unwrap();
-        table.cells(&[(0.1 + 0.2).into(), None.into(), "".into()]).unwrap();
-        let text = String::from_utf8(table.into_bytes()).unwrap();
-        let expected = "t[s],u[m/s],code[-]\n0.1,1e-300,\"SPH, plain\"\n0.30000000000000004,,\n";
-        assert_eq!(text, expected);
-    }
-
-    #[test]
-    fn a_table_refuses_nan_gaps_in_width_and_missing_units() {
-        let mut table = CsvTable::new(&["t[s]", "u[m/s]"]).unwrap();
-        table.numbers(&[0.0, 1.0]).unwrap();
-        for (value, text) in [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (-f64::INFINITY, "-inf")] {
-            let error = table.numbers(&[0.1, value]).unwrap_err().to_string();
-            assert_eq!(error, format!("column u[m/s] of row 1 is {text}, which is not finite"));
-        }
-        let error = table.numbers(&[0.1]).unwrap_err().to_string();
-        assert_eq!(error, "row 1 has 1 cells, but the header has 2");
-        assert_eq!(table.into_bytes(), b"t[s],u[m/s]\n0.0,1.0\n");
-        assert!(matches!(CsvTable::new(&["t[s]", "u"]), Err(FileError::Table(_))));
     }
 }

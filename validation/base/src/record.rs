@@ -374,6 +374,26 @@ impl Profile {
     pub fn column(&self, name: &str) -> &[f64] {
         self.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
     }
+
+    /// Comma-separated values, each column under `name[unit]`. A number is the shortest text that reads back
+    /// to the same bits; one that is not finite leaves a gap, and so does one that a shorter column lacks.
+    pub fn to_csv(&self) -> String {
+        let head = |column: &Column| format!("{}[{}]", column.name, column.unit);
+        let heads: Vec<String> = self.columns.iter().map(head).collect();
+        let cell = |number: Option<&f64>| match number {
+            Some(number) if number.is_finite() => {
+                let text = format!("{number:?}");
+                text.strip_suffix(".0").map_or(text.clone(), String::from)
+            }
+            _ => String::new(),
+        };
+        let mut text = heads.join(",") + "\n";
+        for k in 0..self.columns.iter().map(|column| column.values.len()).max().unwrap_or(0) {
+            let cells = self.columns.iter().map(|column| cell(column.values.get(k)));
+            text += &(cells.collect::<Vec<_>>().join(",") + "\n");
+        }
+        text
+    }
 }
 
 /// What a record says of its run is found in it directly.
@@ -544,6 +564,13 @@ mod tests {
         record.state = Some(digest(&[1.0]));
         record.cost.alone_s = vec![0.1, 0.3];
         record
+    }
+
+    #[test]
+    fn a_table_has_units_keeps_every_bit_and_has_a_gap_where_there_is_no_number() {
+        let table = Profile::default().with("t", "s", vec![1.0, -0.0, 0.1 + 0.2]);
+        let table = table.with("u", "m/s", vec![f64::NAN, 1e-300]);
+        assert_eq!(table.to_csv(), "t[s],u[m/s]\n1,\n-0,1e-300\n0.30000000000000004,\n");
     }
 
     #[test]

@@ -1,6 +1,6 @@
-//! ParaView files: particles as `PolyData` (`.vtp`), a run as a collection (`.pvd`).
+//! ParaView files: particles as `UnstructuredGrid` (`.vtu`), a run as a collection (`.pvd`).
 //!
-//! Arrays are base64 in the file, so floats are stored without loss. `Verts` are always written: without
+//! Arrays are base64 in the file, so floats are stored without loss. A cell a particle is always written: without
 //! them ParaView opens the file and shows nothing. The plane is z = 0, and vectors get a third
 //! component that is zero, because the filters of ParaView expect three.
 //! Positions must be finite. Fields may hold a NaN: ParaView draws it in a colour of its own,
@@ -11,8 +11,8 @@
 //! let place = Profile::default().with("x", "m", vec![0.0, 1.0]).with("y", "m", vec![0.0, 0.5]);
 //! let velocity = place.with("u", "m/s", vec![0.1, 0.2]).with("v", "m/s", vec![0.0; 2]);
 //! let file = vtk::particles(0.25, &velocity.with("p", "Pa", vec![1.0, 2.0]))?;
-//! let collection = vtk::collection(&[(0.25, "particles_0001.vtp".into())]);
-//! # assert!(file.contains("<Verts>") && collection.contains("timestep=\"0.25\""));
+//! let collection = vtk::collection(&[(0.25, "particles_0001.vtu".into())]);
+//! # assert!(file.contains("<Cells>") && collection.contains("timestep=\"0.25\""));
 //! # Ok::<(), std::io::Error>(())
 //! ```
 
@@ -31,7 +31,7 @@ fn vectors(columns: &Profile, names: [&str; 2]) -> Vec<[f64; 3]> {
     x.iter().zip(y).map(|(x, y)| [*x, *y, 0.0]).collect()
 }
 
-/// The text of a `.vtp` file: particles at one time. Of their columns, `x` and `y` are the places, `u` and
+/// The text of a `.vtu` file: particles at one time. Of their columns, `x` and `y` are the places, `u` and
 /// `v` the array `velocity`, and each other is an array of its own.
 ///
 /// # Errors
@@ -46,14 +46,14 @@ pub fn particles(time: f64, columns: &Profile) -> io::Result<String> {
     }
     let count = points.len();
     let mut xml = String::from(concat!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" ",
-        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n<FieldData>\n"
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" ",
+        "byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<FieldData>\n"
     ));
     let one_tuple = "Name=\"TimeValue\" NumberOfTuples=\"1\"";
     data_array(&mut xml, "Float64", one_tuple, &floats(&[time]));
     let _ = write!(
         xml,
-        "</FieldData>\n<Piece NumberOfPoints=\"{count}\" NumberOfVerts=\"{count}\" \
+        "</FieldData>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\" \
          NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n"
     );
     let others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
@@ -76,10 +76,12 @@ pub fn particles(time: f64, columns: &Profile) -> io::Result<String> {
     xml.push_str("</PointData>\n<Points>\n");
     let attributes = "Name=\"Points\" NumberOfComponents=\"3\"";
     data_array(&mut xml, "Float64", attributes, &floats(points.as_flattened()));
-    xml.push_str("</Points>\n<Verts>\n");
+    xml.push_str("</Points>\n<Cells>\n");
     data_array(&mut xml, "Int64", "Name=\"connectivity\"", &integers(0..count));
     data_array(&mut xml, "Int64", "Name=\"offsets\"", &integers(1..count + 1));
-    xml.push_str("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+    // Type 1 is a single point.
+    data_array(&mut xml, "UInt8", "Name=\"types\"", &vec![1; count]);
+    xml.push_str("</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
     Ok(xml)
 }
 
@@ -157,7 +159,7 @@ mod tests {
         let xml = particles(0.5, &columns).unwrap();
         let tags = tags(&xml);
         assert_eq!(tags.iter().filter(|tag| tag.starts_with("DataArray")).count(), 6);
-        assert!(xml.contains("NumberOfPoints=\"3\" NumberOfVerts=\"3\""));
+        assert!(xml.contains("NumberOfPoints=\"3\" NumberOfCells=\"3\""));
         assert!(xml.contains("Name=\"p &amp; &lt;q&gt;\""));
         assert_eq!(array(&xml, "TimeValue"), 0.5_f64.to_le_bytes());
         let flat = floats(&[0.1, 0.2, 0.0, 0.3, 0.4, 0.0, 0.5, 0.6, 0.0]);
@@ -189,9 +191,9 @@ mod tests {
 
     #[test]
     fn a_collection_lists_its_files_in_order() {
-        let xml = collection(&[(0.0, "a.vtp".into()), (1e-9, "b&c.vtp".into())]);
+        let xml = collection(&[(0.0, "a.vtu".into()), (1e-9, "b&c.vtu".into())]);
         let tags = tags(&xml);
-        assert_eq!(tags[3], "DataSet timestep=\"0.0\" part=\"0\" file=\"a.vtp\"/");
-        assert_eq!(tags[4], "DataSet timestep=\"1e-9\" part=\"0\" file=\"b&amp;c.vtp\"/");
+        assert_eq!(tags[3], "DataSet timestep=\"0.0\" part=\"0\" file=\"a.vtu\"/");
+        assert_eq!(tags[4], "DataSet timestep=\"1e-9\" part=\"0\" file=\"b&amp;c.vtu\"/");
     }
 }

@@ -1,6 +1,10 @@
 //! A problem as a document: every number with its unit, every equation with its text.
 
-use base::{gate::Gate, spec::RunSpec};
+use base::{
+    gate::Gate,
+    record::{Column, Profile},
+    spec::RunSpec,
+};
 use harness::{
     case::{Case, RunError},
     context::Context,
@@ -59,7 +63,8 @@ const HAND_IN: &str = "A folder with these files:\n\n\
 /// What a reader needs of the document: the run that is asked for.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Asked {
-    schema: u32,
+    /// version of the document
+    pub schema: u32,
     /// the run
     pub spec: RunSpec,
     /// what it was drawn from
@@ -68,20 +73,6 @@ pub struct Asked {
     /// name of the relation by which it is seen
     #[serde(default)]
     pub relation: Option<String>,
-}
-
-impl Asked {
-    /// Reads the document.
-    ///
-    /// # Errors
-    /// What is wrong with it, with line and column.
-    pub fn from_json(text: &str) -> Result<Self, String> {
-        let asked: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        match asked.schema {
-            SCHEMA => Ok(asked),
-            other => Err(format!("schema is {other}; this program reads schema {SCHEMA}")),
-        }
-    }
 }
 
 /// A number with its unit.
@@ -138,6 +129,7 @@ impl Problem {
         };
         let gate =
             |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
+        let column = |column: &Column| json!({ "name": column.name, "unit": column.unit });
         let mut document = json!({
             "schema": SCHEMA,
             "spec": self.spec,
@@ -159,7 +151,7 @@ impl Problem {
                 "count": self.outline.particles.column("id").len(),
                 "spacing": with_unit(m.dx, "m"),
                 "roles": { "0": "moves", "1": "behind a wall", "2": "on a wall" },
-                "columns": self.columns(),
+                "columns": self.particles().columns.iter().map(column).collect::<Vec<_>>(),
             },
             "times": with_unit(times, "s"),
             "end": with_unit(times.last(), "s"),
@@ -182,12 +174,12 @@ impl Problem {
         document
     }
 
-    /// Names and units of the columns of the particles.
-    pub fn columns(&self) -> Vec<Value> {
-        let columns = self.outline.particles.columns.iter();
-        let columns = columns.map(|c| json!({ "name": c.name, "unit": c.unit }));
-        let body = json!({ "name": "body", "unit": "-" });
-        columns.chain((!self.outline.bodies.is_empty()).then_some(body)).collect()
+    /// All particles, with the number of the body to which each belongs if there are bodies.
+    pub fn particles(&self) -> Profile {
+        let Outline { particles, bodies, .. } = &self.outline;
+        let bodies: Vec<f64> = bodies.iter().map(|body| f64::from(*body)).collect();
+        let particles = particles.clone();
+        if bodies.is_empty() { particles } else { particles.with("body", "-", bodies) }
     }
 
     /// The equations in words.

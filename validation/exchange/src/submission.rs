@@ -16,12 +16,15 @@ use harness::{
     playback::{self, Frame, Playback},
     suite,
 };
-use serde::{Deserialize, de::DeserializeOwned};
+use serde::{
+    Deserialize, Deserializer,
+    de::{DeserializeOwned, Error},
+};
 use serde_json::{Map, Value};
 
 use crate::{
     flaw::Flaw,
-    problem::{Asked, PROBLEM, Problem},
+    problem::{Asked, PROBLEM, Problem, SCHEMA},
     read::{
         self, RESULTS, Renamed, Results,
         curve::{self, CURVE},
@@ -59,47 +62,32 @@ pub struct Method {
     pub changed: String,
 }
 
-/// A machine and what the run took, as the document says.
+/// A machine and what the run took, as the document says; a number may be unknown.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct System {
     /// name of the machine or of its processor
     pub machine: String,
     /// threads that the run used
-    pub threads: Known,
+    #[serde(deserialize_with = "known")]
+    pub threads: Option<f64>,
     /// wall time of the time loop \[s\]
-    pub seconds: Known,
+    #[serde(deserialize_with = "known")]
+    pub seconds: Option<f64>,
     /// time steps
-    pub steps: Known,
+    #[serde(deserialize_with = "known")]
+    pub steps: Option<f64>,
     /// pairs of particles inside the support, summed over all sums
-    pub interactions: Known,
+    #[serde(deserialize_with = "known")]
+    pub interactions: Option<f64>,
 }
 
-/// A number that may be unknown.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(untagged)]
-pub enum Known {
-    /// the number
-    Number(f64),
-    /// the word `unknown`
-    Unknown(Unknown),
-}
-
-/// The word `unknown`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Unknown {
-    /// nobody knows
-    Unknown,
-}
-
-impl Known {
-    /// The number, if it is known.
-    pub fn number(self) -> Option<f64> {
-        match self {
-            Known::Number(number) => Some(number),
-            Known::Unknown(_) => None,
-        }
+/// A number, or the word `unknown`.
+fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
+    let value = Value::deserialize(from)?;
+    match value.as_f64() {
+        None if value != "unknown" => Err(D::Error::custom(format!("it is {value}"))),
+        number => Ok(number),
     }
 }
 
@@ -176,7 +164,7 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
             ("steps", steps, 1e15),
             ("interactions", interactions, 1e18),
         ] {
-            if let Some(number) = known.number().filter(|n| !(*n > 0.0 && *n <= most)) {
+            if let Some(number) = known.filter(|n| !(*n > 0.0 && *n <= most)) {
                 let what =
                     format!("it is {number}; expected a number above 0 and at most {most:e}");
                 flaws.push(Flaw::of(SYSTEM, what).in_column(name));
@@ -218,14 +206,19 @@ fn unnamed(file: &str, field: &str, text: &str) -> Option<Flaw> {
     Some(Flaw::of(file, what).in_column(field))
 }
 
+/// The problem that the folder has, if it has one.
 fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
-    let text = match files::read_text(&folder.join(PROBLEM), MOST_BYTES) {
-        Err(reason) if reason.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        read => read.map_err(|reason| Flaw::of(PROBLEM, format!("cannot be read: {reason}")))?,
-    };
-    Asked::from_json(text.trim_start_matches('\u{feff}'))
-        .map(Some)
-        .map_err(|what| Flaw::of(PROBLEM, what))
+    if let Ok(false) = folder.join(PROBLEM).try_exists() {
+        return Ok(None);
+    }
+    let (asked, _) = document::<Asked>(folder, PROBLEM, "the document as it was exported")?;
+    match asked.schema {
+        SCHEMA => Ok(Some(asked)),
+        other => {
+            let what = format!("schema is {other}; this program reads schema {SCHEMA}");
+            Err(Flaw::of(PROBLEM, what))
+        }
+    }
 }
 
 impl Entry {
@@ -434,10 +427,10 @@ impl Entry {
 
     fn cost(&self, record: &Record) -> Cost {
         let System { threads, seconds, steps, interactions, .. } = &self.system;
-        let count = |known: &Known| known.number().map_or(0, |number| number as u64);
-        let processor = seconds.number().zip(threads.number()).map(|(s, threads)| s * threads);
+        let count = |known: &Option<f64>| known.map_or(0, |number| number as u64);
+        let processor = seconds.zip(*threads).map(|(s, threads)| s * threads);
         Cost {
-            wall_s: seconds.number().unwrap_or(f64::NAN),
+            wall_s: seconds.unwrap_or(f64::NAN),
             cpu_s: processor.unwrap_or(f64::NAN),
             alone_s: processor.into_iter().collect(),
             steps: count(steps),

@@ -65,7 +65,7 @@ impl<'a> Frames<'a> {
         &mut self,
         simulation: &(impl Stepper<X> + ?Sized),
     ) -> Result<(), FileError> {
-        let name = format!("particles_{:04}.vtp", self.come);
+        let name = format!("particles_{:04}.vtu", self.come);
         self.come += 1;
         let columns = columns(&simulation.particles(), self.pressure);
         let refused = |reason| FileError::File { path: self.folder.path().join(&name), reason };

@@ -666,7 +666,7 @@ mod tests {
     fn a_run_goes_on_when_a_frame_or_a_checkpoint_cannot_be_written() {
         let folder = tempfile::tempdir().unwrap();
         let frames = folder.path().join("vtk");
-        std::fs::create_dir_all(frames.join("particles_0001.vtp/in the way")).unwrap();
+        std::fs::create_dir_all(frames.join("particles_0001.vtu/in the way")).unwrap();
         let (times, mut wave, lost) = ([40.0 * DT], wave(), Mutex::new(Vec::new()));
         let lose = |error: &RunError| lost.lock().unwrap().push(error.to_string());
         let tries = AtomicUsize::new(0);
@@ -693,7 +693,7 @@ mod tests {
         // Two ticks a step: every 30 ticks a checkpoint is tried, not after every step.
         assert_eq!((of("particles_0001"), of("disk is full"), tries.into_inner()), (1, 2, 2));
         let index = std::fs::read_to_string(frames.join("particles.pvd")).unwrap();
-        let listed = [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtp")));
+        let listed = [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtu")));
         assert_eq!(listed, [true, false, true, true], "{index}");
         assert_eq!(index.matches("<DataSet ").count(), 3, "each once: {index}");
     }
@@ -704,12 +704,12 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let names = || {
             let index = std::fs::read_to_string(folder.path().join("particles.pvd")).unwrap();
-            [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtp")))
+            [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtu")))
         };
         let frames = Some((folder.path().to_path_buf(), 4));
         let (_, kept) = resumable(Some(25), Vec::new(), frames.clone());
         assert_eq!(names(), [true, true, false, false]);
-        std::fs::remove_file(folder.path().join("particles_0000.vtp")).unwrap();
+        std::fs::remove_file(folder.path().join("particles_0000.vtu")).unwrap();
         resumable(None, kept, frames);
         assert_eq!(names(), [false, true, true, true]);
     }
@@ -721,10 +721,10 @@ mod tests {
         let frames = |folder: &tempfile::TempDir| Some((folder.path().to_path_buf(), 4));
         resumable(None, Vec::new(), frames(&alone));
         let (cost, kept) = resumable(Some(10), Vec::new(), frames(&cut));
-        let name = "particles_0000.vtp";
+        let name = "particles_0000.vtu";
         assert!(cost.steps == 10 && !cut.path().join(name).exists());
         resumable(None, kept, frames(&cut));
-        for name in [name, "particles_0001.vtp", "particles_0003.vtp", "particles.pvd"] {
+        for name in [name, "particles_0001.vtu", "particles_0003.vtu", "particles.pvd"] {
             let [alone, cut] = [&alone, &cut].map(|folder| folder.path().join(name));
             assert!(std::fs::read(alone).unwrap() == std::fs::read(cut).expect(name), "{name}");
         }

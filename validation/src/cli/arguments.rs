@@ -126,8 +126,8 @@ pub struct Run {
     #[arg(long, value_name = "WHICH", value_parser = one_of(&METRICS), default_value = "headline")]
     pub metrics: Measure,
     /// Write record.json, the curves of the record (series.csv and others) and profile.csv into this folder:
-    /// the velocity across a channel, with profile.png, or all fields of the particles at the end; without
-    /// --out and --vtk no file is written
+    /// the velocity across a channel, or all fields of the particles at the end; without --out and --vtk no
+    /// file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write into the folder even if it holds the record of another case; files of both are then mixed
@@ -345,17 +345,6 @@ pub struct Reuse {
     pub fresh: bool,
 }
 
-/// Verdicts for other programs.
-#[derive(Clone, Debug, Default, Args)]
-pub struct Export {
-    /// Write the verdicts as JUnit XML, one test case per gate
-    #[arg(long, value_name = "FILE")]
-    pub junit: Option<PathBuf>,
-    /// Write the verdicts as a Markdown table
-    #[arg(long, value_name = "FILE")]
-    pub markdown: Option<PathBuf>,
-}
-
 /// What is judged, and how the verdicts are told.
 #[derive(Debug, Args)]
 pub struct Judged {
@@ -364,8 +353,9 @@ pub struct Judged {
     /// The tier whose plan is judged
     #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
-    #[command(flatten)]
-    pub export: Export,
+    /// Write the verdicts as JUnit XML, one test case per gate
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
     /// Print every gate, before the line that each case has
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
@@ -418,8 +408,9 @@ pub struct Report {
     pub partial: bool,
     #[command(flatten)]
     pub reuse: Reuse,
-    #[command(flatten)]
-    pub export: Export,
+    /// Write the verdicts as JUnit XML, one test case per gate
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
     /// Number of runs made in parallel, 1 to 1024; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,

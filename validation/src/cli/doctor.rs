@@ -32,11 +32,7 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
             }
         };
         output::print(&format!("{what:<11} {mark} {words}\n"))?;
-        if world.is_interrupted() {
-            return Err(Failure::interrupted(
-                "the checks are not complete; the same command begins again",
-            ));
-        }
+        world.go_on("the checks are not complete; the same command begins again")?;
     }
     if !is_sound {
         return Err(Failure::bug("a check of doctor failed, see above"));
@@ -108,6 +104,9 @@ fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
     }
 }
 
+/// What is told of an interrupt.
+const NOT_MEASURED: &str = "the measurements are not complete; the same command begins again";
+
 /// Seconds that one measurement may take.
 const BUDGET: f64 = 2.0;
 
@@ -131,9 +130,7 @@ fn bench(world: &World) -> Result<(), Failure> {
                 row.extend([particles, report::sig(speed.neighbours, 3), bytes]);
             }
             row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
-            if world.is_interrupted() {
-                return Err(interrupted());
-            }
+            world.go_on(NOT_MEASURED)?;
         }
         rows.push(row);
     }
@@ -163,9 +160,7 @@ fn whole_runs(world: &World) -> Result<(), Failure> {
         let context = Context { interrupt, profile, ..Context::default() };
         let Cost { particles, steps, particle_rhs, wall_s, observing_s, breakdown, .. } =
             case.run(&spec, &context)?.cost;
-        if world.is_interrupted() {
-            return Err(interrupted());
-        }
+        world.go_on(NOT_MEASURED)?;
         let each = |seconds: f64| 1e9 * seconds / (particles as f64 * steps as f64);
         let sweeps = breakdown.map_or(f64::NAN, |breakdown| breakdown.share(&profile::SWEEPS));
         rows.push(vec![
@@ -186,8 +181,4 @@ fn whole_runs(world: &World) -> Result<(), Failure> {
          CASE --profile`\nshows all parts.\n\n{}",
         output::table(&heads, rows)
     ))
-}
-
-fn interrupted() -> Failure {
-    Failure::interrupted("the measurements are not complete; the same command begins again")
 }

@@ -7,13 +7,13 @@ use ::exchange::{
     challenge,
     flaw::Flaw,
     problem::{Asked, Problem, Sealed},
-    read::{COLUMNS, RESULTS, curve::CURVE},
+    read::{COLUMNS, Head, RESULTS, curve::CURVE},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
 };
 use base::{
-    files::{self, CsvTable, OutputFolder},
-    record::{Profile, Record, Status},
+    files::{self, OutputFolder},
+    record::{Profile, Record},
     reference::sha256,
     spec::RunSpec,
     submission::OURS,
@@ -59,18 +59,17 @@ fn solve(
     let spec = &problem.spec;
     // Mass and role are for codes that choose their own particles.
     let written = COLUMNS.iter().filter(|(name, ..)| !["mass", "role"].contains(name));
-    let heads: Vec<String> =
-        written.clone().map(|(name, unit, _)| format!("{name}[{unit}]")).collect();
-    let columns: Vec<&str> = written.map(|(name, ..)| *name).skip(1).collect();
-    let rows = Mutex::new(Vec::<Vec<f64>>::new());
+    let add = |results: Profile, (name, unit, _): &Head| results.with(name, unit, Vec::new());
+    let results = Mutex::new(written.fold(Profile::default(), add));
     let tell = |time: f64, particles: Profile| {
-        let mut rows = rows.lock().unwrap_or_else(PoisonError::into_inner);
-        if rows.last().is_some_and(|row| row[0] == time) {
+        let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+        if results.column("t").last() == Some(&time) {
             return; // stated twice
         }
-        for k in 0..particles.column("id").len() {
-            let row = columns.iter().map(|name| particles.column(name)[k]);
-            rows.push(std::iter::once(time).chain(row).collect());
+        let times = vec![time; particles.column("id").len()];
+        let particles = particles.with("t", "s", times);
+        for column in &mut results.columns {
+            column.values.extend(particles.column(&column.name));
         }
     };
     let context = Context {
@@ -85,9 +84,7 @@ fn solve(
         Err(RunError::Told) => Record::new(case.name(), &spec.variant, spec.settings.clone(), 1),
         made => made?,
     };
-    if world.is_interrupted() || matches!(record.status, Status::Interrupted { .. }) {
-        return Err(Failure::interrupted("the problem is written, its results are not"));
-    }
+    world.go_on("the problem is written, its results are not")?;
     let method = json!({
         "code": OURS,
         "version": env!("CARGO_PKG_VERSION"),
@@ -105,33 +102,23 @@ fn solve(
         "steps": counted(json!(cost.steps)),
         "interactions": counted(json!(cost.pair_interactions)),
     });
-    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
-    for row in rows.into_inner().unwrap_or_else(PoisonError::into_inner) {
-        table.numbers(&row)?;
-    }
-    let (name, table) = match series(case, &record)? {
+    let (name, table) = match series(case, &record) {
         Some(series) => (CURVE, series),
-        None => (RESULTS, table),
+        None => (RESULTS, results.into_inner().unwrap_or_else(PoisonError::into_inner)),
     };
-    folder.write(name, &table.into_bytes())?;
+    folder.write(name, table.to_csv().as_bytes())?;
     folder.write(METHOD, format!("{method:#}\n").as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
     Ok([name, METHOD, SYSTEM].map(String::from).into())
 }
 
 /// The series from which a case measures more than from particles at its few times, if it has one.
-fn series(case: &dyn Case, record: &Record) -> Result<Option<CsvTable>, Failure> {
-    let curve = case.declaration(Tier::Quick).curve.filter(|curve| curve.coarsen.is_some());
-    let Some((name, columns)) = curve.map(|curve| curve.shown) else { return Ok(None) };
-    let Some(profile) = record.profiles.get(name) else { return Ok(None) };
-    let shown = profile.columns.iter().filter(|column| columns.contains(&&*column.name));
-    let heads: Vec<String> =
-        shown.map(|column| format!("{}[{}]", column.name, column.unit)).collect();
-    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
-    for k in 0..record.column(name, columns[0]).len() {
-        table.numbers(&columns.iter().map(|of| record.column(name, of)[k]).collect::<Vec<_>>())?;
-    }
-    Ok(Some(table))
+fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
+    let curve = case.declaration(Tier::Quick).curve.filter(|curve| curve.coarsen.is_some())?;
+    let (name, columns) = curve.shown;
+    let mut series = record.profiles.get(name)?.clone();
+    series.columns.retain(|column| columns.contains(&&*column.name));
+    Some(series)
 }
 
 pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
@@ -240,7 +227,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         )));
     }
     let end = same.outline.times.last().copied().unwrap_or_default();
-    let steps = ours.system.steps.number().unwrap_or(end / same.outline.dt);
+    let steps = ours.system.steps.unwrap_or(end / same.outline.dt);
     let (ours, theirs) = (&*ours.results.frames, &*theirs.results.frames);
     let found = symmetry::difference((&same.outline, ours), (&other.outline, theirs), steps);
     super::symmetry::show(vec![super::symmetry::row(case, &same.spec, by, &found)])?;

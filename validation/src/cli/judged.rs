@@ -1,4 +1,4 @@
-//! Judgements as tables, as JSON that `explain` reads back, and for other programs as JUnit XML and Markdown.
+//! Judgements as tables, as JSON that `explain` reads back, and for other programs as JUnit XML.
 
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -15,7 +15,7 @@ use harness::study::Study;
 use harness::suite::Suite;
 use serde::{Deserialize, Serialize};
 
-use super::{Failure, arguments, output};
+use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
@@ -154,10 +154,12 @@ impl Verdicts {
         let of_cases = suite.cases.iter().flat_map(|results| {
             results.studies.iter().map(|study| of_study(results.case.name(), study))
         });
+        let counts = suite.counts();
+        let there_are = Verdict::ALL.into_iter().filter(|of| counts.count(*of) > 0);
         Verdicts {
             tier: tier_name(suite.tier),
             commit: super::SOURCE.commit.into(),
-            counts: counts(suite),
+            counts: there_are.map(|of| (of.name().to_string(), counts.count(of))).collect(),
             runs: suite
                 .cases
                 .iter()
@@ -173,37 +175,9 @@ pub fn json(suite: &Suite) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(&Verdicts::of(suite)).map_err(Failure::bug)? + "\n")
 }
 
-fn counts(suite: &Suite) -> BTreeMap<String, usize> {
-    let mut counts = BTreeMap::new();
-    for judged in suite.judged() {
-        *counts.entry(judged.judgement.verdict.name().to_string()).or_default() += 1;
-    }
-    counts
-}
-
-/// Refuses one file for both, of which only the later one would be left.
-pub fn check_files(export: &arguments::Export) -> Result<(), Failure> {
-    match (&export.junit, &export.markdown) {
-        (Some(junit), Some(markdown)) if junit == markdown => Err(Failure::usage(format!(
-            "--junit and --markdown name the same file, {}; name two",
-            junit.display()
-        ))),
-        _ => Ok(()),
-    }
-}
-
-/// Writes the files that were asked for; if the first one cannot be written, the other one is all the same.
-pub fn write_files(suite: &Suite, export: &arguments::Export) -> Result<(), Failure> {
-    let mut written = Ok(());
-    for (path, text) in [
-        (&export.junit, junit as fn(&Suite) -> String),
-        (&export.markdown, markdown as fn(&Suite) -> String),
-    ] {
-        if let Some(path) = path {
-            written = written.and(write_atomically(path, text(suite).as_bytes()));
-        }
-    }
-    Ok(written?)
+/// Writes the verdicts as JUnit XML into a file, if it was asked for.
+pub fn write_junit(suite: &Suite, path: Option<&Path>) -> Result<(), Failure> {
+    Ok(path.map_or(Ok(()), |path| write_atomically(path, junit(suite).as_bytes()))?)
 }
 
 /// The number that was judged, for people.
@@ -242,19 +216,4 @@ fn junit(suite: &Suite) -> String {
         text += "  </testsuite>\n";
     }
     text + "</testsuites>\n"
-}
-
-/// Counts, then a table of every gate that did not simply pass.
-fn markdown(suite: &Suite) -> String {
-    let mut text = format!("# Verdicts\n\n{}\n\n", suite.counts().headline());
-    text += "| verdict | gate | value | bound |\n|---|---|---|---|\n";
-    let mut rows: Vec<_> =
-        suite.judged().filter(|j| j.judgement.verdict != Verdict::Pass).collect();
-    rows.sort_by_key(|j| !j.judgement.verdict.is_failure());
-    for judged in rows {
-        let verdict = judged.words().replace('|', "\\|");
-        let (id, bound) = (&judged.gate.id, judged.gate.bounds());
-        text += &format!("| {verdict} | `{id}` | {} | {bound} |\n", value(&judged.judgement));
-    }
-    text
 }

@@ -190,6 +190,11 @@ impl World {
         Err(Failure { exit: Exit::GateFailed, reason })
     }
 
+    /// Goes on, unless the user interrupts: then this is told of what there is.
+    fn go_on(&self, what: &str) -> Result<(), Failure> {
+        if self.is_interrupted() { Err(Failure::interrupted(what)) } else { Ok(()) }
+    }
+
     fn is_interrupted(&self) -> bool {
         self.interrupt.load(std::sync::atomic::Ordering::Relaxed)
     }

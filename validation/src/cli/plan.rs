@@ -10,8 +10,8 @@ use std::sync::OnceLock;
 
 use ::report::{counted, seconds, sig};
 use base::{
-    files::{self, Cell, CsvTable, FileError},
-    record::Status,
+    files,
+    record::{Profile, Status},
     spec::{RunSpec, Task},
 };
 use harness::{
@@ -48,11 +48,9 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
         let making = world.making(Tier::Quick);
         let of = |job: &Job| if making.is_interrupted() { None } else { size(job, true) };
         let sizes: Vec<Option<Size>> = jobs.par_iter().map(of).collect();
-        if world.is_interrupted() {
-            return Err(Failure::interrupted("no plan is printed"));
-        }
+        world.go_on("no plan is printed")?;
         if let Some(path) = &arguments.estimates {
-            files::write_atomically(path, &table(&jobs, &sizes)?)?;
+            files::write_atomically(path, table(&jobs, &sizes).to_csv().as_bytes())?;
         }
         output::say(&sum(&jobs, &sizes));
     }
@@ -97,9 +95,7 @@ fn sweep(
     let mut jobs = Vec::new();
     for variant in variants {
         for set in &combinations {
-            if world.is_interrupted() {
-                return Err(Failure::interrupted("no plan is printed"));
-            }
+            world.go_on("no plan is printed")?;
             jobs.push(Job { case, planned: Planned::new(case::spec(case, variant, set)?) });
         }
     }
@@ -124,16 +120,15 @@ fn time(spec: &RunSpec, size: &Size) -> f64 {
     if spec.task == Task::Simulate { size.seconds() } else { SIMULATIONS * size.seconds() }
 }
 
-/// What each run takes, a row a line of the plan with its number for `run --index`; nothing of a run that is
+/// What each run takes, a row a line of the plan with its number for `run --index`; gaps for a run that is
 /// refused.
-fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Result<Vec<u8>, FileError> {
-    let mut table = CsvTable::new(&["index[-]", "time[s]", "memory[MB]"])?;
-    for (index, (job, size)) in jobs.iter().zip(sizes).enumerate() {
-        let numbers = size.map(|size| [time(&job.planned.spec, &size), 1e-6 * size.bytes()]);
-        let cell = |k: usize| Cell::from(numbers.map(|of| of[k]).filter(|of| of.is_finite()));
-        table.cells(&[Cell::Text(index.to_string()), cell(0), cell(1)])?;
-    }
-    Ok(table.into_bytes())
+fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
+    let of_run = |(index, (job, size)): (usize, (&Job, &Option<Size>))| match size {
+        Some(size) => [index as f64, time(&job.planned.spec, size), 1e-6 * size.bytes()],
+        None => [index as f64, f64::NAN, f64::NAN],
+    };
+    let rows: Vec<[f64; 3]> = jobs.iter().zip(sizes).enumerate().map(of_run).collect();
+    Profile::of_rows(&[("index", "-"), ("time", "s"), ("memory", "MB")], &rows)
 }
 
 /// What all runs take together, the longest and the largest of them, and how many are refused.
@@ -246,9 +241,7 @@ fn planned(
     }
     let (mut planned, mut refused) = (Vec::new(), Vec::new());
     for (number, line) in lines {
-        if world.is_interrupted() {
-            return Err(Failure::interrupted("no run was made"));
-        }
+        world.go_on("no run was made")?;
         match spec(line, world) {
             Ok(spec) => planned.push(Planned::new(spec)),
             Err(why) => refused.push(format!("line {} of {}: {why}", number + 1, file.display())),

@@ -28,7 +28,6 @@ use super::{
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
-    judged::check_files(&arguments.export)?;
     let folder = OutputFolder::create(&arguments.out)?;
     let (tier, any_build) = (arguments.tier, arguments.reuse.any_build);
     let (suite, listed, lacking) = match &arguments.store {
@@ -55,7 +54,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         }
     };
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
-    let exported = judged::write_files(&suite, &arguments.export);
+    let exported = judged::write_junit(&suite, arguments.junit.as_deref());
     let written = write_verdicts(&folder, &suite);
     let path = folder.path().join("index.html");
     let mut page = page::assemble(&suite, &now());

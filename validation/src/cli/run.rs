@@ -8,9 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
 use base::{
-    files::{self, Cell, CsvTable, FileError, OutputFolder},
+    files::{self, FileError, OutputFolder},
     gate::Gate,
     record::{NOT_ASKED, Profile, Record, Status},
 };
@@ -319,23 +318,15 @@ fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<
     let Folder { output, .. } = folder;
     output.write(RECORD, record.to_json().map_err(Failure::bug)?.as_bytes())?;
     let mut names = vec![RECORD.to_string()];
-    let curves = curves(record);
-    let shown = if curves.is_empty() { last } else { Some(of_curves(&curves)) };
-    if let Some(shown) = shown {
-        output.write("profile.csv", &series_csv(&shown)?)?;
+    if let Some(shown) = velocities(record).or(last) {
+        output.write("profile.csv", shown.to_csv().as_bytes())?;
         names.push("profile.csv".into());
-    }
-    if !curves.is_empty() {
-        let path = output.path().join("profile.png");
-        report::png(&figure(record, &curves), &path)
-            .map_err(|reason| FileError::File { path, reason })?;
-        names.push("profile.png".into());
     }
     for (name, profile) in &record.profiles {
         // Curves at one time are in profile.csv, particles in the frames.
         if !name.contains('@') && name != "particles" {
             let file = format!("{}.csv", name.replace(' ', "-"));
-            output.write(&file, &series_csv(profile)?)?;
+            output.write(&file, profile.to_csv().as_bytes())?;
             names.push(file);
         }
     }
@@ -345,78 +336,23 @@ fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<
     Ok(names)
 }
 
-/// The velocity across the channel at one time.
-struct Curve {
-    /// νt/L²
-    tau: f64,
-    /// in seconds
-    time: f64,
-    /// y, u and the exact u, finite
-    points: Vec<[f64; 3]>,
-}
-
-/// Profiles `u@TAU` of the record, by time.
-fn curves(record: &Record) -> Vec<Curve> {
+/// The velocity across a channel at all times of the record, whose profiles are `u@TAU` with TAU = νt/L².
+fn velocities(record: &Record) -> Option<Profile> {
     let setting = |name: &str| record.settings[name].as_f64();
-    let (Some(width), Some(nu)) = (setting("width"), setting("nu")) else { return Vec::new() };
-    let mut curves: Vec<Curve> = record
-        .profiles
-        .iter()
-        .filter_map(|(name, profile)| {
-            let tau: f64 = name.strip_prefix("u@")?.parse().ok()?;
-            let column = |name: &str| {
-                let column = profile.columns.iter().find(|column| column.name == name);
-                column.map(|column| &column.values)
-            };
-            let (y, u, exact) = (column("y")?, column("u")?, column("u_exact")?);
-            let points = y.iter().zip(u).zip(exact).map(|((y, u), exact)| [*y, *u, *exact]);
-            let finite = points.filter(|point| point.iter().all(|number| number.is_finite()));
-            Some(Curve { tau, time: tau * (width * width / nu), points: finite.collect() })
-        })
-        .collect();
-    curves.sort_by(|a, b| a.tau.total_cmp(&b.tau));
-    curves
-}
-
-/// All curves, one below the other.
-fn of_curves(curves: &[Curve]) -> Profile {
-    let of_curve = |Curve { time, points, .. }: &Curve| {
-        points.iter().map(|[y, u, exact]| [*time, *y, *u, *exact]).collect::<Vec<_>>()
-    };
-    let rows: Vec<[f64; 4]> = curves.iter().flat_map(of_curve).collect();
-    Profile::of_rows(&[("t", "s"), ("y", "m"), ("u", "m/s"), ("u_exact", "m/s")], &rows)
-}
-
-/// The columns as they are; a number that is not finite leaves a gap.
-fn series_csv(series: &Profile) -> Result<Vec<u8>, FileError> {
-    let heads: Vec<String> =
-        series.columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
-    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
-    let length = series.columns.iter().map(|column| column.values.len()).min().unwrap_or(0);
-    for k in 0..length {
-        let cell =
-            |number: f64| if number.is_finite() { Cell::Number(number) } else { Cell::Empty };
-        let row: Vec<Cell> = series.columns.iter().map(|column| cell(column.values[k])).collect();
-        table.cells(&row)?;
+    let (width, nu) = (setting("width")?, setting("nu")?);
+    let mut profiles: Vec<(f64, &Profile)> = Vec::new();
+    for (name, profile) in &record.profiles {
+        profiles.extend(name.strip_prefix("u@").and_then(|tau| Some((tau.parse().ok()?, profile))));
     }
-    Ok(table.into_bytes())
-}
-
-/// Symbols: SPH; lines: exact.
-fn figure(record: &Record, curves: &[Curve]) -> Figure {
-    let rows = record.settings["rows"].as_u64().unwrap_or_default();
-    let title = format!("{}, variant {}, {rows} rows", record.case, record.variant);
-    let (x, y) = (Axis::linear("y [m]"), Axis::linear("velocity u [m/s]"));
-    let mut plot = Plot::new(title, x, y).legend(Legend::Outside);
-    for (k, Curve { tau, points, .. }) in curves.iter().enumerate() {
-        let exact = points.iter().map(|[y, _, exact]| (*y, *exact)).collect();
-        let name = if k == 0 { "exact" } else { "" };
-        plot = plot.layer(Series::line(name, exact).colour(Colour::GREY).dash(Dash::Solid));
-        let computed = points.iter().map(|[y, u, _]| (*y, *u)).collect();
-        let name = format!("SPH, νt/L² = {tau}");
-        plot = plot.layer(Series::markers(name, computed).colour(Colour::cycle(k)));
+    profiles.sort_by(|(tau, _), (other, _)| tau.total_cmp(other));
+    let mut rows = Vec::new();
+    for (tau, profile) in profiles {
+        let time = tau * (width * width / nu);
+        let [y, u, exact] = ["y", "u", "u_exact"].map(|name| profile.column(name));
+        rows.extend(y.iter().zip(u).zip(exact).map(|((y, u), exact)| [time, *y, *u, *exact]));
     }
-    Figure::new("profile", "").panel(plot).panel_size(520.0, 360.0)
+    let columns = [("t", "s"), ("y", "m"), ("u", "m/s"), ("u_exact", "m/s")];
+    (!rows.is_empty()).then(|| Profile::of_rows(&columns, &rows))
 }
 
 /// What a person wants to know of a record.
@@ -474,7 +410,7 @@ fn metrics(record: &Record) -> String {
         metric.map(|metric| report::sig(metric.value, 4)).unwrap_or_default()
     };
     // Times of channels are νt/L²; those of other cases are in the units that their formulas name.
-    let at = if curves(record).is_empty() { "at" } else { "at νt/L²" };
+    let at = if velocities(record).is_some() { "at νt/L²" } else { "at" };
     let heads: Vec<&str> = std::iter::once(at).chain(of_times.keys().copied()).collect();
     let row = |time: &&str| {
         let values = of_times.keys().map(|name| value(name, time));

@@ -38,9 +38,7 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
         let battery = |(case, spec): &(&dyn Case, _)| symmetry::battery(*case, spec);
         Ok(specs.par_iter().filter(|_| !world.is_interrupted()).map(battery).collect())
     })?;
-    if world.is_interrupted() {
-        return Err(Failure::interrupted("nothing is told"));
-    }
+    world.go_on("nothing is told")?;
     let (mut rows, mut exit) = (Vec::new(), Exit::Pass);
     for ((case, spec), found) in specs.iter().zip(all) {
         let none = |why: RunError| {

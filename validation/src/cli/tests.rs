@@ -402,14 +402,13 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert!(afresh > made, "it was not made afresh");
     assert_eq!(good("touchstone report --out OUT/a --fresh"), Exit::Pass);
     assert!(time() > afresh, "it was not made afresh");
-    let export = "--junit OUT/junit.xml --markdown OUT/verdicts.md";
-    assert_eq!(good(&format!("touchstone judge --store OUT/a/records {export}")), Exit::Pass);
+    let line = "touchstone judge --store OUT/a/records --junit OUT/junit.xml";
+    assert_eq!(good(line), Exit::Pass);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
     assert!(
         read("junit.xml")
             .contains("<testcase classname=\"right\" name=\"staged.right.right.error\">")
     );
-    assert!(read("verdicts.md").starts_with("# Verdicts\n\n2 gates pass"));
     assert_eq!(good("touchstone report --store OUT/a/records --out OUT/b"), Exit::Pass);
     assert_eq!(good("touchstone compare OUT/a OUT/b"), Exit::Pass);
     assert_eq!(on(&SOUND, "touchstone report --out OUT/c"), Exit::GateFailed);
@@ -545,31 +544,15 @@ fn a_file_of_a_report_that_cannot_be_written_keeps_no_other_from_being_written()
     static GOOD: [&dyn Case; 1] = [&RIGHT];
     let folder = tempfile::tempdir().expect("a folder");
     block(&folder.path().join("out/verdicts.json"));
-    for name in ["junit.xml", "verdicts.md"] {
-        block(&folder.path().join("blocked").join(name));
-    }
+    block(&folder.path().join("blocked/junit.xml"));
     let out = |line: &str| run_on(&GOOD, &NEVER, line, folder.path());
-    let line = "report --out OUT/out --junit OUT/blocked/junit.xml --markdown OUT/verdicts.md";
+    assert_eq!(out("report --out OUT/out --junit OUT/blocked/junit.xml"), Exit::Usage);
+    assert!(folder.path().join("out/index.html").is_file());
+    // Either alone is an error, too.
+    assert_eq!(out("report --out OUT/out --junit OUT/junit.xml"), Exit::Usage);
+    assert!(folder.path().join("junit.xml").is_file());
+    let line = "verify --store OUT/store --junit OUT/blocked/junit.xml";
     assert_eq!(out(line), Exit::Usage);
-    for name in ["out/index.html", "verdicts.md"] {
-        assert!(folder.path().join(name).is_file(), "{name}");
-    }
-    // One of two alone: that the other one is written makes it no less an error.
-    for (junit, markdown) in [("OUT/blocked", "OUT"), ("OUT", "OUT/blocked")] {
-        let line = format!("verify --store OUT/store --junit {junit}/junit.xml");
-        assert_eq!(out(&format!("{line} --markdown {markdown}/verdicts.md")), Exit::Usage);
-    }
-}
-
-#[test]
-fn gates_are_listed_by_their_last_verdict() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let in_folder = |line: &str| run_on(&SOUND, &NEVER, line, folder.path());
-    let line = "explain --status fail --reports OUT";
-    assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
-    assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
-    assert_eq!(in_folder(line), Exit::Pass);
-    assert_eq!(in_folder("explain staged.right.r --status pass --reports OUT"), Exit::Pass);
 }
 
 #[test]
@@ -640,23 +623,6 @@ fn verify_is_a_line_a_case_then_each_failure_in_full() {
     }
     assert!(text.ends_with("1 gate fails, 4 gates pass\n"), "{text}");
     assert!(!text.contains("explain"), "nothing is limited: {text}");
-}
-
-fn limited(id: &str, cause: &Cause) -> Judged {
-    let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
-    Judged::new(gate.with_limitation(Bound::Below(4.0), "why", cause), Some(3.0))
-}
-
-#[test]
-fn limitations_are_listed_by_cause_those_of_most_gates_first() {
-    let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
-    let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
-    let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
-    let text = super::explain::listed(all.iter().collect(), Verdict::Limitation);
-    let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
-    assert!(at("Two. What would remove it: Mend two.") < at("    b"));
-    assert!(at("    b") < at("    c") && at("    c") < at("One."), "{text}");
-    assert!(!text.contains("since"), "a date that says nothing: {text}");
 }
 
 #[test]
@@ -742,4 +708,32 @@ fn every_command_has_a_page_of_the_manual_and_every_shell_its_completions() {
     for shell in ["bash", "zsh", "fish"] {
         assert_eq!(exit(&format!("completions {shell}")), Exit::Pass);
     }
+}
+
+#[test]
+fn gates_are_listed_by_their_last_verdict() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let in_folder = |line: &str| run_on(&SOUND, &NEVER, line, folder.path());
+    let line = "explain --status fail --reports OUT";
+    assert_eq!(in_folder(line), Exit::Usage, "there is no report yet");
+    assert_eq!(in_folder("report --out OUT"), Exit::GateFailed);
+    assert_eq!(in_folder(line), Exit::Pass);
+    assert_eq!(in_folder("explain staged.right.r --status pass --reports OUT"), Exit::Pass);
+}
+
+fn limited(id: &str, cause: &Cause) -> Judged {
+    let gate = Gate::new(id, "error", Bound::Below(2.0), Evidence::Theory, "staged");
+    Judged::new(gate.with_limitation(Bound::Below(4.0), "why", cause), Some(3.0))
+}
+
+#[test]
+fn limitations_are_listed_by_cause_those_of_most_gates_first() {
+    let causes = [("One.", "Mend one."), ("Two.", "Mend two.")];
+    let [one, two] = causes.map(|(what, mend)| Cause::new(what, mend));
+    let all = [limited("a", &one), limited("b", &two), limited("c", &two)];
+    let text = super::explain::listed(all.iter().collect(), Verdict::Limitation);
+    let at = |part: &str| text.find(part).unwrap_or_else(|| panic!("{part}: {text}"));
+    assert!(at("Two. What would remove it: Mend two.") < at("    b"));
+    assert!(at("    b") < at("    c") && at("    c") < at("One."), "{text}");
+    assert!(!text.contains("since"), "a date that says nothing: {text}");
 }

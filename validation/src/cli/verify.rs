@@ -38,10 +38,9 @@ fn show(
     judged: impl FnOnce(&[&'static dyn Case]) -> Result<Suite, Failure>,
 ) -> Outcome {
     let cases = world.choose(&of.cases)?;
-    judged::check_files(&of.export)?;
     let start = Instant::now();
     let suite = judged(&cases)?;
-    let exported = judged::write_files(&suite, &of.export);
+    let exported = judged::write_junit(&suite, of.junit.as_deref());
     let printed = if of.json {
         output::print_whole(&judged::json(&suite)?)
     } else {

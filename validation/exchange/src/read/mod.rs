@@ -65,12 +65,6 @@ pub struct Rows {
     columns: BTreeMap<&'static str, Vec<f64>>,
 }
 
-/// A row of results.
-struct Row {
-    time: f64,
-    own: Own,
-}
-
 /// Particles at times as they were read.
 #[derive(Debug, Default)]
 pub struct Results {
@@ -270,8 +264,8 @@ impl Rows {
         self.checked(name, k, f64::is_finite, "a finite number")
     }
 
-    /// A row, or what is wrong with it.
-    fn row(&self, k: usize) -> Result<Row, Flaw> {
+    /// Time and particle of a row, or what is wrong with it.
+    fn row(&self, k: usize) -> Result<(f64, Own), Flaw> {
         let finite = |name| self.finite(name, k).map(|value| value.unwrap_or(f64::NAN));
         let is_positive = |value: f64| value.is_finite() && value > 0.0;
         let positive = |name| self.checked(name, k, is_positive, "a finite number above 0");
@@ -287,7 +281,7 @@ impl Rows {
         let (time, mass) = (finite("t")?, positive("mass")?.unwrap_or(f64::NAN));
         let number = self.checked("role", k, |value| role(value).is_some(), "0, 1 or 2")?;
         let role = number.and_then(role).unwrap_or(Role::Fluid);
-        Ok(Row { time, own: Own { role, mass, start } })
+        Ok((time, Own { role, mass, start }))
     }
 }
 
@@ -304,7 +298,7 @@ fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
                 return Err(flaws);
             }
             let line = rows.first_line + k as u64;
-            let Row { time, own } = match rows.row(k) {
+            let (time, own) = match rows.row(k) {
                 Ok(row) => row,
                 Err(flaw) => {
                     flaws.push(flaw);

@@ -1,9 +1,11 @@
 //! Writes a problem into a folder, with the files that another code reads.
 
 mod lammps;
-mod vtu;
 
-use base::files::{CsvTable, FileError, OutputFolder};
+use base::{
+    files::{FileError, OutputFolder},
+    vtk,
+};
 use thiserror::Error;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
@@ -34,6 +36,9 @@ pub enum WriteError {
     /// A file.
     #[error(transparent)]
     File(#[from] FileError),
+    /// Particles that ParaView cannot show.
+    #[error(transparent)]
+    Grid(#[from] std::io::Error),
     /// The other code cannot do it.
     #[error("{code} cannot run {case}, variant {variant}: {why}")]
     Cannot {
@@ -59,7 +64,7 @@ pub fn write(
 ) -> Result<Vec<String>, WriteError> {
     let own: Vec<(&str, String)> = match format {
         Format::Csv => Vec::new(),
-        Format::Vtu => vec![("particles.vtu", vtu::particles(problem))],
+        Format::Vtu => vec![("particles.vtu", vtk::particles(0.0, &problem.particles())?)],
         Format::Lammps => lammps::files(problem)?,
         Format::Pysph => {
             check_fluid("PySPH", problem)?;
@@ -68,7 +73,7 @@ pub fn write(
     };
     let document = format!("{:#}\n", problem.to_json());
     let mut files: Vec<(&str, Vec<u8>)> = vec![
-        (PARTICLES, particles(problem)?),
+        (PARTICLES, problem.particles().to_csv().into_bytes()),
         ("README.md", problem.page().into_bytes()),
         (PROBLEM, document.into_bytes()),
     ];
@@ -77,25 +82,6 @@ pub fn write(
         folder.write(name, bytes)?;
     }
     Ok(files.into_iter().map(|(name, _)| name.to_string()).collect())
-}
-
-/// One line a particle, with units in the head.
-fn particles(problem: &Problem) -> Result<Vec<u8>, FileError> {
-    let outline = &problem.outline;
-    let columns = &outline.particles.columns;
-    let mut heads: Vec<String> =
-        columns.iter().map(|column| format!("{}[{}]", column.name, column.unit)).collect();
-    let mut values: Vec<Vec<f64>> = columns.iter().map(|c| c.values.clone()).collect();
-    if !outline.bodies.is_empty() {
-        heads.push("body[-]".into());
-        values.push(outline.bodies.iter().map(|body| f64::from(*body)).collect());
-    }
-    let mut table = CsvTable::new(&heads.iter().map(String::as_str).collect::<Vec<_>>())?;
-    for k in 0..outline.particles.column("id").len() {
-        let row: Vec<f64> = values.iter().map(|column| column[k]).collect();
-        table.numbers(&row)?;
-    }
-    Ok(table.into_bytes())
 }
 
 /// Refuses what a code of weakly compressible fluids with walls of particles cannot do.
