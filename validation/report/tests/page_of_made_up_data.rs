@@ -1,6 +1,5 @@
-//! Writes a page with every kind of block, from made-up data, which `.ci/browser` uses as a reader does.
-//!
-//! `cargo run -p touchstone-report --example figures -- FOLDER`
+//! A page with every kind of block, from made-up data, is whole. `.ci/browser` uses it as a reader does: it sets
+//! `TOUCHSTONE_PAGE` to the folder that the page is to be written to.
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 
@@ -9,17 +8,22 @@ use report::{
     Axis, Block, Card, Cell, ColourMap, Column, Counts, Explorer, Figure, Film, GateRow, Layer,
     Page, ParticleMap, Plot, Section, Series, Table, VERDICTS, check_page,
 };
-use std::error::Error;
 use std::io;
 use std::path::PathBuf;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args_os().nth(1).map(PathBuf::from).ok_or("which folder?")?;
-    let page = page()?;
-    std::fs::create_dir_all(&folder)?;
+#[test]
+fn a_page_of_made_up_data_is_whole() {
+    let temporary = tempfile::tempdir().unwrap();
+    let named = std::env::var_os("TOUCHSTONE_PAGE").map(PathBuf::from);
+    let folder = named.as_deref().unwrap_or(temporary.path());
+    let page = page().unwrap();
     let html = page.html();
-    page.write_html(&folder.join("index.html"), &html)?;
-    Ok(check_page(&html)?)
+    page.write_html(&folder.join("index.html"), &html).unwrap();
+    check_page(&html).unwrap();
+    assert_eq!(std::fs::read_to_string(folder.join("index.html")).unwrap(), html);
+    for name in ["figure.png", "film.png"] {
+        assert!(folder.join("figures").join(name).is_file(), "{name}");
+    }
 }
 
 /// A plot over logarithmic axes, with all that runs add to it, and a map of particles.
