@@ -2,7 +2,7 @@
 //! panel for each refinement, one table, and a gate a line.
 
 use base::gate::Gate;
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
+use report::{Axis, Cell, Figure, Layer, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
@@ -45,9 +45,8 @@ pub fn study(
     all: &[Refinement],
     is_drawn: fn(&Line) -> bool,
 ) -> Study {
-    let panel = |(k, of): (usize, &Refinement)| {
+    let panel = |of: &Refinement| {
         let plot = Plot::new(of.title, Axis::log(of.axes[0]), Axis::log(of.axes[1]));
-        let plot = plot.legend(if k == 0 { Legend::Outside } else { Legend::Hidden });
         let lines = of.lines.iter().filter(|line| is_drawn(line)).enumerate();
         let plot = lines.fold(plot, |plot, (k, line)| {
             let points = line.levels.iter().map(|level| (level.spacing, level.value)).collect();
@@ -55,7 +54,7 @@ pub fn study(
         });
         of.slopes.iter().fold(plot, |plot, order| plot.layer(Layer::Slope(*order)))
     };
-    let panels = all.iter().enumerate().map(panel);
+    let panels = all.iter().map(panel);
     let figure = Figure::new(study.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
     let rows: Vec<(&str, &Line, Found)> = all
         .iter()

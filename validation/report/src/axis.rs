@@ -12,12 +12,19 @@ pub struct Axis {
     pub scale: Scale,
     /// Ends of the axis; `None` takes the data's with some padding.
     pub range: Option<(f64, f64)>,
+    /// What stands at its ticks, one beside the other; empty for numbers.
+    pub names: Vec<String>,
 }
 
 impl Axis {
     /// A linear axis with automatic range.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: None }
+        Self { label: label.into(), scale: Scale::Linear, range: None, names: Vec::new() }
+    }
+
+    /// An axis of cells with these names.
+    pub fn names(label: impl Into<String>, names: &[String]) -> Self {
+        Self { names: names.to_vec(), ..Self::linear(label) }.range(0.0, names.len() as f64)
     }
 
     /// A logarithmic axis with automatic range.
@@ -49,6 +56,16 @@ impl Axis {
             Scale::Log => padded_log(ends),
         };
         Mapping { scale: self.scale, lo, hi }
+    }
+
+    /// The ruler of a mapping, with at most about `count` labelled ticks.
+    pub(super) fn ruler(&self, mapping: Mapping, count: usize) -> Ruler {
+        if self.names.is_empty() {
+            return mapping.ruler(count, &self.label);
+        }
+        let middle = |k: usize| (k as f64 + 0.5) / self.names.len() as f64;
+        let ticks = self.names.iter().enumerate().map(|(k, name)| (middle(k), name.clone()));
+        Ruler { mapping, major: ticks.collect(), minor: Vec::new(), label: self.label.clone() }
     }
 }
 

@@ -45,6 +45,11 @@ impl Rect {
         x >= self.left && x <= self.right() && y >= self.top && y <= self.bottom()
     }
 
+    /// The point inside that is nearest to a point.
+    pub fn nearest(&self, (x, y): Point) -> Point {
+        (x.clamp(self.left, self.right()), y.clamp(self.top, self.bottom()))
+    }
+
     /// Whether the whole of another lies inside.
     pub fn encloses(&self, other: &Self) -> bool {
         self.contains((other.left, other.top)) && self.contains((other.right(), other.bottom()))

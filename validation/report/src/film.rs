@@ -136,14 +136,14 @@ fn coarse(value: u8) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, Legend, Plot, Series};
+    use crate::{Axis, Plot, Series};
 
     fn frame(y: f64) -> Figure {
         let line = Series::line("line", vec![(0.0, 0.0), (1.0, y)]);
         let plot = Plot::new("", Axis::linear("x [m]").range(0.0, 1.0), {
             Axis::linear("y [m]").range(0.0, 3.0)
         });
-        let plot = plot.layer(line).legend(Legend::Hidden);
+        let plot = plot.layer(line).without_legend();
         Figure::new("frame", "").panel(plot).panel_size(80.0, 60.0)
     }
 

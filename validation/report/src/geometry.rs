@@ -74,34 +74,6 @@ pub(super) fn clip_line(run: &[Point], area: Rect) -> Vec<Vec<Point>> {
     pieces
 }
 
-/// The part of a polygon inside an area (Sutherland and Hodgman).
-pub(super) fn clip_polygon(corners: &[Point], area: Rect) -> Vec<Point> {
-    // Room to the four sides: positive is inside.
-    let room = |(x, y): Point, side: usize| match side {
-        0 => x - area.left,
-        1 => area.right() - x,
-        2 => y - area.top,
-        _ => area.bottom() - y,
-    };
-    let mut polygon = corners.to_vec();
-    for side in 0..4 {
-        let mut clipped = Vec::new();
-        for (i, &p) in polygon.iter().enumerate() {
-            let q = polygon[(i + 1) % polygon.len()];
-            let (rp, rq) = (room(p, side), room(q, side));
-            if rp >= 0.0 {
-                clipped.push(p);
-            }
-            if (rp >= 0.0) != (rq >= 0.0) {
-                let t = rp / (rp - rq);
-                clipped.push((p.0 + t * (q.0 - p.0), p.1 + t * (q.1 - p.1)));
-            }
-        }
-        polygon = clipped;
-    }
-    polygon
-}
-
 /// Adds points along a segment, a few pixels apart.
 pub(super) fn sample_segment(points: &mut Vec<Point>, a: Point, b: Point) {
     let steps = ((b.0 - a.0).hypot(b.1 - a.1) / 4.0).ceil().clamp(1.0, 2000.0);
@@ -159,12 +131,5 @@ mod tests {
     fn a_line_that_leaves_and_returns_is_two_pieces() {
         let run = [(1.0, 5.0), (5.0, 15.0), (9.0, 5.0)];
         assert_eq!(clip_line(&run, AREA).len(), 2);
-    }
-
-    #[test]
-    fn a_polygon_is_cut_at_the_border() {
-        let cut = clip_polygon(&[(-5.0, 2.0), (5.0, 2.0), (5.0, 4.0), (-5.0, 4.0)], AREA);
-        assert_eq!(cut.len(), 4);
-        assert!(cut.iter().all(|&p| AREA.contains(p)));
     }
 }

@@ -5,8 +5,8 @@
 
 use base::gate::Verdict;
 use report::{
-    Axis, Block, Card, Cell, ColourMap, Column, Counts, Explorer, Figure, Film, GateRow, Layer,
-    Page, ParticleMap, Plot, Section, Series, Table, VERDICTS, check_page,
+    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Film, GateRow,
+    Layer, Page, Plot, Section, Series, Table, VERDICTS, check_page,
 };
 use std::io;
 use std::path::PathBuf;
@@ -35,8 +35,8 @@ fn figure() -> Figure {
         .layer(Layer::Slope(1.5));
     let at = |k: i32| 0.05 * f64::from(k);
     let points = (0..400).map(|k| (at(k % 20), at(k / 20), at(k % 7))).collect();
-    let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
-    let map = ParticleMap::new("Speed", axes, "|u| [m/s]", ColourMap::Sequential, points);
+    let dots = Dots::new("|u| [m/s]", ColourMap::Sequential, 0.05, points);
+    let map = Plot::new("Speed", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
     Figure::new("figure", "An order with *made-up* errors.").panel(plot).panel(map).columns(2)
 }
 

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use ::report::{self, Axis, Colour, Dash, Figure, Legend, Plot, Series};
+use ::report::{self, Axis, Colour, Dash, Figure, Plot, Series};
 use base::{
     files::{self, Cell, CsvTable, FileError, OutputFolder},
     gate::Gate,
@@ -409,7 +409,7 @@ fn figure(record: &Record, curves: &[Curve]) -> Figure {
     let rows = record.settings["rows"].as_u64().unwrap_or_default();
     let title = format!("{}, variant {}, {rows} rows", record.case, record.variant);
     let (x, y) = (Axis::linear("y [m]"), Axis::linear("velocity u [m/s]"));
-    let mut plot = Plot::new(title, x, y).legend(Legend::Outside);
+    let mut plot = Plot::new(title, x, y);
     for (k, Curve { tau, points, .. }) in curves.iter().enumerate() {
         let exact = points.iter().map(|[y, _, exact]| (*y, *exact)).collect();
         let name = if k == 0 { "exact" } else { "" };

@@ -4,8 +4,7 @@
 
 use base::record::{Status, median};
 use report::{
-    Axis, Cell, Colour, Figure, Layer, Legend, Plot, Series, Table, exact, first_sentence, percent,
-    sig,
+    Axis, Cell, Colour, Figure, Layer, Plot, Series, Table, exact, first_sentence, percent, sig,
 };
 
 use crate::{
@@ -148,7 +147,7 @@ fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
 /// Error over spacing.
 fn orders(accuracy: &Accuracy, rows: &[Row]) -> Plot {
     let axes = (Axis::log(accuracy.spacing), Axis::log(accuracy.label.as_str()));
-    let plot = Plot::new("Error against spacing", axes.0, axes.1).legend(Legend::Hidden);
+    let plot = Plot::new("Error against spacing", axes.0, axes.1);
     let plot = rows.iter().enumerate().fold(plot, |plot, (k, row)| {
         let usable = row.points.iter().filter(|p| p.error.is_finite());
         let line = usable.map(|p| (p.spacing, p.error)).collect();
