@@ -38,10 +38,10 @@ impl Bar {
             let most = ends.0.abs().max(ends.1.abs());
             if map == ColourMap::Diverging { (-most, most) } else { ends }
         });
-        let axis = Axis::linear("");
+        let axis = Axis::linear(label);
         let axis = if lo < hi { axis.range(lo, hi) } else { axis };
         let mapping = axis.mapping([lo, hi].into_iter());
-        let values = mapping.ruler((height / 36.0) as usize, label);
+        let values = axis.ruler(mapping, (height / 36.0) as usize);
         Self { map, values, is_fixed: given.is_some(), is_shared: false }
     }
 

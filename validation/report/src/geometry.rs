@@ -9,33 +9,12 @@ pub(super) fn runs<P: Copy, T: Copy>(points: &[P], place: impl Fn(P) -> Option<T
     runs.map(|run| run.iter().copied().flatten().collect()).collect()
 }
 
-/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains.
-pub(super) fn thin(run: &[Point]) -> Vec<Point> {
-    const MANY: usize = 600;
-    if run.len() < MANY { simplified(run) } else { simplified(&columns(run)) }
-}
-
 /// A distance that is not seen, in CSS pixels.
 const SEEN: f64 = 0.15;
 
-/// Of the points in one pixel column the first, the lowest, the highest and the last.
-fn columns(run: &[Point]) -> Vec<Point> {
-    let column = |p: &Point| p.0.round() as i64;
-    let mut kept = Vec::new();
-    for group in run.chunk_by(|a, b| column(a) == column(b)) {
-        let by_y = |&i: &usize, &j: &usize| group[i].1.total_cmp(&group[j].1);
-        let lowest = (0..group.len()).max_by(by_y).unwrap_or(0);
-        let highest = (0..group.len()).min_by(by_y).unwrap_or(0);
-        let mut indices = [0, lowest, highest, group.len() - 1];
-        indices.sort_unstable();
-        kept.extend(indices.map(|i| group[i]));
-    }
-    kept.dedup();
-    kept
-}
-
-/// Without the points that lie on the line between others (Ramer, Douglas and Peucker).
-fn simplified(run: &[Point]) -> Vec<Point> {
+/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains (Ramer,
+/// Douglas and Peucker).
+pub(super) fn thin(run: &[Point]) -> Vec<Point> {
     let mut is_kept = vec![false; run.len()];
     let mut pieces = vec![(0, run.len().saturating_sub(1))];
     for end in [is_kept.len().min(1), is_kept.len()] {

@@ -10,7 +10,7 @@ use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
 use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
 use super::legend::{self, Entry, Look, MARKER, Sample};
-use super::ticks::minus;
+use super::number::minus;
 
 const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
@@ -391,9 +391,7 @@ fn around(corners: &[Point; 3], order: f64) -> Rect {
     let (left, top) = (least(|p| p.0), least(|p| p.1));
     let (width, height) = (most(|p| p.0) - left, most(|p| p.1) - top);
     let number = 5.0 + font::width(&slope_number(order), SLOPE_EM) + 3.0;
-    let before = if corners[1].0 > corners[0].0 { 14.0 } else { number };
-    let width = width + 14.0 + number;
-    Rect { left: left - before, top: top - 14.0, width, height: height + 28.0 }
+    Rect { left: left - 14.0, top: top - 14.0, width: width + 14.0 + number, height: height + 28.0 }
 }
 
 /// A triangle with its rise beside and a 1 along its run.
@@ -405,8 +403,7 @@ fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) 
         }
     }
     let how = |align| Type::new(SLOPE_EM, align).colour(Colour::GREY);
-    let (align, side) = if b.0 > a.0 { (Align::Start, 5.0) } else { (Align::End, -5.0) };
-    canvas.text(&slope_number(order), (b.0 + side, 0.5 * (b.1 + c.1)), how(align));
+    canvas.text(&slope_number(order), (b.0 + 5.0, 0.5 * (b.1 + c.1)), how(Align::Start));
     let below = if c.1 < b.1 { 8.5 } else { -8.5 };
     canvas.text("1", (0.5 * (a.0 + b.0), b.1 + below), how(Align::Middle));
 }

@@ -104,14 +104,6 @@ impl Sheet for Raster<'_> {
         self.note(result);
     }
 
-    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>) {
-        if let Some(fill) = fill {
-            self.area(corners, fill);
-        }
-        let closed: Vec<_> = corners.iter().chain(&corners[..1]).copied().collect();
-        self.path(&closed, colour, width);
-    }
-
     fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
         match dash {
             Dash::Solid => self.path(points, colour, width),
