@@ -51,9 +51,7 @@ impl Film {
         frames: &[Figure],
         milliseconds: u16,
     ) -> io::Result<Self> {
-        let drawn: io::Result<Vec<_>> =
-            frames.par_iter().map(|frame| render::pixels(frame, DENSITY)).collect();
-        let drawn = drawn?;
+        let drawn: Vec<_> = frames.par_iter().map(|frame| render::pixels(frame, DENSITY)).collect();
         let Some(&(_, width, height)) = drawn.first() else {
             return Err(io::Error::other("a film without a frame"));
         };
@@ -72,7 +70,7 @@ impl Film {
 pub(super) fn drawing(figure: &Figure) -> Markup {
     let svg = render::svg(figure);
     let still = || {
-        let (pixels, width, height) = render::pixels(figure, DENSITY)?;
+        let (pixels, width, height) = render::pixels(figure, DENSITY);
         encode(&[pixels], (width, height), 1)
     };
     match (svg.len() > LARGEST_SVG).then(still) {

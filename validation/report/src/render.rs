@@ -130,17 +130,17 @@ pub fn svg(figure: &Figure) -> String {
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
 /// pixel.
-pub(super) fn pixels(figure: &Figure, density: u32) -> io::Result<(Vec<u8>, u32, u32)> {
+pub(super) fn pixels(figure: &Figure, density: u32) -> (Vec<u8>, u32, u32) {
     let layout = layout(figure);
     let scale = SUPERSAMPLE * density;
     let (width, height) = (layout.size.0 as u32 * density, layout.size.1 as u32 * density);
     let (fine_width, fine_height) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
     let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
     let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
-    let mut sheet = Raster::new(backend, f64::from(scale));
+    let mut sheet = Raster { backend, scale: f64::from(scale) };
     draw(&mut Canvas::new(&mut sheet), &layout);
-    sheet.finish()?;
-    Ok((downsample(&fine, width as usize, height as usize), width, height))
+    drop(sheet);
+    (downsample(&fine, width as usize, height as usize), width, height)
 }
 
 /// Means of squares of `SUPERSAMPLE` by `SUPERSAMPLE` pixels.
@@ -164,7 +164,7 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
-    let (pixels, width, height) = pixels(figure, DENSITY)?;
+    let (pixels, width, height) = pixels(figure, DENSITY);
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -187,7 +187,7 @@ mod tests {
     }
 
     fn dark_pixels(figure: &Figure) -> usize {
-        let (pixels, ..) = pixels(figure, DENSITY).unwrap();
+        let (pixels, ..) = pixels(figure, DENSITY);
         pixels.chunks(3).filter(|p| p.iter().all(|&c| c < 100)).count()
     }
 
@@ -234,7 +234,7 @@ mod tests {
             let last = values.first().copied().unwrap_or(1.0);
             svg(&figure(plot.layer(dots.values(1.0, last))));
         }
-        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone())), DENSITY).unwrap();
+        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone())), DENSITY);
     }
 
     #[test]

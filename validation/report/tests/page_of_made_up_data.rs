@@ -95,7 +95,7 @@ fn page() -> io::Result<Page> {
         limitations: vec!["It is made up.".into()],
     };
     let curves = Section::new("curves", "Curves")
-        .status(Verdict::Fail)
+        .counts(Counts::of([Verdict::Fail]))
         .prose(
             "See [the figure](#figure) and [Morris et al.](https://doi.org/10.1006/jcph.1997.5776). \
              Run `touchstone report`.",
