@@ -34,6 +34,7 @@ pub(super) struct Prepared<'a> {
 
 /// The label of a point, which starts in the middle of the left side of its room.
 struct Mark<'a> {
+    point: Point,
     text: &'a str,
     room: Rect,
     colour: Colour,
@@ -184,13 +185,12 @@ impl<'a> Prepared<'a> {
         });
         let mut points: Vec<_> = points.collect();
         points.sort_by_key(|(is_between, ..)| *is_between);
-        let mut found: Vec<(Point, Mark)> = Vec::new();
         for (_, point, text, colour) in points {
             let Some(at) = self.frame.place(point) else { continue };
-            let is_same = |(other, mark): &(Point, Mark)| {
-                mark.text == *text && (other.0 - at.0).hypot(other.1 - at.1) < 6.0
+            let is_same = |Mark { text: other, point: (x, y), .. }: &Mark| {
+                other == text && (x - at.0).hypot(y - at.1) < 6.0
             };
-            if found.iter().any(is_same) {
+            if self.marks.iter().any(is_same) {
                 continue;
             }
             let hidden = |room: &Rect| {
@@ -202,10 +202,9 @@ impl<'a> Prepared<'a> {
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
             if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
                 sample_rect(obstacles, room);
-                found.push((at, Mark { text, room, colour }));
+                self.marks.push(Mark { point: at, text, room, colour });
             }
         }
-        self.marks = found.into_iter().map(|(_, mark)| mark).collect();
     }
 
     /// Error bars of a series; an end without a place on a logarithmic axis goes off the low side.

@@ -44,10 +44,12 @@ fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
     all
 }
 
-/// The colour bar of several maps that all have the same one, which they then leave to the figure.
+/// The colour bar of several panels that all have the same one with given ends, which they then leave to the
+/// figure.
 fn shared_bar(panels: &mut [Prepared]) -> Option<Bar> {
     let bars: Option<Vec<&mut Bar>> = panels.iter_mut().map(|panel| panel.bar()).collect();
-    let bars = bars.filter(|bars| bars.len() > 1 && bars.iter().all(|bar| bar.is_as(bars[0])))?;
+    let is_one = |bars: &Vec<&mut Bar>| bars.iter().all(|bar| bar.is_fixed && *bar == bars[0]);
+    let bars = bars.filter(|bars| bars.len() > 1 && is_one(bars))?;
     let bar = bars[0].clone();
     bars.into_iter().for_each(|bar| bar.is_shared = true);
     Some(bar)
