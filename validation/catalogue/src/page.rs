@@ -176,14 +176,9 @@ fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Not
 
 fn case_section(results: &CaseResults) -> Section {
     let case = results.case;
-    let counts = results.counts();
-    let mut section = Section::new(case.name(), case.name())
-        .block(Block::Outcome { counts, words: case.name().into() })
-        .prose(case.about());
-    section.status = counts.worst();
-    for study in &results.studies {
-        section = section.child(study_section(study));
-    }
+    let section =
+        Section::new(case.name(), case.name()).counts(results.counts()).prose(case.about());
+    let section = results.studies.iter().map(study_section).fold(section, Section::child);
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section.block(Block::Details {
         summary: "Variants and all runs".into(),
@@ -198,12 +193,8 @@ fn anchor(study: &Study) -> String {
 
 fn study_section(study: &Study) -> Section {
     let counts = Counts::of(study.judged.iter().map(|judged| judged.judgement.verdict));
-    let mut section = Section::new(anchor(study), &study.title);
-    section.status = counts.worst();
-    if !study.judged.is_empty() {
-        section = section.block(Block::Outcome { counts, words: study.title.clone() });
-    }
-    study.blocks.iter().fold(section, |section, block| section.block(block.clone()))
+    let section = Section::new(anchor(study), &study.title).counts(counts);
+    study.blocks.iter().cloned().fold(section, Section::block)
 }
 
 /// A measured value: a whole number as such, any other with four digits.

@@ -2,7 +2,7 @@
 //! any study, and a whole study for those of one case alone.
 
 use base::gate::Gate;
-use report::{Axis, Cell, Figure, Layer, Legend, Plot, Series, sig};
+use report::{Axis, Cell, Figure, Layer, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
@@ -42,13 +42,12 @@ pub fn study(
     all: &[Refinement],
     is_drawn: fn(&Line) -> bool,
 ) -> Study {
-    let panel = |(k, of): (usize, &Refinement)| {
+    let panel = |of: &Refinement| {
         let drawn = of.lines.iter().filter(|line| is_drawn(line));
         let lines = drawn.map(|line| (line.name, line.levels.as_slice()));
-        let legend = if k == 0 { Legend::Outside } else { Legend::Hidden };
-        plot(of.title, of.axes, lines, of.slopes).legend(legend)
+        plot(of.title, of.axes, lines, of.slopes)
     };
-    let panels = all.iter().enumerate().map(panel);
+    let panels = all.iter().map(panel);
     let figure = Figure::new(study.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
     type Row<'a> = (&'a str, &'a Line, Found);
     let rows: Vec<Row> = all

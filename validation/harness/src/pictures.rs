@@ -2,7 +2,7 @@
 
 use base::record::{Profile, Record};
 use nalgebra::Vector2;
-use report::{Axis, Figure, ParticleMap};
+use report::{Axis, Dots, Figure, Plot};
 
 use crate::{
     declare::{Level, Picture},
@@ -37,11 +37,10 @@ pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
     let panel = |Level { run, spacing, label: title }: &Level| {
         let record = runs.record(&run.spec)?;
         let [x, _, value] = &record.profiles.get(END)?.columns[..] else { return None };
-        let axes = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
+        let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
         let points = points(record, END, &value.name);
         let (label, colours) = of.colours;
-        let map = ParticleMap::new(title, axes.into(), label, colours, points);
-        Some(map.diameter(*spacing))
+        Some(Plot::new(title, x, y).layer(Dots::new(label, colours, *spacing, points)))
     };
     let [id, title, caption] = of.texts;
     let figure = Figure::new(id, caption).panel_size(of.size[0], of.size[1]);

@@ -12,12 +12,19 @@ pub struct Axis {
     pub scale: Scale,
     /// Ends of the axis; `None` takes the data's with some padding.
     pub range: Option<(f64, f64)>,
+    /// What stands at its ticks, one beside the other; empty for numbers.
+    pub names: Vec<String>,
 }
 
 impl Axis {
     /// A linear axis with automatic range.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self { label: label.into(), scale: Scale::Linear, range: None }
+        Self { label: label.into(), scale: Scale::Linear, range: None, names: Vec::new() }
+    }
+
+    /// An axis of cells with these names.
+    pub fn names(label: impl Into<String>, names: &[String]) -> Self {
+        Self { names: names.to_vec(), ..Self::linear(label) }.range(0.0, names.len() as f64)
     }
 
     /// A logarithmic axis with automatic range.
@@ -49,6 +56,22 @@ impl Axis {
             Scale::Log => padded_log(ends),
         };
         Mapping { scale: self.scale, lo, hi }
+    }
+
+    /// The ruler of a mapping, with at most about `count` labelled ticks.
+    pub(super) fn ruler(&self, mapping: Mapping, count: usize) -> Ruler {
+        let Ticks { major, minor, exponent } = match &self.names[..] {
+            [] => ticks(self.scale, mapping.lo, mapping.hi, count),
+            names => {
+                let middles =
+                    names.iter().enumerate().map(|(k, name)| (k as f64 + 0.5, name.clone()));
+                Ticks { major: middles.collect(), minor: Vec::new(), exponent: 0 }
+            }
+        };
+        let major = major.into_iter().filter_map(|(v, label)| Some((mapping.unit(v)?, label)));
+        let minor = minor.into_iter().filter_map(|v| mapping.unit(v));
+        let label = with_exponent(&self.label, exponent);
+        Ruler { mapping, major: major.collect(), minor: minor.collect(), label }
     }
 }
 
@@ -101,15 +124,6 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
-    /// With at most about `count` labelled ticks.
-    pub fn ruler(self, count: usize, label: &str) -> Ruler {
-        let Ticks { major, minor, exponent } = ticks(self.scale, self.lo, self.hi, count);
-        let major = major.into_iter().filter_map(|(v, label)| Some((self.unit(v)?, label)));
-        let minor = minor.into_iter().filter_map(|v| self.unit(v));
-        let label = with_exponent(label, exponent);
-        Ruler { mapping: self, major: major.collect(), minor: minor.collect(), label }
-    }
-
     /// 0 at the low end, 1 at the high end, beyond them outside; `None` for what has no place.
     pub fn unit(&self, v: f64) -> Option<f64> {
         let place = match self.scale {
@@ -140,7 +154,7 @@ mod tests {
             for axis in [Axis::linear("x"), Axis::log("x")] {
                 let m = axis.mapping(data.iter().copied());
                 assert!(m.lo < m.hi && m.lo.is_finite() && m.hi.is_finite(), "{data:?} {m:?}");
-                assert!(m.ruler(5, "").major.len() < 50);
+                assert!(axis.ruler(m, 5).major.len() < 50);
             }
         }
     }

@@ -17,7 +17,7 @@ pub(super) struct Bar {
     map: ColourMap,
     values: Ruler,
     /// Whether the ends were given, not taken from the data.
-    is_fixed: bool,
+    pub is_fixed: bool,
     /// Whether the figure draws it for all panels.
     pub is_shared: bool,
 }
@@ -38,17 +38,11 @@ impl Bar {
             let most = ends.0.abs().max(ends.1.abs());
             if map == ColourMap::Diverging { (-most, most) } else { ends }
         });
-        let axis = Axis::linear("");
+        let axis = Axis::linear(label);
         let axis = if lo < hi { axis.range(lo, hi) } else { axis };
         let mapping = axis.mapping([lo, hi].into_iter());
-        let values = mapping.ruler((height / 36.0) as usize, label);
+        let values = axis.ruler(mapping, (height / 36.0) as usize);
         Self { map, values, is_fixed: given.is_some(), is_shared: false }
-    }
-
-    /// Whether one bar may stand for this and another, because both have the same given ends.
-    pub fn is_as(&self, other: &Self) -> bool {
-        let said = |bar: &Self| (bar.map, bar.values.mapping, bar.values.label.clone());
-        self.is_fixed && other.is_fixed && said(self) == said(other)
     }
 
     /// Which of the colours a value has.

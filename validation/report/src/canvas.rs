@@ -45,6 +45,11 @@ impl Rect {
         x >= self.left && x <= self.right() && y >= self.top && y <= self.bottom()
     }
 
+    /// The point inside that is nearest to a point.
+    pub fn nearest(&self, (x, y): Point) -> Point {
+        (x.clamp(self.left, self.right()), y.clamp(self.top, self.bottom()))
+    }
+
     /// Whether the whole of another lies inside.
     pub fn encloses(&self, other: &Self) -> bool {
         self.contains((other.left, other.top)) && self.contains((other.right(), other.bottom()))
@@ -95,9 +100,7 @@ impl Rect {
 pub(super) trait Sheet {
     /// A filled polygon.
     fn area(&mut self, corners: &[Point], colour: Colour);
-    /// The closed outline of a polygon, over a filling if there is one.
-    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>);
-    /// A line through the points in the given pattern.
+    /// A line through the points in the given pattern; closed if it ends where it begins.
     fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash);
     /// A filled disc.
     fn disc(&mut self, centre: Point, radius: f64, colour: Colour);
@@ -138,7 +141,13 @@ impl<'a> Canvas<'a> {
 
     /// The outline of a rectangle.
     pub fn frame(&mut self, rect: Rect, colour: Colour, width: f64) {
-        self.sheet.outline(&self.all_moved(&rect.corners()), colour, width, None);
+        self.outline(&rect.corners(), colour, width);
+    }
+
+    /// The outline of a polygon.
+    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64) {
+        let closed: Vec<Point> = corners.iter().chain(&corners[..1]).copied().collect();
+        self.dashed(&closed, colour, width, Dash::Solid);
     }
 
     /// A filled polygon.
@@ -184,14 +193,12 @@ impl<'a> Canvas<'a> {
             Shape::Down => &[(0.0, 1.15), (-1.08, -0.75), (1.08, -0.75)],
             Shape::Diamond => &[(0.0, -1.25), (1.1, 0.0), (0.0, 1.25), (-1.1, 0.0)],
         };
-        for at in all {
-            let (x, y) = self.moved(*at);
-            let corners: Vec<Point> = corners.iter().map(|c| (x + r * c.0, y + r * c.1)).collect();
-            match open {
-                true => self.sheet.outline(&corners, colour, OPEN_STROKE, Some(Colour::WHITE)),
-                false => self.sheet.area(&corners, colour),
-            }
-        }
+        let around = |(x, y): &Point| corners.iter().map(|c| (x + r * c.0, y + r * c.1)).collect();
+        let polygons: Vec<Vec<Point>> = all.iter().map(around).collect();
+        let fill = if open { Colour::WHITE } else { colour };
+        polygons.iter().for_each(|polygon| self.polygon(polygon, fill));
+        let outlined = polygons.iter().filter(|_| open);
+        outlined.for_each(|polygon| self.outline(polygon, colour, OPEN_STROKE));
     }
 
     /// A text, vertically centred on the digits' height at the point.

@@ -127,7 +127,7 @@ mod tests {
             .prose("See [the figure](#fig) & more.")
             .block(Figure::new("fig", "A caption with `code`.").panel(plot))
             .block(Block::Details { summary: "more".into(), blocks: details })
-            .child(Section::new("two", "Two").status(Verdict::Pass).block(table));
+            .child(Section::new("two", "Two").counts(Counts::of([Verdict::Pass])).block(table));
         let card = Card {
             id: "one".into(),
             title: "One & *two*".into(),
@@ -147,7 +147,7 @@ mod tests {
             reasons: vec![1],
         };
         let explorer = Explorer { gates: vec![gate], reasons: vec!["because".into()] };
-        let outcome = Block::Outcome { counts: card.counts, words: "one.a".into() };
+        let three = Section::new("three", "Three").counts(card.counts);
         let verdicts = Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer));
         Page {
             title: "A & B".into(),
@@ -155,7 +155,7 @@ mod tests {
             counts: Counts::of([Verdict::Pass]),
             cards: vec![card],
             notes: vec!["Note.".into()],
-            sections: vec![section, Section::new("three", "Three").block(outcome), verdicts],
+            sections: vec![section, three, verdicts],
             png_folder: "figures".into(),
         }
     }

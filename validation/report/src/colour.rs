@@ -9,8 +9,6 @@ impl Colour {
     pub const BLACK: Self = Self(0, 0, 0);
     /// Mid grey: annotations.
     pub const GREY: Self = Self(110, 110, 110);
-    /// Light grey: cells without data.
-    pub const LIGHT_GREY: Self = Self(225, 225, 225);
     /// White.
     pub const WHITE: Self = Self(255, 255, 255);
     /// Okabe–Ito blue.

@@ -11,7 +11,7 @@ pub struct Figure {
     /// What is seen, with commit and settings; inline markup as in [`super::Block::Prose`].
     pub caption: String,
     /// Panels, row by row.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<Plot>,
     /// Panels in a row.
     pub columns: usize,
     /// Size of the area inside the axes of one panel, in CSS pixels.
@@ -31,8 +31,8 @@ impl Figure {
     }
 
     /// Adds a panel.
-    pub fn panel(mut self, panel: impl Into<Panel>) -> Self {
-        self.panels.push(panel.into());
+    pub fn panel(mut self, panel: Plot) -> Self {
+        self.panels.push(panel);
         self
     }
 
@@ -47,36 +47,7 @@ impl Figure {
     }
 }
 
-/// One drawing of a figure.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Panel {
-    /// Curves and markers over two axes.
-    Plot(Plot),
-    /// Coloured dots at equal aspect.
-    Particles(ParticleMap),
-    /// A grid of outcomes.
-    Categories(CategoryMap),
-}
-
-impl From<Plot> for Panel {
-    fn from(plot: Plot) -> Self {
-        Self::Plot(plot)
-    }
-}
-
-impl From<ParticleMap> for Panel {
-    fn from(map: ParticleMap) -> Self {
-        Self::Particles(map)
-    }
-}
-
-impl From<CategoryMap> for Panel {
-    fn from(map: CategoryMap) -> Self {
-        Self::Categories(map)
-    }
-}
-
-/// Curves and markers over two axes.
+/// Layers over two axes; at equal aspect if one of them is of dots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plot {
     /// Drawn above the axes; may be empty.
@@ -87,14 +58,14 @@ pub struct Plot {
     pub y: Axis,
     /// Drawn in this order.
     pub layers: Vec<Layer>,
-    /// Where the names of the layers go.
-    pub legend: Legend,
+    /// Whether the names of the layers stand below.
+    pub legend: bool,
 }
 
 impl Plot {
-    /// An empty plot, its legend where it hides nothing.
+    /// An empty plot with a legend.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self { title: title.into(), x, y, layers: Vec::new(), legend: Legend::Auto }
+        Self { title: title.into(), x, y, layers: Vec::new(), legend: true }
     }
 
     /// Adds a layer.
@@ -103,29 +74,18 @@ impl Plot {
         self
     }
 
-    /// Sets the place of the legend.
-    pub fn legend(self, legend: Legend) -> Self {
-        Self { legend, ..self }
+    /// Its dots, if it has any.
+    pub(super) fn dots(&self) -> Option<&Dots> {
+        self.layers.iter().find_map(|layer| match layer {
+            Layer::Dots(dots) => Some(dots),
+            _ => None,
+        })
     }
-}
 
-/// Place of a legend.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Legend {
-    /// The first corner where it hides no data, else outside.
-    Auto,
-    /// Inside, top left.
-    TopLeft,
-    /// Inside, top right.
-    TopRight,
-    /// Inside, bottom left.
-    BottomLeft,
-    /// Inside, bottom right.
-    BottomRight,
-    /// Right of the plot.
-    Outside,
-    /// Nowhere.
-    Hidden,
+    /// The same plot without a legend.
+    pub fn without_legend(self) -> Self {
+        Self { legend: false, ..self }
+    }
 }
 
 /// One thing drawn on a plot.
@@ -145,6 +105,17 @@ pub enum Layer {
         /// Drawn as a pale tint of this colour.
         colour: Colour,
     },
+    /// Particles coloured by a value, with a colour bar; one such layer a plot.
+    Dots(Dots),
+    /// Cells of one outcome on a grid, whose axes have names.
+    Cells {
+        /// Name of the outcome in the legend.
+        name: String,
+        /// Colour of the cells.
+        colour: Colour,
+        /// Column, row and a short text of each, counted from the lower left corner.
+        cells: Vec<(usize, usize, String)>,
+    },
 }
 
 impl Layer {
@@ -157,6 +128,12 @@ impl Layer {
 impl From<Series> for Layer {
     fn from(series: Series) -> Self {
         Self::Series(series)
+    }
+}
+
+impl From<Dots> for Layer {
+    fn from(dots: Dots) -> Self {
+        Self::Dots(dots)
     }
 }
 
@@ -268,15 +245,9 @@ impl Series {
     }
 }
 
-/// Dots coloured by a value, at equal aspect, with a colour bar.
+/// Dots coloured by a value.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ParticleMap {
-    /// Drawn above the axes; may be empty.
-    pub title: String,
-    /// Horizontal axis; linear whatever it says.
-    pub x: Axis,
-    /// Vertical axis; linear whatever it says.
-    pub y: Axis,
+pub struct Dots {
     /// (x, y, value). Values that are not finite become black crosses and are counted.
     pub points: Vec<(f64, f64, f64)>,
     /// Colour map.
@@ -287,56 +258,21 @@ pub struct ParticleMap {
     pub label: String,
     /// Diameter of a dot in units of x and y (the particle spacing, say), drawn with two pixels at least.
     pub diameter: f64,
-    /// Lines over the dots.
-    pub lines: Vec<Series>,
 }
 
-impl ParticleMap {
-    /// A map with automatic ranges.
+impl Dots {
+    /// Dots of this diameter in units of x and y, with an automatic range of colours.
     pub fn new(
-        title: impl Into<String>,
-        (x, y): (Axis, Axis),
         label: impl Into<String>,
         map: ColourMap,
+        diameter: f64,
         points: Vec<(f64, f64, f64)>,
     ) -> Self {
-        let (title, label) = (title.into(), label.into());
-        let lines = Vec::new();
-        Self { title, x, y, points, map, values: None, label, diameter: 0.0, lines }
+        Self { points, map, values: None, label: label.into(), diameter }
     }
 
     /// Sets the ends of the colour bar.
     pub fn values(self, lo: f64, hi: f64) -> Self {
         Self { values: Some((lo, hi)), ..self }
     }
-
-    /// Adds a line over the dots, black if it has no colour.
-    pub fn curve(mut self, line: Series) -> Self {
-        self.lines.push(line);
-        self
-    }
-
-    /// Sets the diameter of a dot in units of x and y.
-    pub fn diameter(self, diameter: f64) -> Self {
-        Self { diameter, ..self }
-    }
-}
-
-/// A grid of cells coloured by outcome.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CategoryMap {
-    /// Drawn above the grid; may be empty.
-    pub title: String,
-    /// Label of the horizontal axis.
-    pub x_label: String,
-    /// Label of the vertical axis.
-    pub y_label: String,
-    /// Columns, left to right.
-    pub x: Vec<String>,
-    /// Rows, bottom to top.
-    pub y: Vec<String>,
-    /// What a cell can be: name and colour, in the order of the legend.
-    pub categories: Vec<(String, Colour)>,
-    /// `cells[row][column]`: index into `categories` and a short text; `None` was not run.
-    pub cells: Vec<Vec<Option<(usize, String)>>>,
 }

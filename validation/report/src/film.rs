@@ -51,9 +51,7 @@ impl Film {
         frames: &[Figure],
         milliseconds: u16,
     ) -> io::Result<Self> {
-        let drawn: io::Result<Vec<_>> =
-            frames.par_iter().map(|frame| render::pixels(frame, DENSITY)).collect();
-        let drawn = drawn?;
+        let drawn: Vec<_> = frames.par_iter().map(|frame| render::pixels(frame, DENSITY)).collect();
         let Some(&(_, width, height)) = drawn.first() else {
             return Err(io::Error::other("a film without a frame"));
         };
@@ -72,7 +70,7 @@ impl Film {
 pub(super) fn drawing(figure: &Figure) -> Markup {
     let svg = render::svg(figure);
     let still = || {
-        let (pixels, width, height) = render::pixels(figure, DENSITY)?;
+        let (pixels, width, height) = render::pixels(figure, DENSITY);
         encode(&[pixels], (width, height), 1)
     };
     match (svg.len() > LARGEST_SVG).then(still) {
@@ -136,14 +134,14 @@ fn coarse(value: u8) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, Legend, Plot, Series};
+    use crate::{Axis, Plot, Series};
 
     fn frame(y: f64) -> Figure {
         let line = Series::line("line", vec![(0.0, 0.0), (1.0, y)]);
         let plot = Plot::new("", Axis::linear("x [m]").range(0.0, 1.0), {
             Axis::linear("y [m]").range(0.0, 3.0)
         });
-        let plot = plot.layer(line).legend(Legend::Hidden);
+        let plot = plot.layer(line).without_legend();
         Figure::new("frame", "").panel(plot).panel_size(80.0, 60.0)
     }
 

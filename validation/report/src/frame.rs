@@ -1,4 +1,4 @@
-//! What plots and maps share: the room that they take, axes with ticks, titles and labels.
+//! What all plots share: the room that they take, axes with ticks, titles and labels.
 
 use super::axis::Ruler;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
@@ -20,15 +20,6 @@ pub(super) struct Room {
     pub bottom: f64,
 }
 
-/// The texts around the axes of a panel.
-pub(super) struct Texts<'a> {
-    pub title: &'a str,
-    /// What could not be drawn.
-    pub note: &'a str,
-    pub x: &'a str,
-    pub y: &'a str,
-}
-
 /// Two axes, what they enclose, and the texts around them.
 pub(super) struct Frame<'a> {
     pub area: Rect,
@@ -40,18 +31,24 @@ pub(super) struct Frame<'a> {
 }
 
 impl Frame<'_> {
-    fn texts(&self) -> Texts<'_> {
-        Texts { title: self.title, note: &self.note, x: &self.x.label, y: &self.y.label }
-    }
-
     /// Where a point lies.
     pub fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
         Some(self.area.at((self.x.mapping.unit(x)?, self.y.mapping.unit(y)?)))
     }
 
-    /// With so much room on the right.
+    /// The room that it takes, with so much on the right.
     pub fn room(&self, right: f64) -> Room {
-        Room { right, ..room(self.area, &self.texts(), self.y.width()) }
+        let with = |text: &str, without: f64, extra: f64| {
+            without + if text.is_empty() { 0.0 } else { extra }
+        };
+        Room {
+            left: self.y.width() + with(&self.y.label, 10.0, 24.0),
+            width: self.area.width,
+            right,
+            top: with(self.title, 8.0, 17.0) + with(&self.note, 0.0, 13.0),
+            height: self.area.height,
+            bottom: with(&self.x.label, 22.0, 20.0),
+        }
     }
 
     /// Grid, ticks, tick labels and texts.
@@ -78,7 +75,22 @@ impl Frame<'_> {
             let at = (area.left - 6.0, area.at((0.0, *unit)).1);
             canvas.text(label, at, Type::new(TICK_EM, Align::End));
         }
-        labels(canvas, area, &self.texts(), self.y.width());
+        self.draw_texts(canvas);
+    }
+
+    /// Title, note and labels of the axes.
+    fn draw_texts(&self, canvas: &mut Canvas) {
+        let Self { area, x, y, title, note } = self;
+        let (middle, centre) = area.at((0.5, 0.5));
+        let set = |text: &str, em, room| Type::new(fit(text, em, room), Align::Middle);
+        let wide = area.width + 40.0;
+        canvas.text(title, (middle, area.top - 13.0), set(title, TITLE_EM, wide));
+        canvas.text(&x.label, (middle, area.bottom() + 31.0), set(&x.label, LABEL_EM, wide));
+        let upright = set(&y.label, LABEL_EM, area.height + 20.0).upright();
+        canvas.text(&y.label, (area.left - y.width() - 21.0, centre), upright);
+        let warning = Type::new(NOTE_EM, Align::End).colour(Colour(150, 60, 0));
+        let above = area.top - if title.is_empty() { 8.5 } else { 28.0 };
+        canvas.text(note, (area.right(), above), warning);
     }
 }
 
@@ -86,32 +98,4 @@ impl Frame<'_> {
 pub(super) fn fit(text: &str, em: f64, room: f64) -> f64 {
     let width = font::width(text, em);
     if width > room { em * room / width } else { em }
-}
-
-/// The room for an area and these texts beside y ticks of the given width.
-pub(super) fn room(area: Rect, texts: &Texts, y_labels: f64) -> Room {
-    let with =
-        |text: &str, without: f64, extra: f64| without + if text.is_empty() { 0.0 } else { extra };
-    Room {
-        left: y_labels + with(texts.y, 10.0, 24.0),
-        width: area.width,
-        right: 10.0,
-        top: with(texts.title, 8.0, 17.0) + with(texts.note, 0.0, 13.0),
-        height: area.height,
-        bottom: with(texts.x, 22.0, 20.0),
-    }
-}
-
-/// Title, note and axis labels; `y_labels` is the width of the tick labels on the left.
-pub(super) fn labels(canvas: &mut Canvas, area: Rect, texts: &Texts, y_labels: f64) {
-    let (middle, centre) = area.at((0.5, 0.5));
-    let set = |text: &str, em, room| Type::new(fit(text, em, room), Align::Middle);
-    let wide = area.width + 40.0;
-    canvas.text(texts.title, (middle, area.top - 13.0), set(texts.title, TITLE_EM, wide));
-    canvas.text(texts.x, (middle, area.bottom() + 31.0), set(texts.x, LABEL_EM, wide));
-    let y = set(texts.y, LABEL_EM, area.height + 20.0).upright();
-    canvas.text(texts.y, (area.left - y_labels - 21.0, centre), y);
-    let warning = Type::new(NOTE_EM, Align::End).colour(Colour(150, 60, 0));
-    let above = area.top - if texts.title.is_empty() { 8.5 } else { 28.0 };
-    canvas.text(texts.note, (area.right(), above), warning);
 }

@@ -9,33 +9,12 @@ pub(super) fn runs<P: Copy, T: Copy>(points: &[P], place: impl Fn(P) -> Option<T
     runs.map(|run| run.iter().copied().flatten().collect()).collect()
 }
 
-/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains.
-pub(super) fn thin(run: &[Point]) -> Vec<Point> {
-    const MANY: usize = 600;
-    if run.len() < MANY { simplified(run) } else { simplified(&columns(run)) }
-}
-
 /// A distance that is not seen, in CSS pixels.
 const SEEN: f64 = 0.15;
 
-/// Of the points in one pixel column the first, the lowest, the highest and the last.
-fn columns(run: &[Point]) -> Vec<Point> {
-    let column = |p: &Point| p.0.round() as i64;
-    let mut kept = Vec::new();
-    for group in run.chunk_by(|a, b| column(a) == column(b)) {
-        let by_y = |&i: &usize, &j: &usize| group[i].1.total_cmp(&group[j].1);
-        let lowest = (0..group.len()).max_by(by_y).unwrap_or(0);
-        let highest = (0..group.len()).min_by(by_y).unwrap_or(0);
-        let mut indices = [0, lowest, highest, group.len() - 1];
-        indices.sort_unstable();
-        kept.extend(indices.map(|i| group[i]));
-    }
-    kept.dedup();
-    kept
-}
-
-/// Without the points that lie on the line between others (Ramer, Douglas and Peucker).
-fn simplified(run: &[Point]) -> Vec<Point> {
+/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains (Ramer,
+/// Douglas and Peucker).
+pub(super) fn thin(run: &[Point]) -> Vec<Point> {
     let mut is_kept = vec![false; run.len()];
     let mut pieces = vec![(0, run.len().saturating_sub(1))];
     for end in [is_kept.len().min(1), is_kept.len()] {
@@ -72,34 +51,6 @@ pub(super) fn clip_line(run: &[Point], area: Rect) -> Vec<Vec<Point>> {
         }
     }
     pieces
-}
-
-/// The part of a polygon inside an area (Sutherland and Hodgman).
-pub(super) fn clip_polygon(corners: &[Point], area: Rect) -> Vec<Point> {
-    // Room to the four sides: positive is inside.
-    let room = |(x, y): Point, side: usize| match side {
-        0 => x - area.left,
-        1 => area.right() - x,
-        2 => y - area.top,
-        _ => area.bottom() - y,
-    };
-    let mut polygon = corners.to_vec();
-    for side in 0..4 {
-        let mut clipped = Vec::new();
-        for (i, &p) in polygon.iter().enumerate() {
-            let q = polygon[(i + 1) % polygon.len()];
-            let (rp, rq) = (room(p, side), room(q, side));
-            if rp >= 0.0 {
-                clipped.push(p);
-            }
-            if (rp >= 0.0) != (rq >= 0.0) {
-                let t = rp / (rp - rq);
-                clipped.push((p.0 + t * (q.0 - p.0), p.1 + t * (q.1 - p.1)));
-            }
-        }
-        polygon = clipped;
-    }
-    polygon
 }
 
 /// Adds points along a segment, a few pixels apart.
@@ -159,12 +110,5 @@ mod tests {
     fn a_line_that_leaves_and_returns_is_two_pieces() {
         let run = [(1.0, 5.0), (5.0, 15.0), (9.0, 5.0)];
         assert_eq!(clip_line(&run, AREA).len(), 2);
-    }
-
-    #[test]
-    fn a_polygon_is_cut_at_the_border() {
-        let cut = clip_polygon(&[(-5.0, 2.0), (5.0, 2.0), (5.0, 4.0), (-5.0, 4.0)], AREA);
-        assert_eq!(cut.len(), 4);
-        assert!(cut.iter().all(|&p| AREA.contains(p)));
     }
 }

@@ -23,18 +23,16 @@ pub(super) fn inline(text: &str) -> Markup {
 
 /// Writes the element at the start of the text; the bytes that it took, 0 for none.
 fn element(text: &str, out: &mut String) -> usize {
-    if let Some(code) = text.strip_prefix('`') {
-        let Some(end) = code.find('`') else { return 0 };
-        out.push_str(&format!("<code>{}</code>", escaped(&code[..end])));
-        return end + 2;
-    }
-    for (mark, tag) in [("**", "strong"), ("*", "em")] {
-        let Some(inner) = text.strip_prefix(mark) else { continue };
-        let Some(end) = inner.find(mark).filter(|&e| e > 0) else { continue };
-        if inner.starts_with(' ') || inner[..end].ends_with(' ') {
-            continue;
-        }
-        out.push_str(&format!("<{tag}>{}</{tag}>", inline(&inner[..end]).into_string()));
+    for (mark, tag) in [("`", "code"), ("**", "strong"), ("*", "em")] {
+        let Some(after) = text.strip_prefix(mark) else { continue };
+        let Some(end) = after.find(mark).filter(|&e| e > 0) else { continue };
+        let inner = &after[..end];
+        let content = match tag {
+            "code" => escaped(inner),
+            _ if inner.starts_with(' ') || inner.ends_with(' ') => continue,
+            _ => inline(inner).into_string(),
+        };
+        out.push_str(&format!("<{tag}>{content}</{tag}>"));
         return end + 2 * mark.len();
     }
     link(text, out).unwrap_or(0)

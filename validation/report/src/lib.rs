@@ -13,7 +13,7 @@ mod card;
 mod check;
 mod colour;
 mod counts;
-mod drawn;
+mod dots;
 mod explorer;
 mod figure;
 mod film;
@@ -22,7 +22,6 @@ mod frame;
 mod geometry;
 mod inline;
 mod legend;
-mod maps;
 mod number;
 mod page;
 mod plot;
@@ -38,9 +37,7 @@ pub use check::check_page;
 pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};
-pub use figure::{
-    CategoryMap, Dash, Figure, Layer, Legend, Panel, ParticleMap, Plot, Series, Shape,
-};
+pub use figure::{Dash, Dots, Figure, Layer, Plot, Series, Shape};
 pub use film::Film;
 pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use page::{Block, Page, Section};

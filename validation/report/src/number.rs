@@ -1,6 +1,21 @@
 //! Numbers as text for tables: no more digits than are known, a true minus, no rounding dust.
 
-use super::ticks::{minus, power_of_ten};
+/// A true minus sign instead of a hyphen.
+pub(super) fn minus(text: String) -> String {
+    text.replace('-', "−")
+}
+
+/// `10⁻³`.
+pub(super) fn power_of_ten(k: i32) -> String {
+    let digit = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        c => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
+    };
+    format!("10{}", k.to_string().chars().map(digit).collect::<String>())
+}
 
 /// What stands for a value that is no number.
 fn not_finite(x: f64) -> String {

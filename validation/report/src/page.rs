@@ -9,7 +9,7 @@ use super::font;
 use super::inline::inline;
 use super::render;
 use super::table::{Table, class, first_sentence, mark};
-use base::{files, gate::Verdict, text::base64};
+use base::{files, text::base64};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 use std::io;
@@ -44,8 +44,9 @@ pub struct Section {
     pub id: String,
     /// Heading; inline markup.
     pub title: String,
-    /// Marks the entry in the table of contents.
-    pub status: Option<Verdict>,
+    /// How its gates ended: said below the heading, with links to those in the table of all verdicts that have
+    /// its title, and the worst in the table of contents.
+    pub counts: Counts,
     /// Content in order.
     pub blocks: Vec<Block>,
     /// Sections one level down.
@@ -58,9 +59,9 @@ impl Section {
         Self { id: id.into(), title: title.into(), ..Self::default() }
     }
 
-    /// Sets the mark.
-    pub fn status(self, status: Verdict) -> Self {
-        Self { status: Some(status), ..self }
+    /// Sets how its gates ended.
+    pub fn counts(self, counts: Counts) -> Self {
+        Self { counts, ..self }
     }
 
     /// Adds a block.
@@ -96,13 +97,6 @@ pub enum Block {
     Table(Table),
     /// The table of all verdicts, once a page.
     Explorer(Explorer),
-    /// How the gates of this part ended, with a link to them in the table of all verdicts.
-    Outcome {
-        /// How they ended.
-        counts: Counts,
-        /// The words by which the table finds them.
-        words: String,
-    },
     /// Blocks behind a click.
     Details {
         /// What is behind; inline markup.
@@ -185,8 +179,8 @@ impl Page {
             // What a report that was killed left there goes, too.
             let images = files::OutputFolder::create(&folder.join(&self.png_folder));
             let images = images.map_err(io::Error::other)?;
-            let drawings: Vec<&Block> = self.sections.iter().flat_map(drawings).collect();
-            drawings.par_iter().try_for_each(|drawing| write_png(drawing, images.path()))?;
+            let sections = self.sections.par_iter();
+            sections.try_for_each(|section| write_images(section, images.path()))?;
         }
         files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
     }
@@ -194,29 +188,26 @@ impl Page {
 
 const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
-/// Writes the PNG file of a drawing.
-fn write_png(drawing: &Block, folder: &Path) -> io::Result<()> {
+/// Writes the PNG files of the drawings of a section.
+fn write_images(section: &Section, folder: &Path) -> io::Result<()> {
+    section.blocks.par_iter().try_for_each(|block| write_image(block, folder))?;
+    section.children.par_iter().try_for_each(|child| write_images(child, folder))
+}
+
+fn write_image(block: &Block, folder: &Path) -> io::Result<()> {
     let path = |id: &str| folder.join(format!("{id}.png"));
-    match drawing {
-        Block::Figure(figure) => render::png(figure, &path(&figure.id)),
+    match block {
+        Block::Figure(figure) if !figure.panels.is_empty() => {
+            render::png(figure, &path(&figure.id))
+        }
         Block::Film(film) => {
             files::write_atomically(&path(&film.id), &film.png).map_err(io::Error::other)
         }
+        Block::Details { blocks, .. } => {
+            blocks.par_iter().try_for_each(|block| write_image(block, folder))
+        }
         _ => Ok(()),
     }
-}
-
-/// Every drawing of a section, each of which has a PNG file.
-fn drawings(section: &Section) -> Vec<&Block> {
-    fn of(block: &Block) -> Vec<&Block> {
-        match block {
-            Block::Figure(figure) if figure.panels.is_empty() => Vec::new(),
-            Block::Figure(_) | Block::Film(_) => vec![block],
-            Block::Details { blocks, .. } => blocks.iter().flat_map(of).collect(),
-            _ => Vec::new(),
-        }
-    }
-    section.blocks.iter().flat_map(of).chain(section.children.iter().flat_map(drawings)).collect()
 }
 
 fn contents(sections: &[Section]) -> Markup {
@@ -224,7 +215,7 @@ fn contents(sections: &[Section]) -> Markup {
         ul {
             @for section in sections {
                 li {
-                    @if let Some(s) = section.status {
+                    @if let Some(s) = section.counts.worst() {
                         span class=(format!("mark {}", class(s))) title=(s.name()) { (mark(s)) }
                         " "
                     }
@@ -238,6 +229,7 @@ fn contents(sections: &[Section]) -> Markup {
 impl Writer<'_> {
     fn section(&mut self, section: &Section, level: usize) -> Markup {
         let title = inline(&section.title);
+        let gates = |status: &str| verdicts_where(&format!("q={}&status={status}", section.title));
         html! {
             section id=(section.id) {
                 @match level {
@@ -245,6 +237,7 @@ impl Writer<'_> {
                     3 => h3 { (title) },
                     _ => h4 { (title) },
                 }
+                @if section.counts.worst().is_some() { (section.counts.chips(gates)) }
                 @for block in &section.blocks { (self.block(block)) }
                 @if level == 2 { @if section.children.len() > 1 {
                     details.inside {
@@ -272,9 +265,6 @@ impl Writer<'_> {
                 table.markup(&format!("Table {}", self.tables))
             }
             Block::Explorer(explorer) => explorer.markup(),
-            Block::Outcome { counts, words } => {
-                counts.chips(|status| verdicts_where(&format!("q={words}&status={status}")))
-            }
             Block::Details { summary, blocks } => html! {
                 details {
                     summary { (inline(summary)) }
@@ -340,10 +330,12 @@ mod tests {
     fn a_figure_without_panels_is_a_line_of_text_with_its_anchor() {
         let section = Section::new("s", "S").prose("See [it](#empty).");
         let section = section.block(Figure::new("empty", "What is shown where there are runs"));
-        let drawn = drawings(&section).len();
+        let folder = tempfile::tempdir().unwrap();
+        write_images(&section, folder.path()).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         let html = Page { sections: vec![section], ..Page::default() }.html();
         crate::check_page(&html).expect("a page that opens");
-        assert!(drawn == 0 && !html.contains("<figure"), "{html}");
+        assert!(!html.contains("<figure"), "{html}");
         assert!(html.contains("<p id=\"empty\">No figure: "), "{html}");
     }
 

@@ -1,15 +1,16 @@
 //! Layout and drawing of one plot over two axes.
 
-use super::axis::{Mapping, Ruler};
+use super::axis::{Axis, Mapping, Ruler};
+use super::bar::Bar;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
-use super::drawn::Drawn;
-use super::figure::{Layer, Legend, Plot, Series, Shape};
+use super::dots::{Scaled, draw_cell};
+use super::figure::{Layer, Plot, Series, Shape};
 use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
-use super::geometry::{clip_line, clip_polygon, runs, sample_rect, sample_segment, thin};
+use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
 use super::legend::{self, Entry, Look, MARKER, Sample};
-use super::ticks::minus;
+use super::number::minus;
 
 const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
@@ -26,12 +27,14 @@ pub(super) struct Prepared<'a> {
     /// Orders, and the corners of their triangles.
     slopes: Vec<(f64, [Point; 3])>,
     marks: Vec<Mark<'a>>,
-    entries: Vec<Entry>,
-    legend: Legend,
+    dots: Option<Scaled<'a>>,
+    /// What the legend below the axes names; nothing if there is none.
+    pub legend: Vec<Entry>,
 }
 
 /// The label of a point, which starts in the middle of the left side of its room.
 struct Mark<'a> {
+    point: Point,
     text: &'a str,
     room: Rect,
     colour: Colour,
@@ -40,39 +43,59 @@ struct Mark<'a> {
 impl<'a> Prepared<'a> {
     pub fn new(plot: &'a Plot, size: (f64, f64)) -> Self {
         let (xs, ys) = extent(plot);
-        let (x, y) = (plot.x.mapping(xs.into_iter()), plot.y.mapping(ys.into_iter()));
+        let (mut x, mut y) = (plot.x.mapping(xs.into_iter()), plot.y.mapping(ys.into_iter()));
+        let mut area = Rect::of(size);
+        let dots = plot.dots().map(|dots| {
+            // A dot on the border is seen whole.
+            for axis in [&mut x, &mut y] {
+                axis.lo -= 0.5 * dots.diameter;
+                axis.hi += 0.5 * dots.diameter;
+            }
+            let (width, height) = (x.hi - x.lo, y.hi - y.lo);
+            let pixels = (size.0 / width).min(size.1 / height);
+            area = Rect::of((pixels * width, pixels * height));
+            Scaled::new(dots, area.height, pixels)
+        });
         let series = with_looks(&plot.layers);
         let frame = Frame {
-            area: Rect::of(size),
-            x: x_ruler(x, size.0, &plot.x.label),
-            y: y.ruler((size.1 / 42.0) as usize, &plot.y.label),
+            area,
+            x: x_ruler(&plot.x, x, area.width),
+            y: plot.y.ruler(y, (area.height / 42.0) as usize),
             title: &plot.title,
             note: String::new(),
         };
         let mut this = Self {
             plot,
             frame,
-            entries: entries(plot, &series),
+            legend: if plot.legend { entries(plot, &series) } else { Vec::new() },
             series,
             slopes: Vec::new(),
             marks: Vec::new(),
-            legend: plot.legend,
+            dots,
         };
         this.frame.note = this.dropped();
         let mut obstacles = this.obstacles();
         this.place_slopes(&mut obstacles);
         this.place_marks(&mut obstacles);
-        if this.entries.is_empty() {
-            this.legend = Legend::Hidden;
-        } else if this.legend == Legend::Auto {
-            this.legend = legend::place(&this.entries, this.frame.area, &obstacles);
-        }
         this
+    }
+
+    /// Its colour bar, if it has one.
+    pub fn bar(&mut self) -> Option<&mut Bar> {
+        self.dots.as_mut().map(|dots| &mut dots.bar)
+    }
+
+    /// The bar, unless the figure draws it.
+    fn own_bar(&self) -> Option<&Bar> {
+        self.dots.as_ref().map(|dots| &dots.bar).filter(|bar| !bar.is_shared)
     }
 
     /// What could not be drawn, in words.
     fn dropped(&self) -> String {
-        let (mut infinite, mut nonpositive, mut off) = (0, 0, 0);
+        let is_lost = |dot: &&(f64, f64, f64)| !(dot.0 + dot.1 + dot.2).is_finite();
+        let dots = self.plot.dots().into_iter().flat_map(|dots| &dots.points);
+        let mut infinite = dots.filter(is_lost).count();
+        let (mut nonpositive, mut off) = (0, 0);
         for (series, _) in &self.series {
             for &(x, y) in &series.points {
                 match self.frame.place((x, y)) {
@@ -162,13 +185,12 @@ impl<'a> Prepared<'a> {
         });
         let mut points: Vec<_> = points.collect();
         points.sort_by_key(|(is_between, ..)| *is_between);
-        let mut found: Vec<(Point, Mark)> = Vec::new();
         for (_, point, text, colour) in points {
             let Some(at) = self.frame.place(point) else { continue };
-            let is_same = |(other, mark): &(Point, Mark)| {
-                mark.text == *text && (other.0 - at.0).hypot(other.1 - at.1) < 6.0
+            let is_same = |Mark { text: other, point: (x, y), .. }: &Mark| {
+                other == text && (x - at.0).hypot(y - at.1) < 6.0
             };
-            if found.iter().any(is_same) {
+            if self.marks.iter().any(is_same) {
                 continue;
             }
             let hidden = |room: &Rect| {
@@ -180,10 +202,9 @@ impl<'a> Prepared<'a> {
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
             if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
                 sample_rect(obstacles, room);
-                found.push((at, Mark { text, room, colour }));
+                self.marks.push(Mark { point: at, text, room, colour });
             }
         }
-        self.marks = found.into_iter().map(|(_, mark)| mark).collect();
     }
 
     /// Error bars of a series; an end without a place on a logarithmic axis goes off the low side.
@@ -204,10 +225,10 @@ impl<'a> Prepared<'a> {
         };
         for run in runs(points, ends) {
             let (lower, upper): (Vec<Point>, Vec<Point>) = run.into_iter().unzip();
-            let outline: Vec<Point> = lower.into_iter().chain(upper.into_iter().rev()).collect();
-            let clipped = clip_polygon(&outline, self.frame.area);
-            if outline.len() > 2 && clipped.len() > 2 {
-                canvas.polygon(&thin(&clipped), colour.tint(BAND));
+            let outline = lower.into_iter().chain(upper.into_iter().rev());
+            let outline: Vec<Point> = outline.map(|p| self.frame.area.nearest(p)).collect();
+            if outline.len() > 2 {
+                canvas.polygon(&thin(&outline), colour.tint(BAND));
             }
         }
     }
@@ -235,28 +256,23 @@ impl<'a> Prepared<'a> {
             canvas.markers(&places, shape, MARKER, look.colour, look.open);
         }
     }
-}
 
-impl Drawn for Prepared<'_> {
-    fn legend(&self) -> &[Entry] {
-        if self.legend == Legend::Hidden { &[] } else { &self.entries }
-    }
-
-    fn hide_legend(&mut self) {
-        self.legend = Legend::Hidden;
-    }
-
-    fn room(&self) -> Room {
+    /// The room that it takes with its colour bar and its legend.
+    pub fn room(&self) -> Room {
         let last = self.frame.x.major.last();
         let overhang = last.map_or(0.0, |(_, label)| font::width(label, TICK_EM) / 2.0);
-        let outside = match self.legend {
-            Legend::Outside => legend::size(&self.entries).0 + 12.0,
-            _ => 0.0,
-        };
-        self.frame.room((overhang + 2.0).max(10.0).max(outside))
+        let bar = self.own_bar().map_or(0.0, Bar::width);
+        let mut room = self.frame.room((overhang + 2.0).max(10.0).max(bar));
+        if !self.legend.is_empty() {
+            room.right = room.right.max(legend::column(&self.legend) - room.width);
+            room.bottom += legend::height(&self.legend, room.width);
+        }
+        room
     }
 
-    fn draw(&self, canvas: &mut Canvas) {
+    /// Draws the plot; the upper left corner of its axes is the canvas's.
+    pub fn draw(&self, canvas: &mut Canvas) {
+        let area = self.frame.area;
         // Bands lie below the grid.
         for layer in &self.plot.layers {
             if let Layer::Band { points, colour, .. } = layer {
@@ -264,22 +280,30 @@ impl Drawn for Prepared<'_> {
             }
         }
         self.frame.draw(canvas);
+        for layer in &self.plot.layers {
+            if let Layer::Cells { cells, colour, .. } = layer {
+                cells.iter().for_each(|cell| draw_cell(canvas, &self.frame, cell, *colour));
+            }
+        }
+        if let Some(dots) = &self.dots {
+            dots.draw(canvas, &self.frame);
+        }
         for (series, look) in &self.series {
             self.draw_series(canvas, series, *look);
         }
         for (order, corners) in &self.slopes {
-            draw_slope(canvas, self.frame.area, *order, *corners);
+            draw_slope(canvas, area, *order, *corners);
         }
         for mark in &self.marks {
             let at = mark.room.at((0.0, 0.5));
             canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
         }
-        canvas.frame(self.frame.area, Colour::BLACK, 1.0);
-        if self.legend != Legend::Hidden {
-            let rect = legend::rect(&self.entries, self.frame.area, self.legend);
-            let boxed = self.legend != Legend::Outside;
-            legend::draw(canvas, &self.entries, (rect.left, rect.top), boxed);
+        canvas.frame(area, Colour::BLACK, 1.0);
+        if let Some(bar) = self.own_bar() {
+            bar.draw(canvas, area);
         }
+        let below = area.bottom() + self.frame.room(0.0).bottom;
+        legend::draw(canvas, &self.legend, (area.left, below), area.width);
     }
 }
 
@@ -300,14 +324,18 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                 xs.extend(points.iter().map(|p| p.0));
                 ys.extend(points.iter().flat_map(|p| [p.1, p.2]));
             }
-            Layer::Slope(_) => {}
+            Layer::Dots(dots) => {
+                xs.extend(dots.points.iter().map(|p| p.0));
+                ys.extend(dots.points.iter().map(|p| p.1));
+            }
+            Layer::Slope(_) | Layer::Cells { .. } => {}
         }
     }
     (xs, ys)
 }
 
 /// The x axis with as many ticks as have room for their labels.
-fn x_ruler(mapping: Mapping, width: f64, label: &str) -> Ruler {
+fn x_ruler(axis: &Axis, mapping: Mapping, width: f64) -> Ruler {
     let overlap = |ruler: &Ruler| {
         ruler.major.windows(2).any(|pair| {
             let half = |label: &str| 0.5 * font::width(label, TICK_EM);
@@ -315,8 +343,8 @@ fn x_ruler(mapping: Mapping, width: f64, label: &str) -> Ruler {
         })
     };
     let most = ((width / 52.0) as usize).max(3);
-    let found = (2..=most).rev().map(|count| mapping.ruler(count, label)).find(|r| !overlap(r));
-    found.unwrap_or_else(|| mapping.ruler(2, label))
+    let found = (2..=most).rev().map(|count| axis.ruler(mapping, count)).find(|r| !overlap(r));
+    found.unwrap_or_else(|| axis.ruler(mapping, 2))
 }
 
 /// The series with their colours and shapes, the next of the palette where they name none.
@@ -336,16 +364,17 @@ fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
     series.zip(looks).collect()
 }
 
-/// What the legend names: series, then bands. A series without a point would have a symbol there and none
+/// What the legend names: series, then areas. A series without a point would have a symbol there and none
 /// in the plot.
 fn entries(plot: &Plot, series: &[(&Series, Look)]) -> Vec<Entry> {
     let drawn = series.iter().filter(|(series, _)| !series.points.is_empty());
     let lines = drawn.map(|(series, look)| (&series.name, Sample::Series(*look)));
-    let bands = plot.layers.iter().filter_map(|layer| match layer {
+    let areas = plot.layers.iter().filter_map(|layer| match layer {
         Layer::Band { name, colour, .. } => Some((name, Sample::Patch(colour.tint(BAND)))),
+        Layer::Cells { name, colour, .. } => Some((name, Sample::Patch(*colour))),
         _ => None,
     });
-    let named = lines.chain(bands).filter(|(name, _)| !name.is_empty());
+    let named = lines.chain(areas).filter(|(name, _)| !name.is_empty());
     named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
 }
 
@@ -361,9 +390,7 @@ fn around(corners: &[Point; 3], order: f64) -> Rect {
     let (left, top) = (least(|p| p.0), least(|p| p.1));
     let (width, height) = (most(|p| p.0) - left, most(|p| p.1) - top);
     let number = 5.0 + font::width(&slope_number(order), SLOPE_EM) + 3.0;
-    let before = if corners[1].0 > corners[0].0 { 14.0 } else { number };
-    let width = width + 14.0 + number;
-    Rect { left: left - before, top: top - 14.0, width, height: height + 28.0 }
+    Rect { left: left - 14.0, top: top - 14.0, width: width + 14.0 + number, height: height + 28.0 }
 }
 
 /// A triangle with its rise beside and a 1 along its run.
@@ -375,8 +402,7 @@ fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) 
         }
     }
     let how = |align| Type::new(SLOPE_EM, align).colour(Colour::GREY);
-    let (align, side) = if b.0 > a.0 { (Align::Start, 5.0) } else { (Align::End, -5.0) };
-    canvas.text(&slope_number(order), (b.0 + side, 0.5 * (b.1 + c.1)), how(align));
+    canvas.text(&slope_number(order), (b.0 + 5.0, 0.5 * (b.1 + c.1)), how(Align::Start));
     let below = if c.1 < b.1 { 8.5 } else { -8.5 };
     canvas.text("1", (0.5 * (a.0 + b.0), b.1 + below), how(Align::Middle));
 }

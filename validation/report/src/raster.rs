@@ -1,49 +1,34 @@
 //! A drawing in pixels.
 //!
-//! The rasteriser knows whole pixels only, so everything is drawn `scale` times larger. Its first error is
-//! kept and reported at the end, which keeps the drawing code free of `?`.
+//! The rasteriser knows whole pixels only, so everything is drawn `scale` times larger.
 
 use super::canvas::{Point, Sheet};
 use super::colour::Colour;
 use super::figure::Dash;
 use super::font::{self, Align, Type};
-use plotters::prelude::{BitMapBackend, DrawingBackend, RGBColor, TextStyle};
+use plotters::prelude::{BitMapBackend, Color, DrawingBackend, RGBColor, TextStyle};
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::io;
+
+/// What is drawn into memory cannot fail; of a text this holds as long as the font is there.
+const DRAWN: &str = "the pixels are in memory, and the font is registered";
 
 pub(super) struct Raster<'a> {
-    backend: BitMapBackend<'a>,
-    scale: f64,
-    error: Option<io::Error>,
+    pub backend: BitMapBackend<'a>,
+    pub scale: f64,
 }
 
-impl<'a> Raster<'a> {
-    pub fn new(backend: BitMapBackend<'a>, scale: f64) -> Self {
-        Self { backend, scale, error: None }
-    }
-
-    /// The first error, if there was one.
-    pub fn finish(mut self) -> io::Result<()> {
-        let last = self.backend.present();
-        self.note(last);
-        self.error.map_or(Ok(()), Err)
-    }
-
-    fn note<E: std::fmt::Display>(&mut self, result: Result<(), E>) {
-        if let Err(e) = result {
-            self.error.get_or_insert(io::Error::other(e.to_string()));
-        }
-    }
-
+impl Raster<'_> {
     fn pixel(&self, (x, y): Point) -> (i32, i32) {
         ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
     }
 
-    /// Bars and round joints: the rasteriser's own wide paths have spikes at sharp turns.
+    /// Lines with round joints: the rasteriser's own wide paths have spikes at sharp turns.
     fn path(&mut self, points: &[Point], colour: Colour, width: f64) {
+        let stroke = rgb(colour).stroke_width((width * self.scale).round().max(1.0) as u32);
         for pair in points.windows(2) {
-            self.bar(pair[0], pair[1], colour, width);
+            let (from, to) = (self.pixel(pair[0]), self.pixel(pair[1]));
+            self.backend.draw_line(from, to, &stroke).expect(DRAWN);
         }
         if width > 1.2 {
             for &joint in points.iter().skip(1).take(points.len().saturating_sub(2)) {
@@ -51,25 +36,16 @@ impl<'a> Raster<'a> {
             }
         }
     }
+}
 
-    /// A segment as a filled rectangle along it.
-    fn bar(&mut self, a: Point, b: Point, colour: Colour, width: f64) {
-        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let length = dx.hypot(dy);
-        if length == 0.0 {
-            return;
-        }
-        let (nx, ny) = (-0.5 * width * dy / length, 0.5 * width * dx / length);
-        let corners = [
-            (a.0 + nx, a.1 + ny),
-            (b.0 + nx, b.1 + ny),
-            (b.0 - nx, b.1 - ny),
-            (a.0 - nx, a.1 - ny),
-        ];
-        self.area(&corners, colour);
+impl Sheet for Raster<'_> {
+    fn area(&mut self, corners: &[Point], colour: Colour) {
+        let pixels: Vec<_> = corners.iter().map(|&p| self.pixel(p)).collect();
+        self.backend.fill_polygon(pixels, &rgb(colour)).expect(DRAWN);
     }
 
-    fn dashed(&mut self, points: &[Point], colour: Colour, width: f64, pattern: &[f64]) {
+    fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
+        let pattern = dash.pattern();
         let Some(&first) = points.first() else { return };
         let (mut on, mut left) = (0, pattern[0]);
         let mut run = vec![first];
@@ -95,34 +71,10 @@ impl<'a> Raster<'a> {
             self.path(&run, colour, width);
         }
     }
-}
-
-impl Sheet for Raster<'_> {
-    fn area(&mut self, corners: &[Point], colour: Colour) {
-        let pixels: Vec<_> = corners.iter().map(|&p| self.pixel(p)).collect();
-        let result = self.backend.fill_polygon(pixels, &rgb(colour));
-        self.note(result);
-    }
-
-    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>) {
-        if let Some(fill) = fill {
-            self.area(corners, fill);
-        }
-        let closed: Vec<_> = corners.iter().chain(&corners[..1]).copied().collect();
-        self.path(&closed, colour, width);
-    }
-
-    fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
-        match dash {
-            Dash::Solid => self.path(points, colour, width),
-            _ => self.dashed(points, colour, width, dash.pattern()),
-        }
-    }
 
     fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
         let radius = (radius * self.scale).round().max(1.0) as u32;
-        let result = self.backend.draw_circle(self.pixel(centre), radius, &rgb(colour), true);
-        self.note(result);
+        self.backend.draw_circle(self.pixel(centre), radius, &rgb(colour), true).expect(DRAWN);
     }
 
     fn text(&mut self, text: &str, (x, y): Point, how: Type) {
@@ -142,8 +94,7 @@ impl Sheet for Raster<'_> {
         let style = TextStyle::from(font::desc(height * self.scale).transform(turn))
             .color(&colour)
             .pos(Pos::new(horizontal, VPos::Top));
-        let result = self.backend.draw_text(text, &style, self.pixel(place));
-        self.note(result);
+        self.backend.draw_text(text, &style, self.pixel(place)).expect(DRAWN);
     }
 }
 

@@ -3,11 +3,9 @@
 use super::bar::Bar;
 use super::canvas::{Canvas, Rect};
 use super::colour::Colour;
-use super::drawn::Drawn;
-use super::figure::{Figure, Panel};
+use super::figure::Figure;
 use super::frame::Room;
 use super::legend::{self, Entry};
-use super::maps::{Categories, Particles};
 use super::plot::Prepared;
 use super::raster::Raster;
 use super::svg::{self, Svg};
@@ -21,31 +19,21 @@ const SUPERSAMPLE: u32 = 3;
 const DENSITY: u32 = 2;
 const EDGE: f64 = 5.0;
 
-fn prepared(panel: &Panel, size: (f64, f64)) -> Box<dyn Drawn + '_> {
-    match panel {
-        Panel::Plot(plot) => Box::new(Prepared::new(plot, size)),
-        Panel::Particles(map) => Box::new(Particles::new(map, size)),
-        Panel::Categories(map) => Box::new(Categories::new(map, size)),
-    }
-}
-
 /// Panels with their places, and the size of the whole.
 struct Layout<'a> {
-    panels: Vec<(Box<dyn Drawn + 'a>, Rect)>,
-    /// The legend below all panels; empty where each has its own.
+    panels: Vec<(Prepared<'a>, Rect)>,
+    /// The legend below all panels; empty if each has its own.
     legend: Vec<Entry>,
     /// The colour bar of all panels, if they have one for all, and what it stands beside.
     bar: Option<(Bar, Rect)>,
     size: (f64, f64),
 }
 
-/// The one legend of several panels, in which a name has one colour and a look one name. Empty if theirs do
-/// not agree, or if several of them have nothing in common.
-fn shared_legend(panels: &[Box<dyn Drawn + '_>]) -> Vec<Entry> {
-    let legends: Vec<&[Entry]> =
-        panels.iter().map(|panel| panel.legend()).filter(|legend| !legend.is_empty()).collect();
+/// The one legend of all panels, in which a name has one colour and a look one name. Empty if theirs do not
+/// agree.
+fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
-    for entry in legends.iter().copied().flatten() {
+    for entry in panels.iter().flat_map(|panel| &panel.legend) {
         match all.iter().find(|other| other.name == entry.name) {
             Some(other) if other.colour() != entry.colour() => return Vec::new(),
             Some(_) => {}
@@ -53,15 +41,15 @@ fn shared_legend(panels: &[Box<dyn Drawn + '_>]) -> Vec<Entry> {
             None => all.push(entry.clone()),
         }
     }
-    let total: usize = legends.iter().map(|legend| legend.len()).sum();
-    let is_for_all = legends.len() == 1 && panels.len() > 1;
-    if all.len() < total || is_for_all { all } else { Vec::new() }
+    all
 }
 
-/// The colour bar of several maps that all have the same one, which they then leave to the figure.
-fn shared_bar(panels: &mut [Box<dyn Drawn + '_>]) -> Option<Bar> {
+/// The colour bar of several panels that all have the same one with given ends, which they then leave to the
+/// figure.
+fn shared_bar(panels: &mut [Prepared]) -> Option<Bar> {
     let bars: Option<Vec<&mut Bar>> = panels.iter_mut().map(|panel| panel.bar()).collect();
-    let bars = bars.filter(|bars| bars.len() > 1 && bars.iter().all(|bar| bar.is_as(bars[0])))?;
+    let is_one = |bars: &Vec<&mut Bar>| bars.iter().all(|bar| bar.is_fixed && *bar == bars[0]);
+    let bars = bars.filter(|bars| bars.len() > 1 && is_one(bars))?;
     let bar = bars[0].clone();
     bars.into_iter().for_each(|bar| bar.is_shared = true);
     Some(bar)
@@ -71,10 +59,10 @@ fn shared_bar(panels: &mut [Box<dyn Drawn + '_>]) -> Option<Bar> {
 fn layout(figure: &Figure) -> Layout<'_> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
-    let mut panels: Vec<_> = figure.panels.iter().map(|p| prepared(p, room)).collect();
+    let mut panels: Vec<_> = figure.panels.iter().map(|plot| Prepared::new(plot, room)).collect();
     let legend = shared_legend(&panels);
     if !legend.is_empty() {
-        panels.iter_mut().for_each(|panel| panel.hide_legend());
+        panels.iter_mut().for_each(|panel| panel.legend.clear());
     }
     let bar = shared_bar(&mut panels);
     let rooms: Vec<Room> = panels.iter().map(|panel| panel.room()).collect();
@@ -98,13 +86,14 @@ fn layout(figure: &Figure) -> Layout<'_> {
         height,
     };
     let rects: Vec<Rect> = rooms.into_iter().enumerate().map(place).collect();
-    let width = (right + bar.as_ref().map_or(0.0, Bar::width)).max(120.0).ceil();
+    let least = legend::column(&legend);
+    let width = (right + bar.as_ref().map_or(0.0, Bar::width)).max(least).ceil();
     let bar = bar.and_then(|bar| {
         let (first, last) = (rects.first()?, rects.last()?);
         let height = last.bottom() - first.top;
         Some((bar, Rect { left: 0.0, top: first.top, width: right - EDGE - 10.0, height }))
     });
-    let height = (bottom + legend::height_within(&legend, width)).max(60.0).ceil();
+    let height = (bottom + legend::height(&legend, width)).max(60.0).ceil();
     Layout { panels: panels.into_iter().zip(rects).collect(), legend, bar, size: (width, height) }
 }
 
@@ -126,8 +115,8 @@ fn draw(canvas: &mut Canvas, layout: &Layout) {
     for (panel, area) in &layout.panels {
         panel.draw(&mut canvas.from(*area));
     }
-    let below = height - legend::height_within(&layout.legend, width) - EDGE;
-    legend::draw_within(canvas, &layout.legend, (EDGE, below), width);
+    let below = height - legend::height(&layout.legend, width) - EDGE;
+    legend::draw(canvas, &layout.legend, (EDGE, below), width);
     if let Some((bar, beside)) = &layout.bar {
         bar.draw(canvas, *beside);
     }
@@ -143,17 +132,17 @@ pub fn svg(figure: &Figure) -> String {
 
 /// Pixels of the figure, three bytes each, with their width and height; `density` of them per CSS
 /// pixel.
-pub(super) fn pixels(figure: &Figure, density: u32) -> io::Result<(Vec<u8>, u32, u32)> {
+pub(super) fn pixels(figure: &Figure, density: u32) -> (Vec<u8>, u32, u32) {
     let layout = layout(figure);
     let scale = SUPERSAMPLE * density;
     let (width, height) = (layout.size.0 as u32 * density, layout.size.1 as u32 * density);
     let (fine_width, fine_height) = (width * SUPERSAMPLE, height * SUPERSAMPLE);
     let mut fine = vec![255; (fine_width * fine_height * 3) as usize];
     let backend = BitMapBackend::with_buffer(&mut fine, (fine_width, fine_height));
-    let mut sheet = Raster::new(backend, f64::from(scale));
+    let mut sheet = Raster { backend, scale: f64::from(scale) };
     draw(&mut Canvas::new(&mut sheet), &layout);
-    sheet.finish()?;
-    Ok((downsample(&fine, width as usize, height as usize), width, height))
+    drop(sheet);
+    (downsample(&fine, width as usize, height as usize), width, height)
 }
 
 /// Means of squares of `SUPERSAMPLE` by `SUPERSAMPLE` pixels.
@@ -177,7 +166,7 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
-    let (pixels, width, height) = pixels(figure, DENSITY)?;
+    let (pixels, width, height) = pixels(figure, DENSITY);
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Rgb);
@@ -193,14 +182,14 @@ pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    use crate::{Axis, CategoryMap, ColourMap, Layer, Legend, ParticleMap, Plot, Series, Shape};
+    use crate::{Axis, ColourMap, Dots, Layer, Plot, Series, Shape};
 
-    fn figure(panel: impl Into<Panel>) -> Figure {
+    fn figure(panel: Plot) -> Figure {
         Figure::new("f", "A caption.").panel(panel).panel_size(120.0, 90.0)
     }
 
     fn dark_pixels(figure: &Figure) -> usize {
-        let (pixels, ..) = pixels(figure, DENSITY).unwrap();
+        let (pixels, ..) = pixels(figure, DENSITY);
         pixels.chunks(3).filter(|p| p.iter().all(|&c| c < 100)).count()
     }
 
@@ -241,46 +230,56 @@ mod tests {
                 assert_eq!(stray, None, "{values:?}");
             }
             let points = values.iter().map(|&v| (v, v, v)).collect();
-            let axes = (Axis::linear("x"), Axis::log("y"));
-            let map = ParticleMap::new("", axes, "p [Pa]", ColourMap::Diverging, points);
-            svg(&figure(map.clone()));
-            svg(&figure(map.values(1.0, values.first().copied().unwrap_or(1.0))));
+            let dots = Dots::new("p [Pa]", ColourMap::Diverging, 0.0, points);
+            let plot = Plot::new("", Axis::linear("x"), Axis::log("y"));
+            svg(&figure(plot.clone().layer(dots.clone())));
+            let last = values.first().copied().unwrap_or(1.0);
+            svg(&figure(plot.layer(dots.values(1.0, last))));
         }
-        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone())), DENSITY).unwrap();
+        pixels(&figure(all_layers(&awkward, axes[0].clone(), axes[1].clone())), DENSITY);
     }
 
     #[test]
-    fn ragged_and_empty_category_maps_are_drawn() {
-        let mut map = CategoryMap {
-            title: "t".into(),
-            x_label: "x".into(),
-            y_label: "y".into(),
-            x: vec!["1".into(), "a rather long name".into()],
-            y: vec!["2".into(), "3".into()],
-            categories: vec![("pass".into(), Colour::GREEN)],
-            cells: vec![vec![Some((0, "ok".into())), Some((9, "?".into()))]],
+    fn cells_and_figures_without_any_are_drawn() {
+        let plot = |x: &[&str], y: &[&str]| {
+            let [x, y] = [x, y].map(|names| names.iter().map(|name| name.to_string()).collect());
+            let (x, y): (Vec<String>, Vec<String>) = (x, y);
+            let cells = vec![(0, 0, "ok".into()), (9, 1, "beyond".into())];
+            let layer = Layer::Cells { name: "pass".into(), colour: Colour::GREEN, cells };
+            Plot::new("t", Axis::names("x", &x), Axis::names("y", &y)).layer(layer)
         };
-        assert!(svg(&figure(map.clone())).contains(">ok</text>"));
-        (map.x, map.y) = (vec![], vec![]);
-        svg(&figure(map));
+        let text = svg(&figure(plot(&["1", "a rather long name"], &["2", "3"])));
+        assert!(text.contains(">ok</text>") && text.contains(">pass</text>"), "{text}");
+        svg(&figure(plot(&[], &[])));
         svg(&Figure::new("none", "").columns(0));
     }
 
     #[test]
     fn two_thousand_dots_stay_small() {
         let points = (0..2000).map(|i| (f64::from(i % 50), f64::from(i / 50), f64::from(i)));
-        let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
-        let map = ParticleMap::new("", axes, "p [Pa]", ColourMap::Sequential, points.collect());
-        assert!(svg(&figure(map)).len() < 30_000);
+        let dots = Dots::new("p [Pa]", ColourMap::Sequential, 0.0, points.collect());
+        let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
+        assert!(svg(&figure(plot)).len() < 30_000);
     }
 
+    /// Panels with one legend in all of them have it once, and panels that contradict each other each its own.
     #[test]
-    fn a_crowded_plot_moves_its_legend_outside() {
-        let cloud = (0..900).map(|i| (f64::from(i % 30), f64::from(i / 30))).collect();
-        let plot = Plot::new("", Axis::linear("x"), Axis::linear("y"))
-            .layer(Series::markers("a name", cloud));
-        let wide = layout(&figure(plot.clone())).size.0;
-        assert!(wide > layout(&figure(plot.legend(Legend::Hidden))).size.0 + 50.0);
+    fn a_legend_stands_below_what_it_explains() {
+        let plot = |name: &str, colour| {
+            let line = Series::line(name, vec![(0.0, 0.0), (1.0, 1.0)]).colour(colour);
+            Plot::new("", Axis::linear("x"), Axis::linear("y")).layer(line)
+        };
+        let first = plot("a name", Colour::BLUE);
+        let names = |second| svg(&figure(first.clone()).panel(second)).matches("a name").count();
+        assert_eq!(
+            [Colour::BLUE, Colour::GREEN].map(|colour| names(plot("a name", colour))),
+            [1, 2]
+        );
+        let without = layout(&figure(first.clone().without_legend())).size;
+        let with = layout(&figure(first.clone())).size;
+        assert!(with.0 == without.0 && with.1 > without.1 + 15.0);
+        let wide = layout(&figure(plot(&"a long name ".repeat(30), Colour::BLUE))).size;
+        assert!(wide.0 > with.0 + 1000.0);
     }
 
     #[test]

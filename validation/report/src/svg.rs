@@ -88,18 +88,19 @@ impl Sheet for Svg {
         self.shape(&format!("fill=\"{}\"", hex(colour)), corners, true);
     }
 
-    fn outline(&mut self, corners: &[Point], colour: Colour, width: f64, fill: Option<Colour>) {
-        let fill = fill.map_or(String::new(), |fill| format!(" fill=\"{}\"", hex(fill)));
-        self.shape(&format!("{}{fill}", stroke(colour, width)), corners, true);
-    }
-
     fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
         let pattern: Vec<String> = dash.pattern().iter().map(|length| units(*length)).collect();
         let dashes = match dash {
             Dash::Solid => String::new(),
             _ => format!(" stroke-dasharray=\"{}\"", pattern.join(" ")),
         };
-        self.shape(&format!("{}{dashes}", stroke(colour, width)), points, false);
+        let style = format!("{}{dashes}", stroke(colour, width));
+        match points {
+            [corners @ .., last] if corners.first() == Some(last) => {
+                self.shape(&style, corners, true)
+            }
+            _ => self.shape(&style, points, false),
+        }
     }
 
     /// The round end of a wide line of no length.

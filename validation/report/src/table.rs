@@ -93,15 +93,10 @@ impl Cell {
         // What a column is sorted by: six digits. The style sheet shows a cell that has it as a number.
         let six = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
         let value: Option<f64> = self.value.filter(|value| value.is_finite()).map(six);
-        let classes = match (self.status, numeric && value.is_none()) {
-            (Some(s), true) => format!("number {}", class(s)),
-            (Some(s), false) => class(s).into(),
-            (None, true) => "number".into(),
-            (None, false) => String::new(),
-        };
+        let number = (numeric && value.is_none()).then_some("number");
+        let classes: Vec<&str> = number.into_iter().chain(self.status.map(class)).collect();
         html! {
-            td class=[Some(classes).filter(|c| !c.is_empty())]
-                data-v=[value] {
+            td class=[(!classes.is_empty()).then(|| classes.join(" "))] data-v=[value] {
                 (inline(&self.text))
             }
         }

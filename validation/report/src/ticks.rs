@@ -1,5 +1,7 @@
 //! Where ticks go and what they say.
 
+use super::number::{exact, minus, power_of_ten, sci};
+
 /// How values are spread along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scale {
@@ -65,43 +67,32 @@ fn nice_step(raw: f64) -> (f64, u32) {
     }
 }
 
-/// Decades; below two decades also their multiples, as labels where there is room.
+/// Decades and their multiples, with labels where there is room; within one decade even steps, too.
 fn logarithmic(lo: f64, hi: f64, count: usize) -> Ticks {
-    let inside = |v: &f64| *v >= lo * (1.0 - 1e-9) && *v <= hi * (1.0 + 1e-9);
+    let count = count.max(2);
     let (first, last) = (lo.log10().floor() as i32, hi.log10().ceil() as i32);
-    let decades: Vec<i32> = (first..=last).filter(|k| inside(&10f64.powi(*k))).collect();
-    let multiples = |of: &'static [u8]| {
-        (first..=last).flat_map(move |k| of.iter().map(move |&m| f64::from(m) * 10f64.powi(k)))
+    let multiples = |of: &[u8]| -> Vec<f64> {
+        let all =
+            (first..=last).flat_map(|k| of.iter().map(move |&m| f64::from(m) * 10f64.powi(k)));
+        all.filter(|v| (lo * (1.0 - 1e-9)..=hi * (1.0 + 1e-9)).contains(v)).collect()
     };
-    let all: &[u8] = &[1, 2, 3, 4, 5, 6, 7, 8, 9];
-    let (major, minor): (Vec<(f64, String)>, Vec<f64>) = if decades.len() >= 3 {
-        let least = decades.len().div_ceil(count.max(2)) as i32;
-        let strides = [1, 2, 3, 4, 6, 10, 15, 20, 50, 100];
-        let stride = strides.into_iter().find(|&s| s >= least).unwrap_or(200);
-        let (labelled, bare): (Vec<i32>, Vec<i32>) =
-            decades.into_iter().partition(|k| k % stride == 0);
-        let major = labelled.iter().map(|&k| (10f64.powi(k), power_of_ten(k))).collect();
-        let minor = match stride {
-            1 => multiples(&all[1..]).filter(inside).collect(),
-            _ => bare.iter().map(|&k| 10f64.powi(k)).collect(),
-        };
-        (major, minor)
-    } else {
-        let choices: [&'static [u8]; 5] = [all, &[1, 2, 3, 5], &[1, 2, 5], &[1, 3], &[1]];
-        let mut choices: Vec<Vec<f64>> =
-            choices.iter().map(|of| multiples(of).filter(inside).collect()).collect();
-        if hi / lo < 10.0 {
-            let even = |count| linear(lo, hi, count).major.iter().map(|tick| tick.0).collect();
-            choices.extend((2..=count).rev().map(even));
-        }
-        let fits = |of: &&Vec<f64>| of.len() <= count.max(2);
-        let fitting = || choices.iter().filter(fits);
-        let best = fitting().find(|of| is_spread(of, lo, hi)).or_else(|| fitting().next());
-        let major = best.unwrap_or(&choices[2]).clone();
-        let minor = multiples(all).filter(inside).filter(|v| !major.contains(v)).collect();
-        (with_labels(major), minor)
-    };
-    Ticks { major, minor, exponent: 0 }
+    let (decades, all) = (multiples(&[1]), multiples(&[1, 2, 3, 4, 5, 6, 7, 8, 9]));
+    let stride = decades.len().div_ceil(count).max(1);
+    let is_kept = |decade: &f64| decade.log10().round() as i64 % stride as i64 == 0;
+    let some_decades = decades.iter().copied().filter(is_kept).collect();
+    let thinner = [&[1, 2, 3, 5][..], &[1, 2, 5], &[1, 3]].map(multiples);
+    let mut choices: Vec<Vec<f64>> =
+        [all.clone()].into_iter().chain(thinner).chain([some_decades]).collect();
+    if hi / lo < 10.0 {
+        let even = |count| linear(lo, hi, count).major.iter().map(|tick| tick.0).collect();
+        choices.extend((2..=count).rev().map(even));
+    }
+    let fitting = || choices.iter().filter(|of| of.len() <= count);
+    let best = fitting().find(|of| is_spread(of, lo, hi)).or_else(|| fitting().next());
+    let major = best.unwrap_or(&choices[2]).clone();
+    let mut minor = if stride > 1 { decades } else { all };
+    minor.retain(|v| !major.contains(v));
+    Ticks { major: with_labels(major), minor, exponent: 0 }
 }
 
 /// Are these at least three, and is no more than 0.45 of a logarithmic axis without one?
@@ -111,49 +102,21 @@ fn is_spread(values: &[f64], lo: f64, hi: f64) -> bool {
     values.len() >= 3 && ends.windows(2).all(|pair| gap(pair) < 0.45)
 }
 
-/// `10⁻³`.
-pub(super) fn power_of_ten(k: i32) -> String {
-    let digit = |c: char| match c {
-        '-' => '⁻',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        c => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
-    };
-    format!("10{}", k.to_string().chars().map(digit).collect::<String>())
-}
-
-/// Values with their labels, all of one format: `0.02`, `50` if that suits each, else `2·10⁻²`.
+/// Positive values with their labels, all of one format: `0.02`, `50` if that suits each, else `2·10⁻²`.
 fn with_labels(values: Vec<f64>) -> Vec<(f64, String)> {
-    let is_plain = |v: &f64| *v == 0.0 || (-2.001..4.0).contains(&v.abs().log10());
-    let label = if values.iter().all(is_plain) { plain } else { scientific };
+    let is_plain = |v: &f64| (-2.001..4.0).contains(&v.log10());
+    let label = if values.iter().all(is_plain) { exact } else { scientific };
     values.into_iter().map(|v| (v, label(v))).collect()
-}
-
-/// The shortest text of a value with few digits: `0.02`, `50`.
-fn plain(v: f64) -> String {
-    let rounded = format!("{v:.6}");
-    minus(rounded.trim_end_matches('0').trim_end_matches('.').to_string())
 }
 
 /// `3·10⁻⁴`, or `10⁻³`.
 fn scientific(v: f64) -> String {
-    if v == 0.0 {
-        return "0".into();
+    let written = sci(v, 4);
+    let (mantissa, power) = written.split_once('·').unwrap_or((&written, ""));
+    match mantissa.trim_end_matches('0').trim_end_matches('.') {
+        "1" => power.into(),
+        mantissa => format!("{mantissa}·{power}"),
     }
-    let k = (v.abs().log10() + 1e-9).floor() as i32;
-    let mantissa = v / 10f64.powi(k);
-    if (mantissa - 1.0).abs() < 1e-9 {
-        return power_of_ten(k);
-    }
-    let mantissa = format!("{mantissa:.3}");
-    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
-    minus(format!("{mantissa}·{}", power_of_ten(k)))
-}
-
-/// A true minus sign instead of a hyphen.
-pub(super) fn minus(text: String) -> String {
-    text.replace('-', "−")
 }
 
 /// `u [m/s]` with a factor of 10⁻³ becomes `u [10⁻³ m/s]`.
@@ -163,12 +126,10 @@ pub(super) fn with_exponent(label: &str, exponent: i32) -> String {
     }
     let factor = power_of_ten(exponent);
     match label.rfind('[') {
-        Some(at) if label.ends_with(']') => {
-            let unit = &label[at + 1..label.len() - 1];
-            let space = if matches!(unit, "1" | "-" | "–" | "") { "" } else { " " };
-            let unit = if space.is_empty() { "" } else { unit };
-            format!("{}[{factor}{space}{unit}]", &label[..at])
-        }
+        Some(at) if label.ends_with(']') => match &label[at + 1..label.len() - 1] {
+            "1" | "-" | "–" | "" => format!("{}[{factor}]", &label[..at]),
+            unit => format!("{}[{factor} {unit}]", &label[..at]),
+        },
         _ => format!("{label} [{factor}]"),
     }
 }

@@ -10,7 +10,7 @@ use harness::{
     case::*, columns::Columns, declare::*, pictures, runs::Runs, studies::causes::*, study::Study,
 };
 use maths::metrics::norms::rms;
-use report::{Axis, ColourMap, Figure, ParticleMap, Series};
+use report::{Axis, Colour, ColourMap, Dots, Figure, Plot, Series};
 
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
@@ -299,13 +299,16 @@ fn pictures(table: &Table, runs: &Runs) -> Study {
     let most = velocities.fold(0.0, |most: f64, u| most.max(u.abs()));
     let panels = shown.into_iter().map(|(row, reference, record)| {
         let title = format!("Re {}, {}", row.settings.re, name(row));
-        let axes = (Axis::linear("x [H]").range(-0.1, 9.1), Axis::linear("y [H]").range(-0.1, 3.1));
+        let (x, y) =
+            (Axis::linear("x [H]").range(-0.1, 9.1), Axis::linear("y [H]").range(-0.1, 3.1));
         let points = pictures::points(record, "particles", "u");
-        ParticleMap::new(title, axes, "u [U_b]", ColourMap::Diverging, points)
-            .values(-most, most)
-            .diameter(1.0 / row.settings.n as f64)
-            .curve(Series::line("", floor()).width(1.4))
-            .curve(Series::line("", reference.line.clone()).width(2.4))
+        let diameter = 1.0 / row.settings.n as f64;
+        let dots = Dots::new("u [U_b]", ColourMap::Diverging, diameter, points);
+        let black = |line| Series::line("", line).colour(Colour::BLACK);
+        Plot::new(title, x, y)
+            .layer(dots.values(-most, most))
+            .layer(black(floor()).width(1.4))
+            .layer(black(reference.line.clone()).width(2.4))
     });
     let figure = panels.fold(Figure::new("periodic-hill-pictures", caption), Figure::panel);
     Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))

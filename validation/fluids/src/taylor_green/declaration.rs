@@ -4,7 +4,7 @@
 use super::{BEST, CASE, NAME, VortexSettings, plan::*, run::*};
 use base::{functions::log10, gate::*, record::Record};
 use harness::{case::Tier, columns::Columns, declare::*, pictures, runs::Runs, study::Study};
-use report::{Axis, Cell, ColourMap, Figure, ParticleMap};
+use report::{Axis, Cell, ColourMap, Dots, Figure, Plot};
 
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
@@ -126,9 +126,9 @@ fn pictures(table: &Table, runs: &Runs) -> Study {
         let lower = points.filter(|(_, y, _)| *y < 0.5);
         let points = lower.map(|(x, y, error)| (x, y, log10(error.max(1e-12)))).collect();
         let (title, label) = (format!("{}, {n} x {n}", row.variant), "log₁₀(error/exact speed)");
-        let axes = (axis("x", 1.0), axis("y", 0.5));
-        let map = ParticleMap::new(title, axes, label, ColourMap::Sequential, points);
-        figure = figure.panel(map.values(-4.0, 0.0).diameter(1.0 / n as f64));
+        let dots = Dots::new(label, ColourMap::Sequential, 1.0 / n as f64, points);
+        let plot = Plot::new(title, axis("x", 1.0), axis("y", 0.5));
+        figure = figure.panel(plot.layer(dots.values(-4.0, 0.0)));
     }
     Study::new("taylor-green-pictures", "Pictures").block(figure.panel_size(300.0, 170.0))
 }

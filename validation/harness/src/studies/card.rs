@@ -4,7 +4,7 @@ use base::{
     record::{Record, Status},
     spec::RunSpec,
 };
-use report::{Block, Card, Counts, Figure, Legend, Panel, exact, percent, sci, seconds, sig};
+use report::{Block, Card, Counts, Figure, exact, percent, sci, seconds, sig};
 
 use super::{limit, validation};
 use crate::{
@@ -107,11 +107,7 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
         _ => None,
     });
     let figure = figures.into_iter().find(|figure| figure.id == id)?;
-    let panel = match figure.panels.get(panel)?.clone() {
-        Panel::Plot(plot) => Panel::Plot(plot.legend(Legend::Hidden)),
-        other => other,
-    };
-    let mut small = Figure::new(format!("{id}-small"), figure.caption.clone());
-    small.panels.push(panel);
+    let plot = figure.panels.get(panel)?.clone().without_legend();
+    let small = Figure::new(format!("{id}-small"), figure.caption.clone()).panel(plot);
     Some(small.panel_size(150.0, 90.0))
 }

@@ -3,9 +3,7 @@
 //! which do not depend on the machine or on other programs.
 
 use base::record::median;
-use report::{
-    Axis, Cell, Colour, Figure, Legend, Plot, Series, Table, exact, first_sentence, percent,
-};
+use report::{Axis, Cell, Colour, Figure, Plot, Series, Table, exact, first_sentence, percent};
 
 use crate::{
     columns::Columns,
@@ -133,7 +131,7 @@ fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
     let spacing = orders::plot("Error against spacing", axes, lines, accuracy.slope.as_slice());
     let clock = panel("Error against run time", "run time on one core [s]", rows, Point::median);
     let counted = panel("Error against work", "pair interactions [-]", rows, |p| p.pairs);
-    let panels = [spacing.legend(Legend::Hidden), clock, counted];
+    let panels = [spacing, clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
 }

@@ -1,6 +1,6 @@
 //! Profiles or histories, plotted together with their reference.
 
-use report::{Colour, Figure, Legend, Plot, Series, Shape};
+use report::{Colour, Figure, Plot, Series, Shape};
 
 use crate::{
     declare::{CurvePanel, Curves},
@@ -46,12 +46,12 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
             false => Series::line(&line.name, points).colour(colour),
         });
     }
-    plot.legend(Legend::Auto)
+    plot
 }
 
 #[cfg(test)]
 mod tests {
-    use report::{Axis, Block, Layer, Panel};
+    use report::{Axis, Block, Layer};
 
     use super::*;
     use crate::{
@@ -85,8 +85,7 @@ mod tests {
         let runs = runs([(spec("seed", 1), 1.5), (spec("best", 1), 2.5)]);
         let study = study(&curves, &runs);
         let [Block::Figure(figure)] = study.blocks.as_slice() else { panic!("one figure") };
-        let of = |panel: &Panel| -> Vec<Drawn> {
-            let Panel::Plot(plot) = panel else { panic!("a plot") };
+        let of = |plot: &Plot| -> Vec<Drawn> {
             let series = plot.layers.iter().map(|layer| match layer {
                 Layer::Series(s) => (s.name.clone(), s.points[0], s.colour, s.line.is_none()),
                 _ => panic!("series alone"),

@@ -4,7 +4,7 @@ use base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
 };
-use report::{Axis, Cell, Colour, Dash, Figure, Layer, Legend, Plot, Series, Table, sig};
+use report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig};
 
 use super::{anchor, validation::Found};
 use crate::{
@@ -215,7 +215,7 @@ fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
         let line = Series::line("", vec![(*time, least), (*time, most)]).dash(Dash::Dashed);
         plot = plot.layer(line.colour(Colour::VERMILLION).width(1.0));
     }
-    plot.legend(Legend::Hidden)
+    plot.without_legend()
 }
 
 /// Least, quartiles, median and largest of the members at each time that is drawn; none of members that are
@@ -236,7 +236,7 @@ fn quantiles(members: &[Curve]) -> Vec<(f64, [f64; 5])> {
 #[cfg(test)]
 mod tests {
     use base::record::Status;
-    use report::{Block, Panel};
+    use report::Block;
 
     use super::*;
     use crate::{
@@ -324,9 +324,7 @@ mod tests {
             Block::Figure(figure) => Some(figure),
             _ => None,
         });
-        let [Panel::Plot(plot)] = figure.expect("a figure").panels.as_slice() else {
-            panic!("one plot")
-        };
+        let [plot] = figure.expect("a figure").panels.as_slice() else { panic!("one plot") };
         // Two bands, the median, one series of the experiment until the end of the runs, the horizon.
         assert_eq!(plot.layers.len(), 5);
     }

@@ -1,7 +1,7 @@
 //! Maps: the outcomes of runs as a function of two settings.
 
 use base::record::Record;
-use report::{CategoryMap, Figure};
+use report::{Axis, Figure, Layer, Plot};
 
 use crate::{
     declare::{Map, MapPanel},
@@ -15,26 +15,28 @@ pub fn study(map: &Map, runs: &Runs) -> Study {
     Study::new(&map.id, &map.title).block(figure)
 }
 
-fn panel(map: &Map, panel: &MapPanel, runs: &Runs) -> CategoryMap {
-    let cell = |specs: &Vec<_>| {
-        let records: Vec<&Record> = specs.iter().filter_map(|spec| runs.record(spec)).collect();
-        (!records.is_empty()).then(|| (map.outcome)(&records))
-    };
-    CategoryMap {
-        title: panel.title.clone(),
-        x_label: map.x.clone(),
-        y_label: map.y.clone(),
-        x: panel.x.clone(),
-        y: panel.y.clone(),
-        categories: map.outcomes.clone(),
-        cells: panel.cells.iter().map(|row| row.iter().map(cell).collect()).collect(),
+fn panel(map: &Map, panel: &MapPanel, runs: &Runs) -> Plot {
+    let mut cells = vec![Vec::new(); map.outcomes.len()];
+    for (y, row) in panel.cells.iter().enumerate() {
+        for (x, specs) in row.iter().enumerate() {
+            let records: Vec<&Record> = specs.iter().filter_map(|spec| runs.record(spec)).collect();
+            if !records.is_empty() {
+                let (outcome, text) = (map.outcome)(&records);
+                cells[outcome].push((x, y, text));
+            }
+        }
     }
+    let plot =
+        Plot::new(&panel.title, Axis::names(&map.x, &panel.x), Axis::names(&map.y, &panel.y));
+    map.outcomes.iter().zip(cells).fold(plot, |plot, ((name, colour), cells)| {
+        plot.layer(Layer::Cells { name: name.clone(), colour: *colour, cells })
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use base::spec::RunSpec;
-    use report::{Block, Colour, Panel};
+    use report::{Block, Colour};
 
     use super::*;
     use crate::studies::tests::{ERROR, runs, spec};
@@ -66,13 +68,20 @@ mod tests {
         let made = [11, 13, 21, 22, 23, 99].map(|n| (spec("seed", n), n as f64));
         let study = study(&map, &runs(made));
         let [Block::Figure(figure)] = study.blocks.as_slice() else { panic!("one figure") };
-        let [Panel::Categories(drawn)] = figure.panels.as_slice() else { panic!("one map") };
-        assert_eq!((drawn.x.join(" "), drawn.y.join(" ")), ("1 2 3".into(), "10 20".into()));
-        let some = |outcome: usize, text: &str| Some((outcome, text.to_string()));
-        let rows = [
-            vec![some(0, "11"), None, some(0, "13")],
-            vec![some(1, "21"), some(1, "22"), some(1, "122")],
-        ];
-        assert_eq!(drawn.cells, rows, "from bottom to top, each row from left to right");
+        let [drawn] = figure.panels.as_slice() else { panic!("one map") };
+        let names = [&drawn.x, &drawn.y].map(|axis| axis.names.join(" "));
+        assert_eq!(names, ["1 2 3", "10 20"]);
+        let cells = |cells: &[(usize, usize, &str)]| {
+            let owned = cells.iter().map(|(x, y, text)| (*x, *y, text.to_string()));
+            owned.collect::<Vec<_>>()
+        };
+        let outcomes = drawn.layers.iter().map(|layer| match layer {
+            Layer::Cells { name, cells, .. } => (name.as_str(), cells.clone()),
+            _ => panic!("cells alone"),
+        });
+        let small = cells(&[(0, 0, "11"), (2, 0, "13")]);
+        let large = cells(&[(0, 1, "21"), (1, 1, "22"), (2, 1, "122")]);
+        let expected = [("small", small), ("large", large)];
+        assert_eq!(outcomes.collect::<Vec<_>>(), expected, "rows from bottom to top");
     }
 }

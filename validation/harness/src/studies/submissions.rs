@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use base::submission::{Division, OURS, SESSION, Submission};
-use report::{Axis, Cell, Colour, Figure, Legend, Plot, Series, percent, seconds};
+use report::{Axis, Cell, Colour, Figure, Plot, Series, percent, seconds};
 
 use super::anchor;
 use crate::{
@@ -100,7 +100,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
             marks.iter().filter(|mark| mark.seconds.is_finite()).filter(is_of).collect();
         let has_others = shown.iter().any(|mark| mark.of.code != OURS);
         let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
-        let plot = Plot::new(format!("{division} division"), x, y).legend(Legend::Outside);
+        let plot = Plot::new(format!("{division} division"), x, y);
         let series = |(k, all): (usize, &[&Mark])| {
             let points = all.iter().map(|mark| (mark.seconds, mark.error)).collect();
             let labels = all.iter().map(|mark| match mark.particles {

@@ -1,7 +1,7 @@
 //! What the runs of the rings say together, beside what their declaration says: a table of all collisions
 //! with claim M2, and pictures.
 
-use report::{Axis, Cell, ColourMap, Figure, Film, ParticleMap, Series, exact, sig};
+use report::{Axis, Cell, Colour, ColourMap, Dots, Figure, Film, Plot, Series, exact, sig};
 
 use super::*;
 
@@ -95,18 +95,17 @@ fn pictures(rows: &[Row], runs: &Runs) -> Study {
     if let Some(record) = shown(&[Group::Paper]) {
         let axes =
             (Axis::linear("x [L]").range(-0.4, 11.9), Axis::linear("y [L]").range(-5.6, 5.6));
-        for (share, mut map) in picture(record, &PICTURES, Some(axes)) {
-            map.points.retain(|(x, ..)| *x > 0.0);
-            let outlines = reference::outlines(SPEED, 200.0 * share);
-            let black = |map: ParticleMap, line| map.curve(Series::line("", line).width(0.9));
-            figure = figure.panel(outlines.unwrap_or_default().into_iter().fold(map, black));
+        for (share, plot) in picture(record, &PICTURES, Some(axes)) {
+            let outlines = reference::outlines(SPEED, 200.0 * share).unwrap_or_default();
+            let black = |line| Series::line("", line).colour(Colour::BLACK).width(0.9);
+            figure = figure.panel(outlines.into_iter().map(black).fold(plot, Plot::layer));
         }
     }
     let mut study =
         Study::new("rubber-rings-pictures", "Pictures").block(figure.panel_size(185.0, 170.0));
     if let Some(record) = shown(&[Group::Paper]) {
         let shares: Vec<f64> = (1..=FRAMES).map(|k| k as f64 / FRAMES as f64).collect();
-        let frame = |(_, map)| Figure::new("frame", "").panel(map).panel_size(350.0, 175.0);
+        let frame = |(_, plot)| Figure::new("frame", "").panel(plot).panel_size(350.0, 175.0);
         let frames: Vec<Figure> = picture(record, &shares, None).map(frame).collect();
         let caption = "Film of the same rings, both of which are shown, coloured in the same way.";
         study = match Film::new("rubber-rings-film", caption, &frames, 200) {
@@ -119,16 +118,16 @@ fn pictures(rows: &[Row], runs: &Runs) -> Study {
                    L. Colour is the largest principal stress σ₁ over the bulk modulus K. Rubber of this law \
                    does not break; the method does.";
     let figure = Figure::new("rubber-rings-fracture", caption).panel_size(420.0, 320.0);
-    study.block(picture(record, &[1.0], None).fold(figure, |figure, (_, map)| figure.panel(map)))
+    study.block(picture(record, &[1.0], None).fold(figure, |figure, (_, plot)| figure.panel(plot)))
 }
 
-/// Pictures at some shares of a run, with one range of colours and of axes, which hold all particles unless
-/// others are given.
+/// Pictures at some shares of a run, with one range of colours and of axes. These hold all particles unless
+/// others are given, which show the right ring alone.
 fn picture<'a>(
     record: &'a Record,
     shares: &'a [f64],
     axes: Option<(Axis, Axis)>,
-) -> impl Iterator<Item = (f64, ParticleMap)> + 'a {
+) -> impl Iterator<Item = (f64, Plot)> + 'a {
     let most = |name: &str| {
         let values = shares.iter().flat_map(|at| record.column(&format!("particles@{at}"), name));
         largest(values.map(|value| value.abs()))
@@ -137,12 +136,15 @@ fn picture<'a>(
         let reach = most(name) + 0.5;
         Axis::linear(format!("{name} [L]")).range(-reach, reach)
     };
+    let shows_both = axes.is_none();
     let axes = axes.unwrap_or_else(|| (axis("x"), axis("y")));
     let (most, spacing) = (most("stress"), record.settings_as::<RingSettings>().spacing);
     shares.iter().map(move |share| {
-        let points = pictures::points(record, &format!("particles@{share}"), "stress");
+        let mut points = pictures::points(record, &format!("particles@{share}"), "stress");
+        points.retain(|(x, ..)| shows_both || *x > 0.0);
         let title = format!("t = {} L/c0", exact((2000.0 * share).round() / 10.0));
-        let map = ParticleMap::new(title, axes.clone(), "σ₁ [K]", ColourMap::Diverging, points);
-        (*share, map.diameter(spacing).values(-most, most))
+        let dots = Dots::new("σ₁ [K]", ColourMap::Diverging, spacing, points);
+        let (x, y) = axes.clone();
+        (*share, Plot::new(title, x, y).layer(dots.values(-most, most)))
     })
 }

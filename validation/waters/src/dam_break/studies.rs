@@ -1,6 +1,6 @@
 //! Pictures of the tank, and what each ingredient buys.
 
-use report::{Axis, Cell, ColourMap, Figure, ParticleMap, Table, sig};
+use report::{Axis, Cell, ColourMap, Dots, Figure, Plot, Table, sig};
 
 use super::{run::PICTURES, *};
 
@@ -63,8 +63,8 @@ fn pictures(record: &Record) -> Figure {
         let [x, y] = [("x [H]", s.tank / s.height), ("y [H]", s.rim)]
             .map(|(label, most)| Axis::linear(label).range(0.0, most));
         let title = format!("time {} √(H/g)", sig(s.end * share, 3));
-        let map = ParticleMap::new(&title, (x, y), "p [ρ g H]", ColourMap::Sequential, points);
-        figure = figure.panel(map.diameter(1.0 / s.n as f64).values(0.0, 1.0));
+        let dots = Dots::new("p [ρ g H]", ColourMap::Sequential, 1.0 / s.n as f64, points);
+        figure = figure.panel(Plot::new(title, x, y).layer(dots.values(0.0, 1.0)));
     }
     figure.panel_size(430.0, 430.0 * s.rim * s.height / s.tank)
 }

@@ -1,25 +1,29 @@
-//! Writes a page with every kind of block, from made-up data, which `.ci/browser` uses as a reader does.
-//!
-//! `cargo run -p touchstone-report --example figures -- FOLDER`
+//! A page with every kind of block, from made-up data, is whole. `.ci/browser` uses it as a reader does: it sets
+//! `TOUCHSTONE_PAGE` to the folder that the page is to be written to.
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 
 use base::gate::Verdict;
 use report::{
-    Axis, Block, Card, Cell, ColourMap, Column, Counts, Explorer, Figure, Film, GateRow, Layer,
-    Page, ParticleMap, Plot, Section, Series, Table, VERDICTS, check_page,
+    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Film, GateRow,
+    Layer, Page, Plot, Section, Series, Table, VERDICTS, check_page,
 };
-use std::error::Error;
 use std::io;
 use std::path::PathBuf;
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let folder = std::env::args_os().nth(1).map(PathBuf::from).ok_or("which folder?")?;
-    let page = page()?;
-    std::fs::create_dir_all(&folder)?;
+#[test]
+fn a_page_of_made_up_data_is_whole() {
+    let temporary = tempfile::tempdir().unwrap();
+    let named = std::env::var_os("TOUCHSTONE_PAGE").map(PathBuf::from);
+    let folder = named.as_deref().unwrap_or(temporary.path());
+    let page = page().unwrap();
     let html = page.html();
-    page.write_html(&folder.join("index.html"), &html)?;
-    Ok(check_page(&html)?)
+    page.write_html(&folder.join("index.html"), &html).unwrap();
+    check_page(&html).unwrap();
+    assert_eq!(std::fs::read_to_string(folder.join("index.html")).unwrap(), html);
+    for name in ["figure.png", "film.png"] {
+        assert!(folder.join("figures").join(name).is_file(), "{name}");
+    }
 }
 
 /// A plot over logarithmic axes, with all that runs add to it, and a map of particles.
@@ -31,8 +35,8 @@ fn figure() -> Figure {
         .layer(Layer::Slope(1.5));
     let at = |k: i32| 0.05 * f64::from(k);
     let points = (0..400).map(|k| (at(k % 20), at(k / 20), at(k % 7))).collect();
-    let axes = (Axis::linear("x [m]"), Axis::linear("y [m]"));
-    let map = ParticleMap::new("Speed", axes, "|u| [m/s]", ColourMap::Sequential, points);
+    let dots = Dots::new("|u| [m/s]", ColourMap::Sequential, 0.05, points);
+    let map = Plot::new("Speed", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
     Figure::new("figure", "An order with *made-up* errors.").panel(plot).panel(map).columns(2)
 }
 
@@ -91,7 +95,7 @@ fn page() -> io::Result<Page> {
         limitations: vec!["It is made up.".into()],
     };
     let curves = Section::new("curves", "Curves")
-        .status(Verdict::Fail)
+        .counts(Counts::of([Verdict::Fail]))
         .prose(
             "See [the figure](#figure) and [Morris et al.](https://doi.org/10.1006/jcph.1997.5776). \
              Run `touchstone report`.",
