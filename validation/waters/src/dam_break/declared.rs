@@ -234,8 +234,8 @@ const DENSITY: &str = "Times and lengths of a collapse do not depend on the dens
 const SOUND: &str = "The model holds for any sound speed that is large compared with the speed of the water, \
                      so what is compared with the experiment must not depend on it.";
 const PLACE: &str = "An error of 10 % moves the front by less than 0.1 a, to which the experiment fixes it, \
-                     a being the width of the column. The ablation shows how much each part of the method \
-                     moves it.";
+                     a being the width of the column. The error budget shows how much each part of the \
+                     method moves it.";
 const PRESSURE: &str =
     "Density diffusion smooths the pressure, which is not judged in this experiment.";
 

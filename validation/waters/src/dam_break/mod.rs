@@ -18,8 +18,8 @@ mod studies;
 
 use base::{gate::*, mutation::*, record::*};
 use harness::{
-    case::*, columns::Columns, composed::*, context::Context, declare::*, method::*, pictures,
-    runner::Drive, runs::Runs, simulate, studies::causes::*, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    runs::Runs, simulate, studies::causes::*, study::Study, table,
 };
 use nalgebra::Vector2;
 use schemes::water::WaterMethod;

@@ -1,6 +1,5 @@
-//! The runs: both experiments over resolutions and variants, the ladder of resolutions, the ablation, the
-//! ensembles, and a start that walls cannot bear, with the gates of each and what is known to lie outside of
-//! them.
+//! The runs: both experiments over resolutions and variants, the ladder of resolutions, the ensembles,
+//! and a start that walls cannot bear, with the gates of each and what is known to lie outside of them.
 
 use std::ops::RangeInclusive;
 
@@ -15,8 +14,6 @@ pub enum Group {
     Tank,
     /// The column of Martin & Moyce over resolutions.
     Ladder,
-    /// What each ingredient buys.
-    Ablation,
     /// The tank of Lobovsky et al. from many starts.
     Ensemble,
     /// Water that starts on the surface of the walls.
@@ -36,7 +33,7 @@ pub const UNTIL: f64 = 8.0;
 /// All runs of a tier. Spacings are along the width of the column of Martin & Moyce, and along the height of
 /// that of Lobovsky et al.; successive ones of a ladder differ by √2 or nearly so, and each fills the column.
 pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
-    use Group::{Ablation, Crowded, Ensemble, Free, Ladder, Tank};
+    use Group::{Crowded, Ensemble, Free, Ladder, Tank};
     let mut table = table::Table::new(&DAM_BREAK, tier);
     let across = |s: &mut DamSettings, n: usize| s.n = n;
     let along = |s: &mut DamSettings, n: usize| {
@@ -46,12 +43,11 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table.over(Free, &["seed", "ghosts"], [&[20], &[20]], across);
     table.over(Free, &["modern"], [&[20], &[20, 40, 80]], across);
     table.over(Tank, &["modern"], [&[30], &[30, 60, 120]], along);
-    table.over(Free, &["ghosts-slip"], [&[], &[20]], across);
+    table.over(Free, &["ghosts-slip", "modern-sticking"], [&[], &[20]], across);
     let ladder: [&[usize]; 2] = [&[7, 10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over(Ladder, &["seed", "modern"], ladder, across);
     table.over(Ladder, &["single-sweep"], [&[10], ladder[1]], across);
     table.one(Crowded, "modern", |s| (s.n, s.offset) = (10, 0.5));
-    ablate(&mut table);
     for n in if tier == Tier::Quick { &[][..] } else { &ENSEMBLES } {
         for variant in ["modern", "seed"] {
             table.starts(Ensemble, variant, SEEDS, |s| {
@@ -62,7 +58,7 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     }
     let finest = if tier == Tier::Quick { 30 } else { 120 };
     for Row { group, variant, settings, run } in &mut table.rows {
-        let whole = if [Tank, Ablation, Ensemble].contains(group) { 12.0 } else { 6.0 };
+        let whole = if [Tank, Ensemble].contains(group) { 12.0 } else { 6.0 };
         // Two right-hand sides a step where the seed's integrator is.
         let dear = if variant.starts_with("modern") { 1.0 } else { 2.5 };
         run.seconds = whole * dear * (settings.n as f64 / 40.0).powi(3);
@@ -75,33 +71,6 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     }
     table.judge(gates);
     table
-}
-
-/// A coarse column in the tank until the impact is over and before the wave breaks, as the variants are and
-/// with one setting changed; in the full tier.
-fn ablate(table: &mut table::Table<DamSettings, Group>) {
-    type Set = fn(&mut DamSettings, f64);
-    let walls = ["seed", "ghosts", "ghosts-slip", "modern", "modern-sticking"];
-    let changes: [(&[&'static str], &[f64], Set); 6] = [
-        (&walls, &[0.0], |_, _| ()),
-        (&["seed"], &[0.0, 0.01, 0.05, 0.2], |s, value| s.alpha = value),
-        (&["seed"], &[0.0, 0.25, 0.9], |s, value| s.xsph = value),
-        (&["seed"], &[0.0], |s, value| s.xi = value),
-        (&["modern"], &[0.0, 0.1], |s, value| s.alpha = value),
-        (&["modern"], &[0.0], |s, value| s.diffusion = value),
-    ];
-    let first = table.rows.len();
-    for (variants, values, set) in changes {
-        table.over(Group::Ablation, variants, [&[], values], |s, value| {
-            lobovsky(s);
-            (s.n, s.end) = (20, 5.0);
-            set(s, value);
-        });
-    }
-    for row in &mut table.rows[first..] {
-        // Without viscosity the predictor-corrector has no stable step at all: it runs as it is.
-        row.run.spec = row.run.spec.clone().allow_unstable().measure_all();
-    }
 }
 
 /// The gates of a run.
@@ -121,7 +90,7 @@ fn gates(row: &Row) -> Vec<Gate> {
             [invariants(&run), tank_references(&run), tank_model(&run)].concat()
         }
         Group::Crowded => crowded("extreme.water-that-starts-on-the-surface-of-the-walls"),
-        Group::Ladder | Group::Ablation | Group::Ensemble => Vec::new(),
+        Group::Ladder | Group::Ensemble => Vec::new(),
     };
     let known = known(row);
     let limited = |gate: Gate| match known.iter().find(|known| known.0.name == gate.metric) {

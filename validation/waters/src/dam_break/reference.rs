@@ -196,9 +196,6 @@ const ARRIVED: f64 = 0.1;
 /// Impulses are counted for this long after the arrival \[(H/g)^(1/2)\]: the jet has risen, and the
 /// wave that it falls back into has not yet closed over air.
 pub const WINDOWS: [f64; 2] = [1.0, 2.5];
-/// Width of the running mean that noise is the distance from \[(H/g)^(1/2)\]; not a whole number of
-/// blocks, so that no rounding error decides whether a block belongs to it.
-const SMOOTH: f64 = 0.101;
 
 /// When a wave with this pressure on P1 \[ρ g H\] arrives.
 pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
@@ -222,17 +219,6 @@ pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
     let inside = curve.iter().filter(|(t, _)| (from..=to).contains(t));
     let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
     sum / count
-}
-
-/// rms distance of a curve from its running mean, from t = `from` on.
-fn noise(pressure: &[(f64, f64)], from: f64) -> f64 {
-    let later: Vec<(f64, f64)> = pressure.iter().filter(|(t, _)| *t >= from).copied().collect();
-    let square = |(t, p): &(f64, f64)| {
-        let near = later.iter().filter(|(other, _)| (other - t).abs() <= 0.5 * SMOOTH);
-        let (sum, count) = near.fold((0.0, 0.0), |(s, n), (_, p)| (s + p, n + 1.0));
-        (p - sum / count).powi(2)
-    };
-    (later.iter().map(square).sum::<f64>() / later.len() as f64).sqrt()
 }
 
 /// Why a metric of a time that a run does not reach is absent.
@@ -345,8 +331,6 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
         }
     }
     record.put(PEAK, pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max));
-    let later = ours + WINDOWS[0];
-    put_if_reached(record, NOISE, [reached, later], || noise(&pressures[1], later));
 }
 
 #[cfg(test)]
@@ -399,18 +383,6 @@ mod tests {
             (short + IMPULSE_SPREAD).abs() < 5e-4 && (long + 0.135).abs() < 1e-3,
             "{short} {long}"
         );
-    }
-
-    #[test]
-    fn noise_is_what_a_running_mean_leaves() {
-        // The mean over five points of alternating sign has a fifth of their amplitude.
-        let curve = |amplitude: f64| -> Points {
-            let sign = |k: u32| if k.is_multiple_of(2) { amplitude } else { -amplitude };
-            (0..1000).map(|k| (0.02 * f64::from(k) + 0.001, sign(k))).collect()
-        };
-        assert!(noise(&curve(0.0), 0.0) < 1e-12);
-        let left = noise(&curve(0.5), 0.0);
-        assert!((left - 0.4).abs() < 1e-3, "{left}");
     }
 
     /// The metrics that a comparison of these samples (t, front, height, levels) and pressures puts.
@@ -488,10 +460,6 @@ mod tests {
         let all = levels.iter().map(of_level).sum::<f64>() / points as f64;
         is(metric(LEVELS.rms.into()) / all.sqrt(), 0.05, 5e-4);
         is(metric(FRONT.rms.into()), 0.0, 1e-3);
-        let p2: Points =
-            rows.chunks(10).map(|rows| (mean(rows, 0) / unit, mean(rows, 2) / scale)).collect();
-        let left = noise(&p2, metric(ARRIVAL.into()) + 1.0);
-        is(metric(NOISE.into()) / left, 1.0, 0.01);
     }
 
     /// The numbers of the reference's README.
