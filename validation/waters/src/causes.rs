@@ -64,10 +64,3 @@ pub static MIRRORED_PRESSURE: Cause = Cause::new(
      lowest row bears too much.",
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
 );
-
-/// Density from its rate alone.
-pub static RATE_OF_DENSITY: Cause = Cause::new(
-    "The continuity equation (3) knows changes of density alone, so water that starts too near to a wall is \
-     not pushed away.",
-    "Water that starts half a spacing from the walls, or density as a sum over neighbours.",
-);
