@@ -1,7 +1,7 @@
 //! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
 //! them: from the model it is an error of the method.
 
-use base::reference::{Reference as Package, ReferenceError, Table};
+use base::reference::Reference as Package;
 use std::sync::LazyLock;
 
 use super::*;
@@ -52,59 +52,63 @@ fn best_shift(pairs: &[(Points, Points)], range: f64) -> f64 {
     best
 }
 
-/// A column of a table over another one.
-fn curve(table: &Table, t: &str, y: &str) -> Result<Points, ReferenceError> {
-    Ok(table.numbers(t)?.into_iter().zip(table.numbers(y)?).collect())
-}
-
-/// Four columns of a table over its times.
-fn four(table: &Table, names: [&str; 4]) -> Result<[Points; 4], ReferenceError> {
-    let [a, b, c, d] = names.map(|name| curve(table, "t", name));
-    Ok([a?, b?, c?, d?])
-}
-
 /// Front (T, Z) and residual height (τ, η) of Martin & Moyce. Packages are embedded and checked by a test.
 pub static MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
-    let load = || {
-        let package = Package::load("dambreak_martin_moyce")?;
-        let front = curve(package.table("front")?, "T", "Z")?;
-        Ok::<_, ReferenceError>([front, curve(package.table("height")?, "tau", "H")?])
-    };
-    load().unwrap_or_default()
+    [("front", ["T", "Z"]), ("height", ["tau", "H"])]
+        .map(|(table, columns)| Package::curve("dambreak_martin_moyce", table, columns, &[]))
 });
 
-/// The experiment of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
-#[derive(Default)]
-pub struct Lobovsky {
-    /// x of the tip from the gate.
+/// Z over T and residual height \[H\] of that column by volume of fluid.
+pub static MODEL_OF_MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
+    let [front, height] = ["front", "height"].map(|name| of_model("martin_moyce", name));
+    // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
+    [front.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect(), height]
+});
+
+/// Curves of the tank of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
+pub struct OfTank {
+    /// x of the front, measured from the gate and computed from the back wall.
     pub front: Points,
     /// Levels at H1 to H4: each series there is.
     pub levels: [Vec<Points>; 4],
     /// P1 to P4.
     pub pressure: [Points; 4],
-    /// The second sensor at the height of P2.
-    pub aside: Points,
 }
 
-/// It.
-pub static LOBOVSKY: LazyLock<Lobovsky> = LazyLock::new(|| Lobovsky::load().unwrap_or_default());
+const MEASURED: &str = "dambreak_lobovsky";
 
-impl Lobovsky {
-    fn load() -> Result<Self, ReferenceError> {
-        let package = Package::load("dambreak_lobovsky")?;
-        let (levels, pressure) = (package.table("levels")?, package.table("pressure")?);
-        // One series of H1 and two of the others.
-        let first = four(levels, ["H1_1", "H2_1", "H3_1", "H4_1"])?;
-        let mut levels_of = first.map(|series| vec![series]);
-        for (k, name) in [(1, "H2_2"), (2, "H3_2"), (3, "H4_2")] {
-            levels_of[k].push(curve(levels, "t", name)?);
+/// The experiment: one series of the level at H1 and two of the others.
+pub static LOBOVSKY: LazyLock<OfTank> = LazyLock::new(|| {
+    let levels: [&[&str]; 4] = [&["H1_1"], &["H2_1", "H2_2"], &["H3_1", "H3_2"], &["H4_1", "H4_2"]];
+    OfTank::read(MEASURED, Package::curve(MEASURED, "front", ["t", "x"], &[]), levels)
+});
+
+/// The pressure on the second sensor at the height of P2.
+pub fn aside() -> Points {
+    Package::curve(MEASURED, "pressure", ["t", "P2L"], &[])
+}
+
+const COMPUTED: &str = "dam_break_vof";
+
+/// The same by volume of fluid.
+pub static MODEL: LazyLock<OfTank> = LazyLock::new(|| {
+    let levels: [&[&str]; 4] = [&["H1"], &["H2"], &["H3"], &["H4"]];
+    OfTank::read(COMPUTED, of_model("lobovsky", "front"), levels)
+});
+
+/// A history of a scene by volume of fluid.
+fn of_model(scene: &str, name: &str) -> Points {
+    Package::curve(COMPUTED, "series", ["t", name], &[("scene", scene)])
+}
+
+impl OfTank {
+    fn read(package: &str, front: Points, levels: [&[&str]; 4]) -> Self {
+        let curve = |table: &str, name: &str| Package::curve(package, table, ["t", name], &[]);
+        Self {
+            front,
+            levels: levels.map(|of| of.iter().map(|series| curve("levels", series)).collect()),
+            pressure: ["P1", "P2", "P3", "P4"].map(|sensor| curve("pressure", sensor)),
         }
-        Ok(Self {
-            front: curve(package.table("front")?, "t", "x")?,
-            levels: levels_of,
-            pressure: four(pressure, ["P1", "P2", "P3", "P4"])?,
-            aside: curve(pressure, "t", "P2L")?,
-        })
     }
 
     /// The mean of the series at a probe, until t.
@@ -117,72 +121,40 @@ impl Lobovsky {
     }
 }
 
-/// The reference, in units of H, (H/g)^(1/2) and ρ g H unless it is said otherwise.
-#[derive(Default)]
-pub struct VolumeOfFluid {
-    /// Front Z \[a\] over T, and residual height, of the column of Martin & Moyce.
-    pub free: [Points; 2],
-    /// Front in the tank of Lobovsky et al., from the back wall.
-    pub front: Points,
-    /// Levels at H1 to H4.
-    pub levels: [Points; 4],
-    /// P1 to P4.
-    pub pressure: [Points; 4],
-}
-
-/// It.
-pub static MODEL: LazyLock<VolumeOfFluid> =
-    LazyLock::new(|| VolumeOfFluid::load().unwrap_or_default());
-
-impl VolumeOfFluid {
-    fn load() -> Result<Self, ReferenceError> {
-        let package = Package::load("dam_break_vof")?;
-        let series = package.table("series")?;
-        let of = |scene: &str, name: &str| -> Result<Points, ReferenceError> {
-            let rows = series.texts("scene")?.into_iter().zip(curve(series, "t", name)?);
-            Ok(rows.filter(|(of, _)| *of == scene).map(|(_, point)| point).collect())
-        };
-        let scene = "martin_moyce";
-        // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
-        let free = of(scene, "front")?.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect();
-        Ok(Self {
-            free: [free, of(scene, "height")?],
-            front: of("lobovsky", "front")?,
-            levels: four(package.table("levels")?, ["H1", "H2", "H3", "H4"])?,
-            pressure: four(package.table("pressure")?, ["P1", "P2", "P3", "P4"])?,
-        })
-    }
+/// A column of a profile of a run over time, each in a unit.
+fn history(record: &Record, profile: &str, name: &str, units: [f64; 2]) -> Points {
+    let points = record.column(profile, "t").iter().zip(record.column(profile, name));
+    points.map(|(t, y)| (t / units[0], y / units[1])).collect()
 }
 
 /// Z over T of a run of the column of Martin & Moyce.
 pub fn front(record: &Record) -> Points {
     let DamSettings { width: a, gravity: g, .. } = record.settings_as();
-    water::curve(record, "series", ["t", "front"], [(0.5 * a / g).sqrt(), a])
+    history(record, "series", "front", [(0.5 * a / g).sqrt(), a])
 }
 
 /// The residual height \[H\] over time in a unit \[s\].
 pub fn height(record: &Record, unit: f64) -> Points {
     let height = record.settings_as::<DamSettings>().height;
-    water::curve(record, "series", ["t", "height"], [unit, height])
+    history(record, "series", "height", [unit, height])
 }
 
 /// The front in the tank \[H\] over time \[(H/g)^(1/2)\], from a place \[m\].
 pub fn front_from(record: &Record, place: f64) -> Points {
     let s: DamSettings = record.settings_as();
-    let front = water::curve(record, "series", ["t", "front"], [s.unit_time(), 1.0]);
+    let front = history(record, "series", "front", [s.unit_time(), 1.0]);
     front.into_iter().map(|(t, x)| (t, (x - place) / s.height)).collect()
 }
 
 /// The level at a probe \[H\] over time \[(H/g)^(1/2)\].
 pub fn depth(record: &Record, probe: usize) -> Points {
     let s: DamSettings = record.settings_as();
-    let name = format!("H{}", probe + 1);
-    water::curve(record, "series", ["t", &name], [s.unit_time(), s.height])
+    history(record, "series", &format!("H{}", probe + 1), [s.unit_time(), s.height])
 }
 
 /// The pressure on a sensor \[ρ g H\] over time \[(H/g)^(1/2)\].
 pub fn pressure(record: &Record, sensor: usize) -> Points {
-    water::curve(record, "pressure", ["t", &format!("P{}", sensor + 1)], [1.0, 1.0])
+    history(record, "pressure", &format!("P{}", sensor + 1), [1.0, 1.0])
 }
 
 /// T = t (2g/a)^(1/2) at which the fronts of the column of Martin & Moyce are compared.
@@ -287,10 +259,10 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
     let within = |measured: &Points, computed: &Points| until(measured, end_of(computed));
     let reached = end_of(&front);
     for t in FREE_TIMES {
-        let away = || value(&front, t) - value(&MODEL.free[0], t);
+        let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE[0], t);
         put_if_reached(record, FRONT_AWAY.at(t), [reached, t], away);
     }
-    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL.free[1], s.end), 0.0));
+    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
     for (t, ..) in PEERS {
         put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
     }
@@ -311,7 +283,7 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
     let pair = |k| (depth(record, k), LOBOVSKY.level(k, s.end));
     let pairs = [0, 1, 2, 3].map(pair);
     for (k, (computed, _)) in pairs.iter().enumerate() {
-        let model = until(&MODEL.levels[k], LEVELS_UNTIL.min(s.end));
+        let model = MODEL.level(k, LEVELS_UNTIL.min(s.end));
         record.put(LEVEL_AWAY[k], rms(computed, &model, 0.0));
     }
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
@@ -376,7 +348,7 @@ mod tests {
         let at = arrival(&LOBOVSKY.pressure[0]);
         assert!((at - 2.443).abs() < 2e-3, "{at}");
         let spread = |window: f64| {
-            impulse(&LOBOVSKY.aside, at, window) / impulse(&LOBOVSKY.pressure[1], at, window) - 1.0
+            impulse(&aside(), at, window) / impulse(&LOBOVSKY.pressure[1], at, window) - 1.0
         };
         let [short, long] = WINDOWS.map(spread);
         assert!(
@@ -466,11 +438,11 @@ mod tests {
     #[test]
     fn the_reference_is_read_in_the_units_of_the_cases() {
         for (t, z) in [(1.0, 1.548), (2.0, 2.662), (3.0, 4.099)] {
-            is(value(&MODEL.free[0], t), z, 1e-3);
+            is(value(&MODEL_OF_MARTIN_MOYCE[0], t), z, 1e-3);
         }
-        is(value(&MODEL.free[1], 1.5), 0.4638, 1e-3);
+        is(value(&MODEL_OF_MARTIN_MOYCE[1], 1.5), 0.4638, 1e-3);
         is(value(&MODEL.front, 2.0), 4.649, 1e-3);
-        is(value(&MODEL.levels[3], 4.0), 0.1751, 1e-3);
+        is(value(&MODEL.levels[3][0], 4.0), 0.1751, 1e-3);
         let at = arrival(&MODEL.pressure[0]);
         is(at, 2.37, 0.01);
         for (k, expected) in [1.581, 1.293, 0.912, 0.116].into_iter().enumerate() {
@@ -485,8 +457,8 @@ mod tests {
         let of = &dam.settings;
         let row = |k: u32| {
             let t = 0.002 * f64::from(k);
-            let front = of.width * (0.03 + value(&MODEL.free[0], 2.0 * t));
-            let height = of.height * (0.02 + value(&MODEL.free[1], t));
+            let front = of.width * (0.03 + value(&MODEL_OF_MARTIN_MOYCE[0], 2.0 * t));
+            let height = of.height * (0.02 + value(&MODEL_OF_MARTIN_MOYCE[1], t));
             [t * of.unit_time(), front, height, 0.0, 0.0, 0.0, 0.0]
         };
         let metric = compared(&dam, (0..900).map(row), Vec::new());
@@ -501,7 +473,7 @@ mod tests {
         let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
         let row = |k: u32| {
             let t = 0.01 * f64::from(k);
-            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&MODEL.levels[k], t));
+            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&MODEL.levels[k][0], t));
             let front = h * (0.03 + value(&MODEL.front, t));
             [t * unit, front, 0.0, level(0), level(1), level(2), level(3)]
         };
