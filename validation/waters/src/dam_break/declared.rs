@@ -32,7 +32,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         comparisons,
         curves: curves::curves(tier),
         budgets: budgets(tier, &accuracy),
-        accuracy: vec![accuracy, in_the_tank(tier)],
+        accuracy: vec![accuracy],
         limits: limits(tier),
         sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
@@ -148,20 +148,6 @@ fn accuracy(tier: Tier) -> Accuracy {
         slope: Some(1.0),
         ladders: ladders.into(),
         ..Accuracy::new("dam-break", FRONT_AWAY.at(1), "error of the front at T = 1 [a]")
-    }
-}
-
-/// The front of the column in the tank of Lobovsky et al.
-fn in_the_tank(tier: Tier) -> Accuracy {
-    let level = |s: &DamSettings| (1.0 / s.n as f64, format!("H/dx {}", s.n));
-    Accuracy {
-        about: "Front of the column in the tank at t = 2 √(H/g), less that of the same model by volume of \
-                fluid, which is known to 0.028 H."
-            .into(),
-        spacing: "dx/H [-]",
-        slope: Some(1.0),
-        ladders: vec![plan::table(tier).ladder(&[Group::Tank], "modern", level)],
-        ..Accuracy::new("dam-break-tank", FRONT_AWAY.at(2), "error of the front at t = 2 [H]")
     }
 }
 
