@@ -85,16 +85,6 @@ macro_rules! values {
 
 values! { f64; Vec<T>, T; Record; }
 
-/// What is observed of some runs only: the run that goes on has it if and only if the one before had it.
-impl<O: Observed> Observed for Option<O> {
-    fn save(&self, to: &mut Vec<u8>) {
-        self.iter().for_each(|observed| observed.save(to));
-    }
-    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        self.iter_mut().try_for_each(|observed| observed.restore(from))
-    }
-}
-
 impl<O: Observed + ?Sized> Observed for &mut O {
     fn save(&self, to: &mut Vec<u8>) {
         (**self).save(to);

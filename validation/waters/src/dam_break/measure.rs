@@ -49,23 +49,12 @@ fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, height:
     low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Names and units of the columns of a series.
-const SERIES: [(&str, &str); 7] = [
-    ("t", "s"),
-    ("front", "m"),
-    ("height", "m"),
-    ("H1", "m"),
-    ("H2", "m"),
-    ("H3", "m"),
-    ("H4", "m"),
-];
-
 /// Samples of a run.
 pub struct Samples<'a> {
     dam: &'a Dam,
     /// x of the foremost particle at the start \[m\].
     start: f64,
-    /// The columns of [`SERIES`].
+    /// t \[s\], front, residual height, levels at H1 to H4 \[m\].
     rows: Vec<[f64; 7]>,
     /// Particles outside: the most at any time, and those at the last.
     outside: [f64; 2],
@@ -143,7 +132,10 @@ impl<'a> Samples<'a> {
         let [columns, rows] = self.dam.counts;
         record.put(metrics::SPILLED, self.spilled.len() as f64 / (columns * rows) as f64);
         record.put(metrics::MACH, self.fastest / self.dam.medium.eos.sound_speed);
-        record.profiles.insert("series".into(), Profile::of_rows(&SERIES, &self.rows));
+        let [front, height, one, two, three, four] =
+            ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));
+        let columns = [("t", "s"), front, height, one, two, three, four];
+        record.profiles.insert("series".into(), Profile::of_rows(&columns, &self.rows));
     }
 }
 

@@ -44,18 +44,17 @@ fn run(
     let Dam { settings, medium, rules, .. } = dam;
     let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
-    let mut ledger = context.measures_all().then(|| Ledger::new(medium));
+    let (is_balanced, mut ledger) = (context.measures_all(), Ledger::new(medium));
     let mut samples = Samples::new(dam);
     let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
     let filled = water_mass(&simulation.particles());
     let (times, shares) = stops(dam, context);
-    let is_balanced = ledger.is_some();
     let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
         .at_if(is_balanced, "energy ledger and momentum", &|(_, _, ledger, _), s, _| {
-            ledger.iter_mut().for_each(|ledger| ledger.sample(s));
+            ledger.sample(s)
         })
         .at_positions("pictures", &|(.., record), s, k| {
             if let Some(share) = shares.get(&k) {
@@ -72,16 +71,12 @@ fn run(
     let mass = water_mass(&particles);
     samples.measure(&mut record);
     record.put(MASS_ERROR, (mass / filled - 1.0).abs());
-    match &ledger {
-        Some(ledger) => {
-            let fall = settings.gravity * settings.height;
-            let of_what = "M g H/2, the potential energy of the column";
-            ledger.measure(0.5 * mass * settings.gravity * settings.height, of_what, &mut record);
-            let gap = ledger.unexplained_momentum() / (mass * fall.sqrt());
-            record.put(MOMENTUM_GAP, gap);
-        }
-        None => record.leave_unasked(COSTLY),
-    }
+    let of_what = "M g H/2, the potential energy of the column";
+    let column = 0.5 * mass * settings.gravity * settings.height;
+    ledger.measure(column, of_what, context, &mut record);
+    let fall = settings.gravity * settings.height;
+    let gap = ledger.unexplained_momentum() / (mass * fall.sqrt());
+    record.put_or(MOMENTUM_GAP, is_balanced.then_some(gap), NOT_ASKED);
     if record.status == Status::Completed {
         if dam.is_lobovsky() {
             gauge.measure(dam, &mut record);

@@ -2,7 +2,7 @@
 //! momentum against the impulse of walls and gravity.
 
 use base::record::{MetricKey, Profile, Record};
-use harness::method::Medium;
+use harness::{context::Context, method::Medium};
 use maths::metrics::{
     budget::{Account, DIFFUSION, Metered, STRESS, VISCOSITY, WALLS, XSPH},
     energy::{Energy, Water, water_slope},
@@ -102,8 +102,11 @@ impl Ledger {
         self.rows.iter().map(|row| (balance(row) - start).abs()).fold(0.0, f64::max)
     }
 
-    /// Metrics relative to a scale \[J/m\], and the series.
-    pub fn measure(&self, scale: f64, of_what: &str, record: &mut Record) {
+    /// Metrics relative to a scale \[J/m\], and the series, if all that costs pair sweeps is asked for.
+    pub fn measure(&self, scale: f64, of_what: &str, context: &Context, record: &mut Record) {
+        if !context.measures_all() {
+            return record.leave_unasked(&METRICS);
+        }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
         for (name, work) in ITEMS {
             record.put(work.of(of_what), self.account.work(name) / scale);
@@ -122,7 +125,8 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::{context::Context, method::Parts};
+    use base::spec::Measure;
+    use harness::method::Parts;
     use schemes::water::modern;
     use solver::{Domain, Particle, Tait};
 
@@ -175,7 +179,8 @@ mod tests {
             ledger.account.add(time, &powers);
         }
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
-        ledger.measure(50.0, "it", &mut record);
+        let context = Context::default();
+        ledger.measure(50.0, "it", &Context { measure: Measure::All, ..context }, &mut record);
         let value = |metric: MetricKey| record.value(metric).expect("a metric");
         assert!((value(ENERGY_GAP) - 27.0 / 50.0).abs() < 1e-12);
         for (k, metric) in [WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS]
