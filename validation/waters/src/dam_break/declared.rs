@@ -3,6 +3,7 @@
 //! the gates must detect.
 
 use base::reference::Reference;
+use report::{ColourMap, sig};
 
 use super::{run::COSTLY, *};
 
@@ -17,7 +18,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     let card = Card {
         title: "Dam break",
-        picture: ("dam-break-lobovsky-pictures", 3),
+        picture: ("dam-break-picture", 0),
         error: "front after its best shift in time, rms in column widths".into(),
         metric: FRONT.rms_shifted.into(),
         runs: accuracy.finest(&[DAM_BREAK.best.variant, "seed"]),
@@ -31,6 +32,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         ensembles: ensembles::ensembles(tier, &comparisons),
         comparisons,
         curves: curves::curves(tier),
+        pictures: vec![picture(tier)],
         budgets: budgets(tier, &accuracy),
         accuracy: vec![accuracy],
         limits: limits(tier),
@@ -39,6 +41,18 @@ pub fn declaration(tier: Tier) -> Declaration {
         curve: Some(front()),
         ..Declaration::default()
     }
+}
+
+/// The finest run in the tank, while the jet is at the far wall.
+fn picture(tier: Tier) -> Picture {
+    let caption = "The water when its jet has risen at the far wall, coloured by pressure, cut at 0 and 1 ρ \
+                   g H.";
+    let texts = ["dam-break-picture", "Picture of the tank", caption];
+    let colours = ("p [ρ g H]", ColourMap::Sequential);
+    plan::table(tier).picture(texts, colours, [560.0, 230.0], |Row { settings: s, .. }| {
+        let time = sig(run::PICTURE * s.end, 3);
+        (format!("time {time} √(H/g), H/dx = {}", s.n), 1.0 / s.n as f64)
+    })
 }
 
 /// The front over time: the column, moved with it, stands for it.
