@@ -204,9 +204,7 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
 
 fn limits(tier: Tier) -> StepLimits {
     let most = if tier == Tier::Quick { 1 } else { usize::MAX };
-    let about = "A time step counts as stable if the collapse ends with its energy accounted for within 2 \
-                 %. Theory is the limit of a lattice at rest. Water that moves, is compressed and loses \
-                 its lattice is expected at 0.7 to 1.0 of it.";
+    let about = "A time step counts as stable if the collapse ends with its energy accounted for within 2 %.";
     let of = ["modern", "seed"].map(limit).into_iter().take(most).collect();
     StepLimits { about: about.into(), of }
 }

@@ -91,37 +91,31 @@ impl<'a> Samples<'a> {
         let height = depth_at(HEIGHT_AT * s.width, over);
         let [h1, h2, h3, h4] = PROBES.map(|x| depth_at(x, 2.0));
         self.rows.push([simulation.time(), front, height, h1, h2, h3, h4]);
-        let outside = self.count_outside(simulation);
-        self.outside = [self.outside[0].max(outside), outside];
-        self.fastest = self.fastest.max(self.speed(simulation));
-    }
-
-    /// The largest speed of the water that has not left over the rim \[m/s\].
-    fn speed(&self, simulation: &dyn Stepper<()>) -> f64 {
-        if self.spilled.is_empty() {
-            return simulation.fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max);
-        }
-        let all = simulation.particles().into_iter().enumerate();
-        let kept = all.filter(|(k, p)| p.role == Role::Fluid && !self.spilled.contains(k));
-        kept.map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max)
+        self.look_at_walls(simulation);
     }
 
     /// Counts the particles that are lost, without those that have left over the rim: the walls are several
-    /// spacings thick, so such a particle is seen above them first, or as a dent in their upper end.
-    fn count_outside(&mut self, simulation: &dyn Stepper<()>) -> f64 {
+    /// spacings thick, so such a particle is seen above them first, or as a dent in their upper end. The
+    /// speed of the water that has not left counts.
+    fn look_at_walls(&mut self, simulation: &dyn Stepper<()>) {
         let Dam { tank, medium, rim, .. } = self.dam;
         let reach = LOST * medium.dx;
-        let is_lost =
-            |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
-        if !simulation.fluid().any(|(_, p)| is_lost(p.position)) {
-            return 0.0;
+        let mut lost = 0.0;
+        for (k, p) in simulation.particles().iter().enumerate() {
+            if p.role != Role::Fluid {
+                continue;
+            }
+            let x = p.position;
+            let is_lost = (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
+            if is_lost && x.y >= rim - reach {
+                self.spilled.insert(k);
+            }
+            if !self.spilled.contains(&k) {
+                lost += f64::from(is_lost);
+                self.fastest = self.fastest.max(p.velocity.norm());
+            }
         }
-        let all = simulation.particles().into_iter().enumerate();
-        let lost = all.filter(|(_, p)| p.role == Role::Fluid && is_lost(p.position));
-        let (over, through): (Vec<_>, Vec<_>) =
-            lost.partition(|(_, p)| p.position.y >= rim - reach);
-        self.spilled.extend(over.into_iter().map(|(k, _)| k));
-        through.iter().filter(|(k, _)| !self.spilled.contains(k)).count() as f64
+        self.outside = [self.outside[0].max(lost), lost];
     }
 
     /// Metrics that need no reference, and the series.

@@ -256,7 +256,6 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
     let height_of = |unit| height(record, unit);
     let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
     let [measured_front, measured_height] = &*MARTIN_MOYCE;
-    let within = |measured: &Points, computed: &Points| until(measured, end_of(computed));
     let reached = end_of(&front);
     for t in FREE_TIMES {
         let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE[0], t);
@@ -266,9 +265,9 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
     for (t, ..) in PEERS {
         put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
     }
-    let measured = within(measured_front, &front);
+    let measured = until(measured_front, reached);
     put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
-    let measured = within(measured_height, &height);
+    let measured = until(measured_height, end_of(&height));
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
     put_distance(record, HEIGHT, &[(height, measured)], 1.0, what);
