@@ -38,12 +38,6 @@ pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
     "A reference whose steps are of second order.",
 );
 
-/// Powers between samples.
-pub static SAMPLED: Cause = Cause::new(
-    "Powers are sampled at intervals, and single particles meet for a shorter time than that.",
-    "Samples after every step.",
-);
-
 /// Walls without friction.
 pub static FREE_SLIP: Cause = Cause::new(
     "Water slips along its walls without friction, and runs ahead of codes and experiments whose walls drag \

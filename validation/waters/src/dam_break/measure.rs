@@ -242,28 +242,26 @@ impl Observer<()> for Gauge {
 }
 
 #[cfg(test)]
-impl<'a> Samples<'a> {
-    /// Samples with these t, front, residual height and levels at each time \[s, m\].
-    pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 7]>) -> Self {
-        Self { rows: rows.collect(), ..Self::new(dam) }
-    }
-}
-
-#[cfg(test)]
-impl Gauge {
-    /// A gauge that has read these t \[s\] and pressures \[Pa\].
-    pub fn made_up(dam: &Dam, rows: Vec<[f64; 5]>) -> Self {
-        Self { eos: dam.medium.eos, reach: 0.0, sensors: Vec::new(), rows }
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use crate::dam_break::lobovsky;
     use harness::{context::Context, method::Parts};
     use maths::metrics::budget::Metered;
     use solver::{Particle, Smoothing, WendlandC2};
+
+    impl<'a> Samples<'a> {
+        /// Samples with these t, front, residual height and levels at each time \[s, m\].
+        pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 7]>) -> Self {
+            Self { rows: rows.collect(), ..Self::new(dam) }
+        }
+    }
+
+    impl Gauge {
+        /// A gauge that has read these t \[s\] and pressures \[Pa\].
+        pub fn made_up(dam: &Dam, rows: Vec<[f64; 5]>) -> Self {
+            Self { eos: dam.medium.eos, reach: 0.0, sensors: Vec::new(), rows }
+        }
+    }
 
     /// A simulation of these particles in place of those of a dam break, without walls.
     fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
