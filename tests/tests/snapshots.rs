@@ -372,7 +372,6 @@ fn bounds_of_tank() -> Vec<(&'static str, Bound, &'static str)> {
         ("levels_shift", Bound::Within(-0.4, 0.4), "as of the front"),
         ("peak_P1", Bound::Within(0.0, 20.0), head),
         ("arrival", Bound::Within(2.0, 3.0), clock),
-        ("pressure_noise", Bound::Within(0.0, 1.0), "less than rho g H itself"),
         ("spilled", Bound::Within(0.0, 0.05), "by volume of fluid 2 % leave, uncertain by 1 %"),
     ]
 }

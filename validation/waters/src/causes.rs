@@ -38,12 +38,6 @@ pub static UNCERTAIN_REFERENCE: Cause = Cause::new(
     "A reference whose steps are of second order.",
 );
 
-/// Powers between samples.
-pub static SAMPLED: Cause = Cause::new(
-    "Powers are sampled at intervals, and single particles meet for a shorter time than that.",
-    "Samples after every step.",
-);
-
 /// Walls without friction.
 pub static FREE_SLIP: Cause = Cause::new(
     "Water slips along its walls without friction, and runs ahead of codes and experiments whose walls drag \
@@ -63,11 +57,4 @@ pub static MIRRORED_PRESSURE: Cause = Cause::new(
     "Ghost particles mirror the pressure of the water at the bottom, where it should go on rising, so the \
      lowest row bears too much.",
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
-);
-
-/// Density from its rate alone.
-pub static RATE_OF_DENSITY: Cause = Cause::new(
-    "The continuity equation (3) knows changes of density alone, so water that starts too near to a wall is \
-     not pushed away.",
-    "Water that starts half a spacing from the walls, or density as a sum over neighbours.",
 );

@@ -176,24 +176,21 @@ fn run(
     let mut simulation = (method.build)(parts)?;
     let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
-    let mut ledger = context.measures_all().then(|| Ledger::new(medium));
+    let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
-    let mut seen = (&mut history, ledger.as_mut_slice());
+    let mut seen = (&mut history, &mut ledger);
     (record.status, record.cost) =
         Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
             .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
-            .at("energy ledger by term", &|(_, ledger), simulation, _| {
-                ledger.iter_mut().for_each(|ledger| ledger.sample(simulation));
+            .at_if(context.measures_all(), "energy ledger by term", &|(_, ledger), s, _| {
+                ledger.sample(s);
             })
             .run(context)?;
     history.measure(&mut record);
     let start = shape(&drop.particles);
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
-    match ledger {
-        Some(ledger) => ledger.measure(kinetic, "initial kinetic energy", &mut record),
-        None => record.leave_unasked(&ledger::METRICS),
-    }
+    ledger.measure(kinetic, "initial kinetic energy", context, &mut record);
     let particles = simulation.particles();
     record.state = Some(simulate::state(&particles));
     if context.keep_particles {

@@ -198,12 +198,22 @@ impl Moments<'_> {
         self.samples += 1.0;
     }
 
-    fn measure(&self, record: &mut Record) {
+    /// Metrics at the end, and the mean error of each particle if they are kept.
+    fn measure(&self, all: &[Particle], context: &Context, record: &mut Record) {
+        let s = self.settings;
         let [left, right, apex] = self.corners.map(|sum| sum / self.samples);
-        record.put(P_L2, rms(self.errors.iter().map(|sum| sum / self.samples)));
+        let errors = self.errors.iter().map(|sum| sum / self.samples);
+        record.put(P_L2, rms(errors.clone()));
         record.put(P_BASE, if left.abs() > right.abs() { left } else { right });
         record.put(P_APEX, apex);
         record.put(KINETIC, self.kinetic);
+        let water = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.position);
+        let is_outside = |x: &Vector2<f64>| (x.x - HALF).abs() > HALF || x.y < floor(s, x.x);
+        record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
+        if context.keep_particles {
+            let errors = water.zip(errors);
+            pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
+        }
     }
 }
 
@@ -226,22 +236,9 @@ fn run(m: &WaterMethod, variant: &str, s: &Wedge, context: &Context) -> Result<R
     let all = simulation.particles();
     record.state = Some(simulate::state(&all));
     if record.status == Status::Completed {
-        moments.measure(&mut record);
-        measure(&moments, &all, context.keep_particles, &mut record);
+        moments.measure(&all, context, &mut record);
     }
     Ok(record)
-}
-
-fn measure(moments: &Moments, all: &[Particle], is_kept: bool, record: &mut Record) {
-    let (s, water) = (moments.settings, all.iter().filter(|p| p.role == Role::Fluid));
-    let is_outside =
-        |p: &&Particle| (p.position.x - HALF).abs() > HALF || p.position.y < floor(s, p.position.x);
-    record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
-    if is_kept {
-        let errors = moments.errors.iter().map(|sum| sum / moments.samples);
-        let errors = water.map(|p| p.position).zip(errors);
-        pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
-    }
 }
 
 fn table(tier: Tier) -> table::Table<Wedge, ()> {
@@ -298,11 +295,7 @@ fn declaration(tier: Tier) -> Declaration {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders: ["seed", "modern"].map(ladder).into(),
-        ..Accuracy::new(
-            "still-wedge",
-            P_BASE,
-            "error of the pressure at the base of the wedge [ρ g H]",
-        )
+        ..Accuracy::new("still-wedge", P_BASE, "error of the pressure at the base [ρ g H]")
     };
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});

@@ -8,40 +8,30 @@ use super::{
     *,
 };
 
-/// Panels over time until an end, of the judged runs of the best variant and of the paper's.
-struct Panels {
-    tier: Tier,
-    group: Group,
-    of: Vec<CurvePanel>,
-}
-
-impl Panels {
-    /// Adds one: title, axes, end, curves of runs, those measured and (without a name) by volume of fluid.
-    fn add(
-        &mut self,
-        title: String,
-        ([x, y], end): ([&str; 2], f64),
-        points: impl Fn(&Record) -> Points + Clone + Send + Sync + 'static,
-        curves: [&Points; 2],
-    ) -> &mut CurvePanel {
-        let table = plan::table(self.tier);
-        let line = |row: &Row| CurveOf {
-            name: format!("{}, {} spacings", row.variant, row.settings.n),
-            spec: row.run.spec.clone(),
-            points: Box::new(points.clone()),
-        };
-        let shown = table.of(self.group).filter(|row| ["modern", "seed"].contains(&row.variant));
-        let [measured, other] = curves.map(|curve| until(curve, end));
-        let place = self.of.len();
-        self.of.push(CurvePanel {
-            title,
-            x: Axis::linear(x).range(0.0, end),
-            y: Axis::linear(y),
-            lines: shown.map(line).collect(),
-            references: vec![("experiment".into(), measured), (String::new(), other)],
-            symbols: false,
-        });
-        &mut self.of[place]
+/// A panel over time until an end, of the judged runs of the best variant and of the paper's: names of the
+/// axes, curves of runs, those measured and (without a name) by volume of fluid.
+fn panel(
+    (tier, group): (Tier, Group),
+    title: &str,
+    ([x, y], end): ([&str; 2], f64),
+    points: impl Fn(&Record) -> Points + Clone + Send + Sync + 'static,
+    curves: [&Points; 2],
+) -> CurvePanel {
+    let table = plan::table(tier);
+    let line = |row: &Row| CurveOf {
+        name: format!("{}, {} spacings", row.variant, row.settings.n),
+        spec: row.run.spec.clone(),
+        points: Box::new(points.clone()),
+    };
+    let shown = table.of(group).filter(|row| ["modern", "seed"].contains(&row.variant));
+    let [measured, other] = curves.map(|curve| until(curve, end));
+    CurvePanel {
+        title: title.into(),
+        x: Axis::linear(x).range(0.0, end),
+        y: Axis::linear(y),
+        lines: shown.map(line).collect(),
+        references: vec![("experiment".into(), measured), (String::new(), other)],
+        symbols: false,
     }
 }
 
@@ -51,18 +41,19 @@ pub fn curves(tier: Tier) -> Vec<Curves> {
 }
 
 fn column(tier: Tier) -> Curves {
-    let mut panels = Panels { tier, group: Group::Free, of: Vec::new() };
     let [measured_front, measured_height] = &*MARTIN_MOYCE;
+    let [model_front, model_height] = &*MODEL_OF_MARTIN_MOYCE;
+    let of = (tier, Group::Free);
     let axes = (["time T = t √(2g/a) [-]", "front Z [a]"], 3.6);
-    panels.add("front".into(), axes, front, [measured_front, &MODEL.free[0]]);
+    let fronts = panel(of, "front", axes, front, [measured_front, model_front]);
     let fallen = |record: &Record| {
         let DamSettings { width: a, gravity: g, .. } = record.settings_as();
         height(record, (a / g).sqrt())
     };
     // Its clock is in √(H/g), and H is 2a.
-    let model = MODEL.free[1].iter().map(|(t, y)| (t / FRAC_1_SQRT_2, *y)).collect();
+    let model = model_height.iter().map(|(t, y)| (t / FRAC_1_SQRT_2, *y)).collect();
     let axes = (["time τ = t √(g/a) [-]", "height [2a]"], 2.6);
-    panels.add("residual height".into(), axes, fallen, [measured_height, &model]);
+    let heights = panel(of, "residual height", axes, fallen, [measured_height, &model]);
     let caption = "Front from the back wall (left) and height near it, at 0.2 a (right), of a water column \
                    of width a = 57.15 mm and height 2a. Black is the experiment of Martin & Moyce 1952, \
                    whose fronts are digitised within 0.1 a, and grey volume of fluid, which solves the same \
@@ -71,28 +62,29 @@ fn column(tier: Tier) -> Curves {
         id: "dam-break-martin-moyce".into(),
         title: "Martin & Moyce 1952: front and height".into(),
         caption: caption.into(),
-        panels: panels.of,
+        panels: vec![fronts, heights],
     }
 }
 
 fn tank(tier: Tier) -> Curves {
-    let mut panels = Panels { tier, group: Group::Tank, of: Vec::new() };
+    let of = (tier, Group::Tank);
     let time = "time [√(H/g)]";
     let from_gate = |record: &Record| front_from(record, record.settings_as::<DamSettings>().width);
     // The column is 2 H long.
     let model = MODEL.front.iter().map(|(t, x)| (*t, x - 2.0)).collect();
     let axes = ([time, "front from the gate [H]"], 2.8);
-    panels.add("front".into(), axes, from_gate, [&LOBOVSKY.front, &model]);
+    let mut panels = vec![panel(of, "front", axes, from_gate, [&LOBOVSKY.front, &model])];
     for (k, place) in PROBES.iter().enumerate() {
         let title = format!("H{}, x = {place} m", k + 1);
-        let curves = [&LOBOVSKY.level(k, 6.0), &MODEL.levels[k]];
-        panels.add(title, ([time, "depth [H]"], 6.0), move |record| depth(record, k), curves);
+        let curves = [&LOBOVSKY, &MODEL].map(|known| known.level(k, 6.0));
+        let level = move |record: &Record| depth(record, k);
+        panels.push(panel(of, &title, ([time, "depth [H]"], 6.0), level, curves.each_ref()));
     }
     let since = |curve: &Points, arrival: f64| -> Points {
         let from = curve.iter().map(|(t, p)| (t - arrival, *p));
         from.filter(|(t, _)| *t >= 0.0).collect()
     };
-    let [theirs, models] = [&LOBOVSKY.pressure, &MODEL.pressure].map(|p| arrival(&p[0]));
+    let [theirs, models] = [&LOBOVSKY, &MODEL].map(|known| arrival(&known.pressure[0]));
     for (k, height) in SENSORS.iter().enumerate() {
         let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
         let arrived = move |record: &Record| {
@@ -101,13 +93,14 @@ fn tank(tier: Tier) -> Curves {
             since(&pressure(record, k), arrival)
         };
         let axes = (["time since arrival [√(H/g)]", "pressure [ρ g H]"], 3.4);
-        let curves = [(&LOBOVSKY.pressure[k], theirs), (&MODEL.pressure[k], models)]
-            .map(|(curve, arrival)| since(curve, arrival));
-        let panel = panels.add(title, axes, arrived, curves.each_ref());
-        panel.y = panel.y.clone().range(-0.2, 3.5);
+        let curves = [(&LOBOVSKY, theirs), (&MODEL, models)]
+            .map(|(known, arrival)| since(&known.pressure[k], arrival));
+        let mut panel = panel(of, &title, axes, arrived, curves.each_ref());
+        panel.y = panel.y.range(-0.2, 3.5);
         if k == 1 {
-            panel.references.push((String::new(), since(&LOBOVSKY.aside, theirs)));
+            panel.references.push((String::new(), since(&aside(), theirs)));
         }
+        panels.push(panel);
     }
     let caption = "Front, depth at four stations, and pressure on four sensors in the far wall, of a column \
                    600 mm long and 300 mm high in a tank of 1610 mm. Black is the experiment of Lobovsky et \
@@ -118,6 +111,6 @@ fn tank(tier: Tier) -> Curves {
         id: "dam-break-lobovsky".into(),
         title: "Lobovsky et al. 2014: front, levels, pressures".into(),
         caption: caption.into(),
-        panels: panels.of,
+        panels,
     }
 }

@@ -26,8 +26,7 @@ pub fn ensembles(tier: Tier, comparisons: &[Comparison]) -> Option<Ensembles> {
     let about = "The tank of Lobovsky et al. from twenty starts whose particles are off their lattice by \
                  up to a millionth of a spacing, far less than any method or experiment resolves. Levels \
                  are compared with two series of the experiment. Of its pressures there is one event, and \
-                 of P2 a second sensor; the hundred repetitions of SPHERIC 10 (first peak 3710 ± 732 Pa) \
-                 are of another tank and say nothing of this one. Two spacings have different \
+                 of P2 a second sensor. Two spacings have different \
                  distributions, by more than their intervals: what comes beyond the horizon depends on the \
                  spacing too, so the scatter of an ensemble is not its error.";
     let time = ["time", "√(H/g)"];
@@ -96,9 +95,8 @@ fn late(curve: &Points) -> Option<f64> {
     Some(mean(curve, LATE)).filter(|mean| !mean.is_nan())
 }
 
-/// The numbers whose distribution is shown: two that are judged in `modern`, and the largest pressure.
+/// The numbers whose distribution is shown, which are judged in `modern`.
 fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
-    let highest = LOBOVSKY.pressure[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
     let known = MEDIANS.iter().find(|(of, ..)| variant == "modern" && *of == n);
     let judged =
         |name: &str, median: &str, known| judged(format!("{id}.{name}.median"), median, known);
@@ -118,12 +116,6 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
             value: Box::new(|record| record.value(IMPULSE[2].at(WINDOWS[1]))),
             measured: vec![0.0],
             gate: known.map(|(.., impulse)| judged("P3", of_impulse, *impulse)),
-        },
-        Number {
-            name: ["largest P1", "ρ g H"],
-            value: Box::new(|record| record.value(PEAK)),
-            measured: vec![highest],
-            gate: None,
         },
     ]
 }
@@ -212,7 +204,7 @@ mod tests {
         assert!(ensembles(Tier::Quick, &[]).is_none());
         let all = declared::declaration(Tier::Full).ensembles.expect("ensembles").of;
         let count = |of: &Ensemble| (of.members.len(), of.histories.len(), of.numbers.len());
-        assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 3); 4]);
+        assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 2); 4]);
         let [one, other] = [0, 19].map(|k| all[0].members[k].clone());
         assert_eq!(one.disorder.map(|of| (of.most, of.seed)), Some((1e-6, 1)));
         assert_eq!(RunSpec { disorder: other.disorder, ..one.clone() }, other);

@@ -49,23 +49,12 @@ fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, height:
     low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Names and units of the columns of a series.
-const SERIES: [(&str, &str); 7] = [
-    ("t", "s"),
-    ("front", "m"),
-    ("height", "m"),
-    ("H1", "m"),
-    ("H2", "m"),
-    ("H3", "m"),
-    ("H4", "m"),
-];
-
 /// Samples of a run.
 pub struct Samples<'a> {
     dam: &'a Dam,
     /// x of the foremost particle at the start \[m\].
     start: f64,
-    /// The columns of [`SERIES`].
+    /// t \[s\], front, residual height, levels at H1 to H4 \[m\].
     rows: Vec<[f64; 7]>,
     /// Particles outside: the most at any time, and those at the last.
     outside: [f64; 2],
@@ -102,37 +91,37 @@ impl<'a> Samples<'a> {
         let height = depth_at(HEIGHT_AT * s.width, over);
         let [h1, h2, h3, h4] = PROBES.map(|x| depth_at(x, 2.0));
         self.rows.push([simulation.time(), front, height, h1, h2, h3, h4]);
-        let outside = self.count_outside(simulation);
-        self.outside = [self.outside[0].max(outside), outside];
-        self.fastest = self.fastest.max(self.speed(simulation));
-    }
-
-    /// The largest speed of the water that has not left over the rim \[m/s\].
-    fn speed(&self, simulation: &dyn Stepper<()>) -> f64 {
-        if self.spilled.is_empty() {
-            return simulation.fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max);
-        }
-        let all = simulation.particles().into_iter().enumerate();
-        let kept = all.filter(|(k, p)| p.role == Role::Fluid && !self.spilled.contains(k));
-        kept.map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max)
+        self.look_at_walls(simulation);
     }
 
     /// Counts the particles that are lost, without those that have left over the rim: the walls are several
-    /// spacings thick, so such a particle is seen above them first, or as a dent in their upper end.
-    fn count_outside(&mut self, simulation: &dyn Stepper<()>) -> f64 {
+    /// spacings thick, so such a particle is seen above them first, or as a dent in their upper end. The
+    /// speed of the water that has not left counts.
+    fn look_at_walls(&mut self, simulation: &dyn Stepper<()>) {
         let Dam { tank, medium, rim, .. } = self.dam;
         let reach = LOST * medium.dx;
         let is_lost =
             |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
-        if !simulation.fluid().any(|(_, p)| is_lost(p.position)) {
-            return 0.0;
+        // Particles by their numbers are copies, which most samples do without.
+        if self.spilled.is_empty() && !simulation.fluid().any(|(_, p)| is_lost(p.position)) {
+            let speeds = simulation.fluid().map(|(_, p)| p.velocity.norm());
+            self.fastest = speeds.fold(self.fastest, f64::max);
+            self.outside = [self.outside[0].max(0.0), 0.0];
+            return;
         }
+        let mut lost = 0.0;
         let all = simulation.particles().into_iter().enumerate();
-        let lost = all.filter(|(_, p)| p.role == Role::Fluid && is_lost(p.position));
-        let (over, through): (Vec<_>, Vec<_>) =
-            lost.partition(|(_, p)| p.position.y >= rim - reach);
-        self.spilled.extend(over.into_iter().map(|(k, _)| k));
-        through.iter().filter(|(k, _)| !self.spilled.contains(k)).count() as f64
+        for (k, p) in all.filter(|(_, p)| p.role == Role::Fluid) {
+            let is_lost = is_lost(p.position);
+            if is_lost && p.position.y >= rim - reach {
+                self.spilled.insert(k);
+            }
+            if !self.spilled.contains(&k) {
+                lost += f64::from(is_lost);
+                self.fastest = self.fastest.max(p.velocity.norm());
+            }
+        }
+        self.outside = [self.outside[0].max(lost), lost];
     }
 
     /// Metrics that need no reference, and the series.
@@ -143,7 +132,10 @@ impl<'a> Samples<'a> {
         let [columns, rows] = self.dam.counts;
         record.put(metrics::SPILLED, self.spilled.len() as f64 / (columns * rows) as f64);
         record.put(metrics::MACH, self.fastest / self.dam.medium.eos.sound_speed);
-        record.profiles.insert("series".into(), Profile::of_rows(&SERIES, &self.rows));
+        let [front, height, one, two, three, four] =
+            ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));
+        let columns = [("t", "s"), front, height, one, two, three, four];
+        record.profiles.insert("series".into(), Profile::of_rows(&columns, &self.rows));
     }
 }
 
@@ -256,28 +248,26 @@ impl Observer<()> for Gauge {
 }
 
 #[cfg(test)]
-impl<'a> Samples<'a> {
-    /// Samples with these t, front, residual height and levels at each time \[s, m\].
-    pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 7]>) -> Self {
-        Self { rows: rows.collect(), ..Self::new(dam) }
-    }
-}
-
-#[cfg(test)]
-impl Gauge {
-    /// A gauge that has read these t \[s\] and pressures \[Pa\].
-    pub fn made_up(dam: &Dam, rows: Vec<[f64; 5]>) -> Self {
-        Self { eos: dam.medium.eos, reach: 0.0, sensors: Vec::new(), rows }
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use super::*;
     use crate::dam_break::lobovsky;
     use harness::{context::Context, method::Parts};
     use maths::metrics::budget::Metered;
     use solver::{Particle, Smoothing, WendlandC2};
+
+    impl<'a> Samples<'a> {
+        /// Samples with these t, front, residual height and levels at each time \[s, m\].
+        pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 7]>) -> Self {
+            Self { rows: rows.collect(), ..Self::new(dam) }
+        }
+    }
+
+    impl Gauge {
+        /// A gauge that has read these t \[s\] and pressures \[Pa\].
+        pub fn made_up(dam: &Dam, rows: Vec<[f64; 5]>) -> Self {
+            Self { eos: dam.medium.eos, reach: 0.0, sensors: Vec::new(), rows }
+        }
+    }
 
     /// A simulation of these particles in place of those of a dam break, without walls.
     fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {

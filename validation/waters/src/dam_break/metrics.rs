@@ -54,8 +54,6 @@ base::metrics! {
     ARRIVAL = "arrival" ["-"]
         "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
     PEAK = "peak_P1" ["-"] "largest pressure on P1/(rho g H), means over 0.01 (H/g)^(1/2)";
-    NOISE = "pressure_noise" ["-"]
-        "rms distance of P2/(rho g H) from its running mean over 0.101 (H/g)^(1/2)";
 }
 
 /// A metric of each of four probes or sensors.

@@ -1,7 +1,7 @@
 //! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
 //! them: from the model it is an error of the method.
 
-use base::reference::{Reference as Package, ReferenceError, Table};
+use base::reference::Reference as Package;
 use std::sync::LazyLock;
 
 use super::*;
@@ -52,59 +52,63 @@ fn best_shift(pairs: &[(Points, Points)], range: f64) -> f64 {
     best
 }
 
-/// A column of a table over another one.
-fn curve(table: &Table, t: &str, y: &str) -> Result<Points, ReferenceError> {
-    Ok(table.select(&[], [t, y])?.into_iter().map(<(f64, f64)>::from).collect())
-}
-
-/// Four columns of a table over its times.
-fn four(table: &Table, names: [&str; 4]) -> Result<[Points; 4], ReferenceError> {
-    let [a, b, c, d] = names.map(|name| curve(table, "t", name));
-    Ok([a?, b?, c?, d?])
-}
-
 /// Front (T, Z) and residual height (τ, η) of Martin & Moyce. Packages are embedded and checked by a test.
 pub static MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
-    let load = || {
-        let package = Package::load("dambreak_martin_moyce")?;
-        let front = curve(package.table("front")?, "T", "Z")?;
-        Ok::<_, ReferenceError>([front, curve(package.table("height")?, "tau", "H")?])
-    };
-    load().unwrap_or_default()
+    [("front", ["T", "Z"]), ("height", ["tau", "H"])]
+        .map(|(table, columns)| Package::curve("dambreak_martin_moyce", table, columns, &[]))
 });
 
-/// The experiment of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
-#[derive(Default)]
-pub struct Lobovsky {
-    /// x of the tip from the gate.
+/// Z over T and residual height \[H\] of that column by volume of fluid.
+pub static MODEL_OF_MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
+    let [front, height] = ["front", "height"].map(|name| of_model("martin_moyce", name));
+    // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
+    [front.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect(), height]
+});
+
+/// Curves of the tank of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
+pub struct OfTank {
+    /// x of the front, measured from the gate and computed from the back wall.
     pub front: Points,
     /// Levels at H1 to H4: each series there is.
     pub levels: [Vec<Points>; 4],
     /// P1 to P4.
     pub pressure: [Points; 4],
-    /// The second sensor at the height of P2.
-    pub aside: Points,
 }
 
-/// It.
-pub static LOBOVSKY: LazyLock<Lobovsky> = LazyLock::new(|| Lobovsky::load().unwrap_or_default());
+const MEASURED: &str = "dambreak_lobovsky";
 
-impl Lobovsky {
-    fn load() -> Result<Self, ReferenceError> {
-        let package = Package::load("dambreak_lobovsky")?;
-        let (levels, pressure) = (package.table("levels")?, package.table("pressure")?);
-        // One series of H1 and two of the others.
-        let first = four(levels, ["H1_1", "H2_1", "H3_1", "H4_1"])?;
-        let mut levels_of = first.map(|series| vec![series]);
-        for (k, name) in [(1, "H2_2"), (2, "H3_2"), (3, "H4_2")] {
-            levels_of[k].push(curve(levels, "t", name)?);
+/// The experiment: one series of the level at H1 and two of the others.
+pub static LOBOVSKY: LazyLock<OfTank> = LazyLock::new(|| {
+    let levels: [&[&str]; 4] = [&["H1_1"], &["H2_1", "H2_2"], &["H3_1", "H3_2"], &["H4_1", "H4_2"]];
+    OfTank::read(MEASURED, Package::curve(MEASURED, "front", ["t", "x"], &[]), levels)
+});
+
+/// The pressure on the second sensor at the height of P2.
+pub fn aside() -> Points {
+    Package::curve(MEASURED, "pressure", ["t", "P2L"], &[])
+}
+
+const COMPUTED: &str = "dam_break_vof";
+
+/// The same by volume of fluid.
+pub static MODEL: LazyLock<OfTank> = LazyLock::new(|| {
+    let levels: [&[&str]; 4] = [&["H1"], &["H2"], &["H3"], &["H4"]];
+    OfTank::read(COMPUTED, of_model("lobovsky", "front"), levels)
+});
+
+/// A history of a scene by volume of fluid.
+fn of_model(scene: &str, name: &str) -> Points {
+    Package::curve(COMPUTED, "series", ["t", name], &[("scene", scene)])
+}
+
+impl OfTank {
+    fn read(package: &str, front: Points, levels: [&[&str]; 4]) -> Self {
+        let curve = |table: &str, name: &str| Package::curve(package, table, ["t", name], &[]);
+        Self {
+            front,
+            levels: levels.map(|of| of.iter().map(|series| curve("levels", series)).collect()),
+            pressure: ["P1", "P2", "P3", "P4"].map(|sensor| curve("pressure", sensor)),
         }
-        Ok(Self {
-            front: curve(package.table("front")?, "t", "x")?,
-            levels: levels_of,
-            pressure: four(pressure, ["P1", "P2", "P3", "P4"])?,
-            aside: curve(pressure, "t", "P2L")?,
-        })
     }
 
     /// The mean of the series at a probe, until t.
@@ -117,72 +121,40 @@ impl Lobovsky {
     }
 }
 
-/// The reference, in units of H, (H/g)^(1/2) and ρ g H unless it is said otherwise.
-#[derive(Default)]
-pub struct VolumeOfFluid {
-    /// Front Z \[a\] over T, and residual height, of the column of Martin & Moyce.
-    pub free: [Points; 2],
-    /// Front in the tank of Lobovsky et al., from the back wall.
-    pub front: Points,
-    /// Levels at H1 to H4.
-    pub levels: [Points; 4],
-    /// P1 to P4.
-    pub pressure: [Points; 4],
-}
-
-/// It.
-pub static MODEL: LazyLock<VolumeOfFluid> =
-    LazyLock::new(|| VolumeOfFluid::load().unwrap_or_default());
-
-impl VolumeOfFluid {
-    fn load() -> Result<Self, ReferenceError> {
-        let package = Package::load("dam_break_vof")?;
-        let series = package.table("series")?;
-        let of = |scene: &str, name: &str| -> Result<Points, ReferenceError> {
-            let rows = series.select(&[("scene", scene)], ["t", name])?;
-            Ok(rows.into_iter().map(<(f64, f64)>::from).collect())
-        };
-        let scene = "martin_moyce";
-        // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
-        let free = of(scene, "front")?.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect();
-        Ok(Self {
-            free: [free, of(scene, "height")?],
-            front: of("lobovsky", "front")?,
-            levels: four(package.table("levels")?, ["H1", "H2", "H3", "H4"])?,
-            pressure: four(package.table("pressure")?, ["P1", "P2", "P3", "P4"])?,
-        })
-    }
+/// A column of a profile of a run over time, each in a unit.
+fn history(record: &Record, profile: &str, name: &str, units: [f64; 2]) -> Points {
+    let points = record.column(profile, "t").iter().zip(record.column(profile, name));
+    points.map(|(t, y)| (t / units[0], y / units[1])).collect()
 }
 
 /// Z over T of a run of the column of Martin & Moyce.
 pub fn front(record: &Record) -> Points {
     let DamSettings { width: a, gravity: g, .. } = record.settings_as();
-    water::curve(record, "series", ["t", "front"], [(0.5 * a / g).sqrt(), a])
+    history(record, "series", "front", [(0.5 * a / g).sqrt(), a])
 }
 
 /// The residual height \[H\] over time in a unit \[s\].
 pub fn height(record: &Record, unit: f64) -> Points {
     let height = record.settings_as::<DamSettings>().height;
-    water::curve(record, "series", ["t", "height"], [unit, height])
+    history(record, "series", "height", [unit, height])
 }
 
 /// The front in the tank \[H\] over time \[(H/g)^(1/2)\], from a place \[m\].
 pub fn front_from(record: &Record, place: f64) -> Points {
     let s: DamSettings = record.settings_as();
-    let front = water::curve(record, "series", ["t", "front"], [s.unit_time(), 1.0]);
+    let front = history(record, "series", "front", [s.unit_time(), 1.0]);
     front.into_iter().map(|(t, x)| (t, (x - place) / s.height)).collect()
 }
 
 /// The level at a probe \[H\] over time \[(H/g)^(1/2)\].
 pub fn depth(record: &Record, probe: usize) -> Points {
     let s: DamSettings = record.settings_as();
-    let name = format!("H{}", probe + 1);
-    water::curve(record, "series", ["t", &name], [s.unit_time(), s.height])
+    history(record, "series", &format!("H{}", probe + 1), [s.unit_time(), s.height])
 }
 
 /// The pressure on a sensor \[ρ g H\] over time \[(H/g)^(1/2)\].
 pub fn pressure(record: &Record, sensor: usize) -> Points {
-    water::curve(record, "pressure", ["t", &format!("P{}", sensor + 1)], [1.0, 1.0])
+    history(record, "pressure", &format!("P{}", sensor + 1), [1.0, 1.0])
 }
 
 /// T = t (2g/a)^(1/2) at which the fronts of the column of Martin & Moyce are compared.
@@ -196,9 +168,6 @@ const ARRIVED: f64 = 0.1;
 /// Impulses are counted for this long after the arrival \[(H/g)^(1/2)\]: the jet has risen, and the
 /// wave that it falls back into has not yet closed over air.
 pub const WINDOWS: [f64; 2] = [1.0, 2.5];
-/// Width of the running mean that noise is the distance from \[(H/g)^(1/2)\]; not a whole number of
-/// blocks, so that no rounding error decides whether a block belongs to it.
-const SMOOTH: f64 = 0.101;
 
 /// When a wave with this pressure on P1 \[ρ g H\] arrives.
 pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
@@ -222,17 +191,6 @@ pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
     let inside = curve.iter().filter(|(t, _)| (from..=to).contains(t));
     let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
     sum / count
-}
-
-/// rms distance of a curve from its running mean, from t = `from` on.
-fn noise(pressure: &[(f64, f64)], from: f64) -> f64 {
-    let later: Vec<(f64, f64)> = pressure.iter().filter(|(t, _)| *t >= from).copied().collect();
-    let square = |(t, p): &(f64, f64)| {
-        let near = later.iter().filter(|(other, _)| (other - t).abs() <= 0.5 * SMOOTH);
-        let (sum, count) = near.fold((0.0, 0.0), |(s, n), (_, p)| (s + p, n + 1.0));
-        (p - sum / count).powi(2)
-    };
-    (later.iter().map(square).sum::<f64>() / later.len() as f64).sqrt()
 }
 
 /// Why a metric of a time that a run does not reach is absent.
@@ -298,19 +256,18 @@ fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
     let height_of = |unit| height(record, unit);
     let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
     let [measured_front, measured_height] = &*MARTIN_MOYCE;
-    let within = |measured: &Points, computed: &Points| until(measured, end_of(computed));
     let reached = end_of(&front);
     for t in FREE_TIMES {
-        let away = || value(&front, t) - value(&MODEL.free[0], t);
+        let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE[0], t);
         put_if_reached(record, FRONT_AWAY.at(t), [reached, t], away);
     }
-    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL.free[1], s.end), 0.0));
+    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
     for (t, ..) in PEERS {
         put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
     }
-    let measured = within(measured_front, &front);
+    let measured = until(measured_front, reached);
     put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
-    let measured = within(measured_height, &height);
+    let measured = until(measured_height, end_of(&height));
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
     put_distance(record, HEIGHT, &[(height, measured)], 1.0, what);
@@ -325,7 +282,7 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
     let pair = |k| (depth(record, k), LOBOVSKY.level(k, s.end));
     let pairs = [0, 1, 2, 3].map(pair);
     for (k, (computed, _)) in pairs.iter().enumerate() {
-        let model = until(&MODEL.levels[k], LEVELS_UNTIL.min(s.end));
+        let model = MODEL.level(k, LEVELS_UNTIL.min(s.end));
         record.put(LEVEL_AWAY[k], rms(computed, &model, 0.0));
     }
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
@@ -345,8 +302,6 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
         }
     }
     record.put(PEAK, pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max));
-    let later = ours + WINDOWS[0];
-    put_if_reached(record, NOISE, [reached, later], || noise(&pressures[1], later));
 }
 
 #[cfg(test)]
@@ -392,25 +347,13 @@ mod tests {
         let at = arrival(&LOBOVSKY.pressure[0]);
         assert!((at - 2.443).abs() < 2e-3, "{at}");
         let spread = |window: f64| {
-            impulse(&LOBOVSKY.aside, at, window) / impulse(&LOBOVSKY.pressure[1], at, window) - 1.0
+            impulse(&aside(), at, window) / impulse(&LOBOVSKY.pressure[1], at, window) - 1.0
         };
         let [short, long] = WINDOWS.map(spread);
         assert!(
             (short + IMPULSE_SPREAD).abs() < 5e-4 && (long + 0.135).abs() < 1e-3,
             "{short} {long}"
         );
-    }
-
-    #[test]
-    fn noise_is_what_a_running_mean_leaves() {
-        // The mean over five points of alternating sign has a fifth of their amplitude.
-        let curve = |amplitude: f64| -> Points {
-            let sign = |k: u32| if k.is_multiple_of(2) { amplitude } else { -amplitude };
-            (0..1000).map(|k| (0.02 * f64::from(k) + 0.001, sign(k))).collect()
-        };
-        assert!(noise(&curve(0.0), 0.0) < 1e-12);
-        let left = noise(&curve(0.5), 0.0);
-        assert!((left - 0.4).abs() < 1e-3, "{left}");
     }
 
     /// The metrics that a comparison of these samples (t, front, height, levels) and pressures puts.
@@ -488,21 +431,17 @@ mod tests {
         let all = levels.iter().map(of_level).sum::<f64>() / points as f64;
         is(metric(LEVELS.rms.into()) / all.sqrt(), 0.05, 5e-4);
         is(metric(FRONT.rms.into()), 0.0, 1e-3);
-        let p2: Points =
-            rows.chunks(10).map(|rows| (mean(rows, 0) / unit, mean(rows, 2) / scale)).collect();
-        let left = noise(&p2, metric(ARRIVAL.into()) + 1.0);
-        is(metric(NOISE.into()) / left, 1.0, 0.01);
     }
 
     /// The numbers of the reference's README.
     #[test]
     fn the_reference_is_read_in_the_units_of_the_cases() {
         for (t, z) in [(1.0, 1.548), (2.0, 2.662), (3.0, 4.099)] {
-            is(value(&MODEL.free[0], t), z, 1e-3);
+            is(value(&MODEL_OF_MARTIN_MOYCE[0], t), z, 1e-3);
         }
-        is(value(&MODEL.free[1], 1.5), 0.4638, 1e-3);
+        is(value(&MODEL_OF_MARTIN_MOYCE[1], 1.5), 0.4638, 1e-3);
         is(value(&MODEL.front, 2.0), 4.649, 1e-3);
-        is(value(&MODEL.levels[3], 4.0), 0.1751, 1e-3);
+        is(value(&MODEL.levels[3][0], 4.0), 0.1751, 1e-3);
         let at = arrival(&MODEL.pressure[0]);
         is(at, 2.37, 0.01);
         for (k, expected) in [1.581, 1.293, 0.912, 0.116].into_iter().enumerate() {
@@ -517,8 +456,8 @@ mod tests {
         let of = &dam.settings;
         let row = |k: u32| {
             let t = 0.002 * f64::from(k);
-            let front = of.width * (0.03 + value(&MODEL.free[0], 2.0 * t));
-            let height = of.height * (0.02 + value(&MODEL.free[1], t));
+            let front = of.width * (0.03 + value(&MODEL_OF_MARTIN_MOYCE[0], 2.0 * t));
+            let height = of.height * (0.02 + value(&MODEL_OF_MARTIN_MOYCE[1], t));
             [t * of.unit_time(), front, height, 0.0, 0.0, 0.0, 0.0]
         };
         let metric = compared(&dam, (0..900).map(row), Vec::new());
@@ -533,7 +472,7 @@ mod tests {
         let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
         let row = |k: u32| {
             let t = 0.01 * f64::from(k);
-            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&MODEL.levels[k], t));
+            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&MODEL.levels[k][0], t));
             let front = h * (0.03 + value(&MODEL.front, t));
             [t * unit, front, 0.0, level(0), level(1), level(2), level(3)]
         };

@@ -1,7 +1,5 @@
 //! One run of the collapse: scene, stepping, record.
 
-use std::collections::BTreeMap;
-
 use super::{
     measure::{Gauge, Samples},
     *,
@@ -13,8 +11,8 @@ pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
     rules: |method, settings| Ok(Dam::new(settings, method, &Context::of_rules())?.rules),
 };
 
-/// Times at which particles are kept for pictures, shares of the run.
-pub const PICTURES: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
+/// When particles are kept for a picture, as a share of the run: the jet has risen at the far wall.
+pub const PICTURE: f64 = 0.6;
 
 /// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are summed over them,
 /// and those of an impact last as long as sound takes across a few smoothing lengths. With 0.015
@@ -44,25 +42,25 @@ fn run(
     let Dam { settings, medium, rules, .. } = dam;
     let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
     let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
-    let mut ledger = context.measures_all().then(|| Ledger::new(medium));
+    let (is_balanced, mut ledger) = (context.measures_all(), Ledger::new(medium));
     let mut samples = Samples::new(dam);
     let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
     let filled = water_mass(&simulation.particles());
-    let (times, shares) = stops(dam, context);
-    let is_balanced = ledger.is_some();
-    let mut seen = (&mut gauge, &mut samples, ledger.as_mut_slice(), &mut record);
+    let (times, pictured) = stops(dam);
+    let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
         .at_if(is_balanced, "energy ledger and momentum", &|(_, _, ledger, _), s, _| {
-            ledger.iter_mut().for_each(|ledger| ledger.sample(s));
+            ledger.sample(s)
         })
-        .at_positions("pictures", &|(.., record), s, k| {
-            if let Some(share) = shares.get(&k) {
-                let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
+        .at_positions("picture", &|(.., record), s, k| {
+            if context.keep_particles && k == pictured {
+                // A few drops that meet have many times the pressure of the water.
+                let share = |p: f64| (p / dam.unit_pressure()).clamp(0.0, 1.0);
+                let value = |p: &Evolved<()>| share(medium.eos.pressure(p.density));
                 let fluid = s.fluid().map(|(_, p)| (p.position / settings.height, value(p)));
-                let name = format!("particles@{share}");
-                pictures::keep(record, &name, "H", ("p", "rho g H"), fluid);
+                pictures::keep(record, pictures::END, "H", ("p", "rho g H"), fluid);
             }
         })
         .run(context)?;
@@ -72,16 +70,12 @@ fn run(
     let mass = water_mass(&particles);
     samples.measure(&mut record);
     record.put(MASS_ERROR, (mass / filled - 1.0).abs());
-    match &ledger {
-        Some(ledger) => {
-            let fall = settings.gravity * settings.height;
-            let of_what = "M g H/2, the potential energy of the column";
-            ledger.measure(0.5 * mass * settings.gravity * settings.height, of_what, &mut record);
-            let gap = ledger.unexplained_momentum() / (mass * fall.sqrt());
-            record.put(MOMENTUM_GAP, gap);
-        }
-        None => record.leave_unasked(COSTLY),
-    }
+    let of_what = "M g H/2, the potential energy of the column";
+    let column = 0.5 * mass * settings.gravity * settings.height;
+    ledger.measure(column, of_what, context, &mut record);
+    let fall = settings.gravity * settings.height;
+    let gap = ledger.unexplained_momentum() / (mass * fall.sqrt());
+    record.put_or(MOMENTUM_GAP, is_balanced.then_some(gap), NOT_ASKED);
     if record.status == Status::Completed {
         if dam.is_lobovsky() {
             gauge.measure(dam, &mut record);
@@ -98,9 +92,9 @@ fn water_mass(particles: &[Particle]) -> f64 {
     particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum()
 }
 
-/// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and the
-/// samples that are pictures, by their share of the run.
-fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
+/// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and which of
+/// them is that of the picture.
+fn stops(dam: &Dam) -> (Vec<f64>, usize) {
     let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt());
     let (h, eos) = (dam.medium.h, dam.medium.eos);
     let crossing = SAMPLE * h / (eos.sound_speed + dam.speed);
@@ -108,10 +102,7 @@ fn stops(dam: &Dam, context: &Context) -> (Vec<f64>, BTreeMap<usize, f64>) {
     let count = (end / every - 0.5).floor().max(0.0) as usize;
     let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
     times.push(end);
-    let last = times.len() - 1;
-    let nearest = |share: f64| ((share * end / every).round() as usize).min(last);
-    let pictures = context.keep_particles.then_some(PICTURES).into_iter().flatten();
-    (times, pictures.map(|share| (nearest(share), share)).collect())
+    (times, (PICTURE * end / every).round() as usize)
 }
 
 #[cfg(test)]

@@ -121,21 +121,20 @@ impl Dam {
 }
 
 #[cfg(test)]
-impl Dam {
-    /// The numbers of a run of `modern` with settings changed.
-    pub fn changed(set: impl FnOnce(&mut DamSettings)) -> Result<Self, RunError> {
-        let settings = super::DAM_BREAK.chosen("modern", set);
-        Self::new(&settings, &schemes::water::modern(), &Context::default())
-    }
-}
-
-#[cfg(test)]
 mod tests {
     use harness::case::Case;
 
     use super::*;
     use crate::dam_break::{DAM_BREAK, lobovsky};
     use schemes::water;
+
+    impl Dam {
+        /// The numbers of a run of `modern` with settings changed.
+        pub fn changed(set: impl FnOnce(&mut DamSettings)) -> Result<Self, RunError> {
+            let settings = DAM_BREAK.chosen("modern", set);
+            Self::new(&settings, &water::modern(), &Context::default())
+        }
+    }
 
     /// Particles that sank through the floor were lost, which only the metric `outside` told.
     #[test]

@@ -2,7 +2,7 @@
 //! momentum against the impulse of walls and gravity.
 
 use base::record::{MetricKey, Profile, Record};
-use harness::method::Medium;
+use harness::{context::Context, method::Medium};
 use maths::metrics::{
     budget::{Metered, Powers},
     energy::{Energy, Water, water_slope},
@@ -105,8 +105,11 @@ impl Ledger {
         self.rows.iter().map(|row| (balance(row) - start).abs()).fold(0.0, f64::max)
     }
 
-    /// Metrics relative to a scale \[J/m\], and the series.
-    pub fn measure(&self, scale: f64, of_what: &str, record: &mut Record) {
+    /// Metrics relative to a scale \[J/m\], and the series, if all that costs pair sweeps is asked for.
+    pub fn measure(&self, scale: f64, of_what: &str, context: &Context, record: &mut Record) {
+        if !context.measures_all() {
+            return record.leave_unasked(&METRICS);
+        }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
         for (k, work) in WORKS.into_iter().enumerate() {
             record.put(work.of(of_what), self.rows.last().map_or(0.0, |row| row[4 + k]) / scale);
@@ -125,7 +128,8 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::{context::Context, method::Parts};
+    use base::spec::Measure;
+    use harness::method::Parts;
     use schemes::water::modern;
     use solver::{Domain, Particle, Tait};
 
@@ -172,7 +176,8 @@ mod tests {
         assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
-        ledger.measure(50.0, "it", &mut record);
+        let context = Context { measure: Measure::All, ..Context::default() };
+        ledger.measure(50.0, "it", &context, &mut record);
         let gap = record.value(ENERGY_GAP).expect("a metric");
         assert!((gap - 27.0 / 50.0).abs() < 1e-12);
         // Each term at a power that rises at a rate of its own for 3 s.
@@ -183,7 +188,7 @@ mod tests {
             ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e]);
             ledger.powers = powers;
         }
-        ledger.measure(50.0, "it", &mut record);
+        ledger.measure(50.0, "it", &context, &mut record);
         for (k, metric) in WORKS.into_iter().enumerate() {
             let work = record.value(metric).expect("a metric");
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");

@@ -3,7 +3,6 @@
 
 pub mod ledger;
 
-use base::record::Record;
 use harness::{
     limits::Limits,
     method::{FirstRow, Medium, Method},
@@ -43,17 +42,6 @@ pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector
             tank.rows_behind(support).into_iter().map(|place| (place, Role::Wall)).collect()
         }
     }
-}
-
-/// A column of a profile over another one, each in a unit.
-pub fn curve(
-    record: &Record,
-    profile: &str,
-    [x, y]: [&str; 2],
-    units: [f64; 2],
-) -> Vec<(f64, f64)> {
-    let points = record.column(profile, x).iter().zip(record.column(profile, y));
-    points.map(|(x, y)| (x / units[0], y / units[1])).collect()
 }
 
 /// Declares the settings of a case of water: its own, then those that every such case has, and what follows
