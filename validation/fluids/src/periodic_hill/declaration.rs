@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use super::{BEST, CASE, HillSettings, NAME, SINGLE_SWEEP, measure::*, plan::*, reference::*};
+use super::{BEST, CASE, HillSettings, NAME, measure::*, plan::*, reference::*};
 use base::{gate::*, mutation::Constant, record::*};
 use harness::{
     case::*, columns::Columns, declare::*, pictures, runs::Runs, studies::causes::*, study::Study,
@@ -77,7 +77,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let level = |s: &HillSettings| (1.0 / s.n as f64, format!("H/dx = {}", s.n));
     let mut variants = vec!["interface-wall", BEST];
     if tier == Tier::Full {
-        variants.extend(["modern", "consistent", SINGLE_SWEEP]);
+        variants.extend(["modern", "consistent"]);
     }
     let ladders = variants.into_iter();
     let mut ladders: Vec<_> = ladders.map(|of| table.ladder(&[For::Ladder], of, level)).collect();
