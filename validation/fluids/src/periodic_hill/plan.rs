@@ -68,7 +68,7 @@ pub fn table(tier: Tier) -> Table {
     let fine = if tier == Tier::Quick { 10 } else { 20 };
     for Row { group, settings: HillSettings { n, end, .. }, run, .. } in &mut table.rows {
         run.seconds = 0.4 * *end * (*n as f64 / 10.0).powi(3);
-        if matches!(group, For::Figures | For::Ladder) && *n >= fine {
+        if *group == For::Figures && *n >= fine {
             run.spec = run.spec.clone().keep_particles();
         }
     }

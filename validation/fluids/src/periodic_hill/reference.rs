@@ -38,8 +38,6 @@ pub struct Reference {
     starts: Vec<Station>,
     /// x \[H\], shear stress on the hill, on the lid \[ρ U_b²\].
     pub wall: Vec<[f64; 3]>,
-    /// The line between bubble and stream \[H\]; empty where the flow does not separate.
-    pub line: Vec<(f64, f64)>,
     re: f64,
     /// Root mean square of the uncertainty of u over all points of the profiles \[U_b\].
     pub uncertainty: f64,
@@ -59,7 +57,6 @@ impl Reference {
     fn read(re: f64) -> Result<Self, ReferenceError> {
         let package = Package::load("periodic_hill")?;
         let wall = rows(package, "wall", re, ["x", "hill_shear", "lid_shear"])?;
-        let line = rows(package, "line", re, ["x", "y"])?;
         let profiles = rows(package, "profiles", re, ["x", "y", "u", "v"])?;
         let uncertainty = rows(package, "profiles", re, ["u_uncertainty"])?;
         let hill = Hill::new(1.0)?;
@@ -70,7 +67,6 @@ impl Reference {
             stations: stations(&profiles),
             starts: stations(&starts),
             wall,
-            line: line.into_iter().map(|[x, y]| (x, y)).collect(),
             re,
             uncertainty: rms(uncertainty.into_iter().map(|[u]| u)),
         })

@@ -1,10 +1,10 @@
-//! What the studies that every case has are made of: error through time, order, error against run time,
-//! error budget; and what only the vortices have to say: pictures, all runs.
+//! What the studies that every case has are made of: error through time, pictures, order, error against run
+//! time, error budget.
 
 use super::{BEST, CASE, NAME, VortexSettings, plan::*, run::*};
-use base::{functions::log10, gate::*, record::Record};
-use harness::{case::Tier, columns::Columns, declare::*, pictures, runs::Runs, study::Study};
-use report::{Axis, Cell, ColourMap, Figure, ParticleMap};
+use base::{gate::*, record::Record};
+use harness::{case::Tier, declare::*};
+use report::{Axis, ColourMap};
 
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
@@ -26,6 +26,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     };
     Declaration {
         curves: vec![histories(&table)],
+        pictures: vec![picture(&table)],
         budgets: budgets(&table).filter(|_| tier == Tier::Full).unwrap_or_default(),
         accuracy: vec![accuracy],
         ..Declaration::default()
@@ -89,46 +90,14 @@ fn error(record: &Record) -> Vec<(f64, f64)> {
     t.zip(error).skip(1).collect()
 }
 
-/// All of them.
-pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    vec![pictures(&table(tier), runs), all(runs)]
-}
-
-/// Every run.
-fn all(runs: &Runs) -> Study {
-    let caption = "All runs at their end, by default t = 2 L/U. The largest error is that over time. \
-                   Momentum added is the change of the total momentum over the total mass, exactly 0 in \
-                   theory.";
-    let table = Columns::of_variants()
-        .changed("settings", &CASE)
-        .ended()
-        .percent("error of the velocity", "-", L2, 1.0)
-        .percent("largest error", "-", L2_WORST, 1.0)
-        .percent("energy less exact", "-", ENERGY, 1.0)
-        .percent("error of the pressure", "-", PRESSURE_L2, 1.0)
-        .metric(["momentum added", "U"], MOMENTUM_ADDED, |v| Cell::sci(v, 2))
-        .number("nearest pair", "dx", NEAREST)
-        .table(caption, runs.simulations());
-    Study::new("taylor-green-runs", "All runs").block(table)
-}
-
 /// Particles at the end, by their error.
-fn pictures(table: &Table, runs: &Runs) -> Study {
-    let caption = "Particles in half of the periodic box of Taylor-Green vortices at t = 2 L/U, Re 100, \
-                   from the disturbed lattice, for variant `plain`, without stabilisers, and the best one, \
-                   by the logarithm of the error of the velocity, where −2 is 1 %.";
-    let mut figure = Figure::new("taylor-green-pictures", caption).columns(2);
-    for row in table.rows.iter().filter(|row| is_pictured(row)) {
-        let Some(record) = runs.completed(&row.run.spec) else { continue };
+fn picture(table: &Table) -> Picture {
+    let caption = "Particles of Taylor-Green vortices at t = 2 L/U, Re 100, from the disturbed lattice, for \
+                   variant `plain`, without stabilisers, and the best one, by the error of the velocity.";
+    let texts = ["taylor-green-pictures", "Pictures", caption];
+    let colours = ("error/exact speed [-]", ColourMap::Sequential);
+    table.picture(texts, colours, [300.0, 270.0], |row| {
         let n = row.settings.n;
-        let axis = |name: &str, end| Axis::linear(format!("{name} [L]")).range(0.0, end);
-        let points = pictures::points(record, "particles", "error").into_iter();
-        let lower = points.filter(|(_, y, _)| *y < 0.5);
-        let points = lower.map(|(x, y, error)| (x, y, log10(error.max(1e-12)))).collect();
-        let (title, label) = (format!("{}, {n} x {n}", row.variant), "log₁₀(error/exact speed)");
-        let axes = (axis("x", 1.0), axis("y", 0.5));
-        let map = ParticleMap::new(title, axes, label, ColourMap::Sequential, points);
-        figure = figure.panel(map.values(-4.0, 0.0).diameter(1.0 / n as f64));
-    }
-    Study::new("taylor-green-pictures", "Pictures").block(figure.panel_size(300.0, 170.0))
+        (format!("{}, {n} x {n}", row.variant), 1.0 / n as f64)
+    })
 }

@@ -51,18 +51,13 @@ pub fn table(tier: Tier) -> Table {
     });
     for row in &mut table.rows {
         row.run.seconds = 3.0 * (row.settings.n as f64 / 50.0).powi(3);
-        if is_pictured(row) {
+        let is_best = row.variant == BEST && row.settings.n == 50;
+        if row.group == For::Control || row.group == For::Ladder && is_best {
             row.run.spec = row.run.spec.clone().keep_particles();
         }
     }
     table.judge(gates);
     table
-}
-
-/// Are the particles of the run shown?
-pub fn is_pictured(row: &Row) -> bool {
-    let is_best = row.variant == BEST && row.settings.n == 50;
-    row.group == For::Control || row.group == For::Ladder && is_best
 }
 
 /// The run of a variant at Re 100 with the usual sound speed, from the disturbed lattice.
