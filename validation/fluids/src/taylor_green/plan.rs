@@ -13,8 +13,6 @@ pub enum For {
     Lattice,
     /// What happens without a stabiliser.
     Control,
-    /// How far it goes: other Reynolds numbers, at Re 10 to the same decay.
-    Far,
 }
 
 /// The runs of a tier.
@@ -46,9 +44,6 @@ pub fn table(tier: Tier) -> Table {
     table.over(For::Ladder, &[BEST], [&[12, 17, 24, 50], &[25, 50, 100]], disturbed);
     table.over(For::Lattice, &[BEST], [&[32], &[25, 50, 100]], start(0.0));
     table.over(For::Control, &["plain"], [&[32], &[50]], disturbed);
-    table.over(For::Far, &[BEST], [&[], &[(10.0, 0.2), (1000.0, 2.0)]], |s, (re, end)| {
-        (s.re, s.end, s.perturb) = (re, end, DISTURBED);
-    });
     for row in &mut table.rows {
         row.run.seconds = 3.0 * (row.settings.n as f64 / 50.0).powi(3);
         let is_best = row.variant == BEST && row.settings.n == 50;
@@ -60,12 +55,6 @@ pub fn table(tier: Tier) -> Table {
     table
 }
 
-/// The run of a variant at Re 100 with the usual sound speed, from the disturbed lattice.
-pub fn usual<'a>(table: &'a Table, variant: &str, n: usize) -> Option<&'a Row> {
-    let mut rows = table.of(For::Ladder).chain(table.of(For::Control));
-    rows.find(|row| row.variant == variant && row.settings.n == n)
-}
-
 fn gates(row: &Row) -> Vec<Gate> {
     let (variant, n, perturb) = (row.variant, row.settings.n, row.settings.perturb);
     let run = format!("{variant}.{n}.{perturb}");
@@ -73,7 +62,6 @@ fn gates(row: &Row) -> Vec<Gate> {
     let conserved =
         CASE.gate(&run, MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Invariant, pairs);
     match row.group {
-        For::Far => Vec::new(),
         For::Control => {
             let because = "Control: without shifting, strings and voids form.";
             let control = CASE.gate(&run, L2, Bound::Below(0.02), Evidence::Analytic, because);
