@@ -200,7 +200,6 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
     let mut means = Means { means: vec![0.0; places.len()], places, dx };
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
-            .sweeps(flow.rules.sweeps())
             .at("mid-lines", &|means, simulation, _| means.sample(&simulation.particles()))
             .run(context)?;
     let mut all = simulation.particles();

@@ -4,7 +4,7 @@ use solver::{EquationOfState, Flow as Going, Particle, Stepper};
 
 use super::Setup;
 use base::functions::cos;
-use base::record::{MetricKey, Profile, Record};
+use base::record::{Profile, Record};
 use maths::metrics::norms::{l2, linf};
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
@@ -15,13 +15,9 @@ base::metrics! {
     // Relative error of the velocity; at a νt/L².
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles";
     LINF = "linf" ["-"] "max|u - u_exact|/V over particles";
-}
-const SHEAR: &str = "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
-/// Error of the slope at the lower wall; at a νt/L².
-pub const SHEAR_LOWER: MetricKey = MetricKey::new("shear_lower", "-", SHEAR);
-/// Error of the slope at the upper wall; at a νt/L².
-pub const SHEAR_UPPER: MetricKey = MetricKey::new("shear_upper", "-", SHEAR);
-base::metrics! {
+    // Error of the slope at the lower and at the upper wall; at a νt/L².
+    SHEAR_LOWER = "shear_lower" ["-"] "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
+    SHEAR_UPPER = "shear_upper" ["-"] "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
     // The largest [`L2`] once the boundary layer of the start is resolved.
     L2_WORST = "l2_worst" ["-"] "largest l2 over the times of comparison with nu t/L^2 >= 0.1";
     // Cross-flow.

@@ -74,22 +74,18 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let about = "Flow over periodic hills at Re 50 after 40 H/U_b, against finite elements at ten stations. \
                  In the quick tier at Re 10 after 10 H/U_b, when 0.3 % of U_b is left of the start.";
     let level = |s: &HillSettings| (1.0 / s.n as f64, format!("H/dx = {}", s.n));
-    let mut variants = vec!["interface-wall", BEST];
+    let mut ladders = ["interface-wall", BEST, "modern", "consistent"]
+        .map(|variant| table.ladder(&[For::Ladder], variant, level));
     if tier == Tier::Full {
-        variants.extend(["modern", "consistent"]);
-    }
-    let ladders = variants.into_iter();
-    let mut ladders: Vec<_> = ladders.map(|of| table.ladder(&[For::Ladder], of, level)).collect();
-    for ladder in ladders.iter_mut().filter(|of| of.variant == BEST && tier == Tier::Full) {
         let because = "Walls are of first order on disordered particles, sums of second.";
         let (id, bound) = (format!("{NAME}.{BEST}.50.order"), Bound::Above(1.0));
-        ladder.order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
+        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders,
+        ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
         ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
     }
 }
@@ -99,9 +95,11 @@ fn budgets() -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
                  effect of disorder.";
     let change = |what, part, variant, set: fn(&mut HillSettings)| {
-        let mut settings = CASE.chosen(variant, |s| flow(s, (50.0, 10, END, false)));
-        set(&mut settings);
-        Change::new(what, part, CASE.spec_of(variant, &settings))
+        let spec = CASE.spec(variant, |s| {
+            flow(s, (50.0, 10, END, false));
+            set(s);
+        });
+        Change::new(what, part, spec)
     };
     let mut changes = vec![
         change("none", "none", BEST, |_| {}),

@@ -4,7 +4,6 @@
 //!
 //! Judged against finite elements (`references/periodic_hill`), for nobody has published these numbers.
 
-mod control;
 mod declaration;
 mod measure;
 mod plan;

@@ -112,10 +112,8 @@ fn rows<const N: usize>(
     names: [&str; N],
 ) -> Result<Vec<[f64; N]>, ReferenceError> {
     let table = package.table(table)?;
-    let re = table.numbers("re")?;
-    let columns: Result<Vec<_>, _> = names.iter().map(|name| table.numbers(name)).collect();
-    let columns = columns?;
-    let own = (0..re.len()).filter(|&k| re[k] == reynolds);
+    let own = table.rows_of(&[("re", &reynolds.to_string())])?.into_iter();
+    let columns: Vec<_> = names.iter().map(|name| table.numbers(name)).collect::<Result<_, _>>()?;
     Ok(own.map(|k| std::array::from_fn(|j| columns[j][k])).collect())
 }
 

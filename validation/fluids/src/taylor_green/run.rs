@@ -108,7 +108,6 @@ fn run(
     let mut series = vec![[0.0, setup.error(0.0, &start)]];
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut series)
-            .sweeps(flow.rules.sweeps())
             .at("series", &|series, simulation, _| {
                 let time = simulation.time();
                 series.push([time, setup.error(time, &simulation.particles())]);
