@@ -1,6 +1,7 @@
 //! What the channel flows declare: profiles over the exact ones, ladders of resolutions, an error budget, the
 //! largest stable steps, maps and the errors of constants that gates must detect; and what only they have to
-//! say: what a step saves that viscosity does not limit, and the paper's hypotheses on waves and instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
+//! say: what a step saves that viscosity does not limit, and the paper's hypotheses on waves and instability.
+//! Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
     ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,

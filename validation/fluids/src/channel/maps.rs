@@ -166,14 +166,13 @@ pub fn study(table: &ChannelTable, runs: &Runs) -> Study {
     let of_sound = |k: usize| found.iter().map(|(_, ends)| failed(&ends[k])).sum::<usize>();
     let [low, usual, high] = [0, 1, 2].map(of_sound);
     let all: usize = found.iter().map(|(_, [_, usual, _])| usual.len()).sum();
+    let [lower, morris, higher] = SOUND;
     let words = format!(
         "**H4** (with rising Re the waves grow until the run is unstable) is supported if the gate below \
          passes; that waves are the reason is not shown. **H5** (a lower sound speed stabilises the run) is \
-         **{}**: of {all} starts fail {low} at c0 = {} V, {usual} at {} V and {high} at {} V.",
-        h5_verdict(low, high),
-        SOUND[0],
-        SOUND[1],
-        SOUND[2]
+         **{}**: of {all} starts fail {low} at c0 = {lower} V, {usual} at {morris} V and {high} at \
+         {higher} V.",
+        h5_verdict(low, high)
     );
     let title = "H4 and H5: when the seed's run becomes unstable";
     let value = first.map_or(f64::NAN, |(re, _)| *re);

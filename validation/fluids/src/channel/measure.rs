@@ -116,8 +116,8 @@ pub const WINDOW: f64 = 60.0;
 /// Name of the curve of the pressure mode; it is missing if the run was over before the window was full.
 pub const MODE: &str = "mode";
 
-/// Amplitude \[ρV²\] of the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of hypothesis
-/// H3.
+/// Amplitude \[ρV²\] of the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of
+/// hypothesis H3.
 pub fn pressure_mode(setup: &Setup, simulation: &dyn Stepper<()>) -> f64 {
     let Setup { settings: s, medium, v, .. } = setup;
     let (mut mode, mut count) = (0.0, 0.0);

@@ -1,4 +1,5 @@
-//! The settings of the channel flows, and from them to numbers: the rules for sound speed, time step and arrangement, each stated once.
+//! The settings of the channel flows, and from them to numbers: the rules for sound speed, time step and
+//! arrangement, each stated once.
 
 use base::random::Random;
 use harness::{case::*, context::Context, method::*, simulate};

@@ -15,8 +15,8 @@ pub fn runs(table: &mut ChannelTable) {
     });
 }
 
-/// The dominant period \[2L/c0\] of the mode; NaN, which fails a gate, if the run ended before there was enough
-/// to see.
+/// The dominant period \[2L/c0\] of the mode; NaN, which fails a gate, if the run ended before there was
+/// enough to see.
 fn period(record: Option<&Record>) -> f64 {
     let Some(mode) = record.and_then(|record| record.profiles.get(MODE)) else { return f64::NAN };
     let [times, values] = ["t", "amplitude"].map(|name| mode.column(name).iter().copied());

@@ -63,25 +63,21 @@ impl Controller {
 }
 
 /// Holds the flux and samples the flow through time.
-struct Monitor<'a> {
-    setup: &'a Setup,
-    area: f64,
+struct Monitor {
     controller: Controller,
     window: Window,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
 }
 
-harness::observed! {
-    Monitor<'_>: changes(controller, window, series), stays(setup, area)
-}
+harness::observed! { Monitor: changes(controller, window, series), stays() }
 
-impl Monitor<'_> {
+impl Monitor {
     /// After a stretch: the controller acts, and the flow is sampled if it is time.
-    fn look(&mut self, simulation: &mut dyn Driving, stretch: f64) {
-        let (setup, time, force) = (self.setup, simulation.time(), self.controller.force);
-        let mean = mean_velocity(simulation, self.area);
-        let flux = mean * self.area / setup.hill.period();
+    fn look(&mut self, setup: &Setup, area: f64, simulation: &mut dyn Driving, stretch: f64) {
+        let (time, force) = (simulation.time(), self.controller.force);
+        let mean = mean_velocity(simulation, area);
+        let flux = mean * area / setup.hill.period();
         let HillSettings { end, average, .. } = setup.settings;
         if is_last(time, end, average * end) {
             self.window.forces.push([force, flux]);
@@ -121,11 +117,10 @@ fn run(
     let last = mean_velocity(&*simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
-    let (window, series) = (Window::default(), vec![start]);
-    let mut monitor = Monitor { setup, area, controller, window, series };
+    let mut monitor = Monitor { controller, window: Window::default(), series: vec![start] };
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut monitor)
-            .at("controller and samples", &|monitor, s, _| monitor.look(s, stretch))
+            .at("controller and samples", &|monitor, s, _| monitor.look(setup, area, s, stretch))
             .resumed(&|monitor, simulation| {
                 // Until its first look the force is that of the scene, which may have a deliberate error.
                 if !monitor.series.is_empty() {

@@ -111,11 +111,7 @@ const LADDER: [&str; 3] = ["modern", "carried", BEST];
 
 /// Largest error of the velocity that the best variant may have with n particles a side.
 fn most_error(n: usize) -> f64 {
-    match n {
-        100 => 0.01,
-        50 => 0.02,
-        _ => 0.02 * (50.0 / n as f64).powi(2),
-    }
+    if n == 100 { 0.01 } else { 0.02 * (50.0 / n as f64).powi(2) }
 }
 
 /// The judged runs of a tier.
