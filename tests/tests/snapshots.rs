@@ -156,7 +156,6 @@ fn kept_water(case: &str) -> Vec<Kept> {
             vec![
                 (vec!["seed", "modern"], vec!["n=20"]),
                 (vec!["modern"], vec!["n=10", "n=14", LOBOVSKY]),
-                (vec!["single-sweep"], vec!["n=10"]),
             ]
         }
         _ => Vec::new(),

@@ -280,15 +280,11 @@ impl Reference {
     pub fn curve(
         name: &str,
         table: &str,
-        [x, y]: [&str; 2],
+        columns: [&str; 2],
         of: &[(&str, &str)],
     ) -> Vec<(f64, f64)> {
-        let read = || -> Result<_, ReferenceError> {
-            let table = Self::load(name)?.table(table)?;
-            let (x, y, rows) = (table.numbers(x)?, table.numbers(y)?, table.rows_of(of)?);
-            Ok(rows.into_iter().map(|row| (x[row], y[row])).collect())
-        };
-        read().unwrap_or_default()
+        let read = || Self::load(name)?.table(table)?.select(of, columns);
+        read().unwrap_or_default().into_iter().map(<(f64, f64)>::from).collect()
     }
 
     /// How far the second code is from the first, if the grade names one.

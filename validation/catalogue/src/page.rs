@@ -214,7 +214,7 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
         .text("set", |record| what(case, &record.spec()))
         .ended()
         .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
-        .steps()
+        .num(["steps", "1"], |record| Cell::count(record.cost.steps))
         .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
         .num(["stepping, alone", "s"], alone)
         .num(["stepping", "s"], |record| Cell::seconds(record.cost.cpu_s))

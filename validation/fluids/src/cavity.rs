@@ -140,49 +140,33 @@ fn velocity((place, component, _): &Place, particles: &[Particle], dx: f64) -> f
     moments.lu().solve(&sum).map_or(f64::NAN, |fitted| fitted[0])
 }
 
-/// Means at all places over the last fifth of the run.
-struct Means {
-    places: Vec<Place>,
-    dx: f64,
-    means: Vec<f64>,
-}
-
-harness::observed! { Means: changes(means), stays(places, dx) }
-
-/// Samples of the last fifth.
+/// Samples of the last fifth of the run.
 const SAMPLES: usize = 20;
 
-impl Means {
-    fn sample(&mut self, particles: &[Particle]) {
-        for (mean, place) in self.means.iter_mut().zip(&self.places) {
-            *mean += velocity(place, particles, self.dx) / SAMPLES as f64;
-        }
+/// What is measured of the means at these places over the last fifth of the run.
+fn measure(places: &[Place], means: &[f64], record: &mut Record) {
+    if places.is_empty() {
+        return record.leave_out(STRENGTH, "the reference has Re 100 and 1000");
     }
-
-    fn measure(&self, record: &mut Record) {
-        if self.places.is_empty() {
-            return record.leave_out(STRENGTH, "the reference has Re 100 and 1000");
+    let all = || means.iter().zip(places);
+    for (component, metrics) in [[U_RMS, U_GHIA], [V_RMS, V_GHIA]].into_iter().enumerate() {
+        let of = || all().filter(move |(_, place)| place.1 == component);
+        for (k, metric) in metrics.into_iter().enumerate() {
+            record.put(metric, rms(of().map(|(mean, place)| mean - place.2[k])));
         }
-        let all = || self.means.iter().zip(&self.places);
-        for (component, metrics) in [[U_RMS, U_GHIA], [V_RMS, V_GHIA]].into_iter().enumerate() {
-            let of = || all().filter(move |(_, place)| place.1 == component);
-            for (k, metric) in metrics.into_iter().enumerate() {
-                record.put(metric, rms(of().map(|(mean, place)| mean - place.2[k])));
-            }
-            let name = ["u", "v"][component];
-            let profile = Profile::default()
-                .with("place", "L", of().map(|(_, place)| place.0[1 - component]).collect())
-                .with(name, "U", of().map(|(mean, _)| *mean).collect());
-            record.profiles.insert(name.into(), profile);
-        }
-        let sum = |of: fn(f64, f64) -> f64| all().map(|(m, p)| of(*m, p.2[0])).sum::<f64>();
-        let least = |of: fn(f64, f64) -> f64| {
-            let along = all().filter(|(_, place)| place.1 == 0);
-            along.map(|(m, p)| of(*m, p.2[0])).fold(f64::INFINITY, f64::min)
-        };
-        record.put(RETURN, least(|mean, _| mean) / least(|_, exact| exact) - 1.0);
-        record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
+        let name = ["u", "v"][component];
+        let profile = Profile::default()
+            .with("place", "L", of().map(|(_, place)| place.0[1 - component]).collect())
+            .with(name, "U", of().map(|(mean, _)| *mean).collect());
+        record.profiles.insert(name.into(), profile);
     }
+    let sum = |of: fn(f64, f64) -> f64| all().map(|(m, p)| of(*m, p.2[0])).sum::<f64>();
+    let least = |of: fn(f64, f64) -> f64| {
+        let along = all().filter(|(_, place)| place.1 == 0);
+        along.map(|(m, p)| of(*m, p.2[0])).fold(f64::INFINITY, f64::min)
+    };
+    record.put(RETURN, least(|mean, _| mean) / least(|_, exact| exact) - 1.0);
+    record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
 }
 
 fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Record, RunError> {
@@ -196,16 +180,20 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
     let time = |k: usize| s.end * (0.8 + 0.2 * k as f64 / SAMPLES as f64);
     let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
-    let mut means = Means { means: vec![0.0; places.len()], places, dx };
+    let mut means = vec![0.0; places.len()];
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
-            .sweeps(flow.rules.sweeps())
-            .at("mid-lines", &|means, simulation, _| means.sample(&simulation.particles()))
+            .at("mid-lines", &|means, simulation, _| {
+                let particles = simulation.particles();
+                for (mean, place) in means.iter_mut().zip(&places) {
+                    *mean += velocity(place, &particles, dx) / SAMPLES as f64;
+                }
+            })
             .run(context)?;
     let mut all = simulation.particles();
     record.state = Some(simulate::state(&all));
     if record.status == Status::Completed {
-        means.measure(&mut record);
+        measure(&places, &means, &mut record);
         all.retain(|p| p.role == Role::Fluid);
         record.put(VOLUME, all.iter().map(|p| p.mass / p.density).sum::<f64>() / volume - 1.0);
         let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);

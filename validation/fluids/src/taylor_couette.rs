@@ -111,9 +111,6 @@ impl Cylinders {
     }
 }
 
-const PROGRAM: Program<CylinderSettings, Method> =
-    Program { run, rules: |method, s| Ok(Cylinders::new(s, method, &Context::of_rules())?.rules) };
-
 fn run(
     method: &Method,
     variant: &str,
@@ -161,7 +158,8 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
         "interface and wall particles (section 4.2 of the paper) on and behind both cylinders";
     let extrapolating =
         "wall particles behind both cylinders that extrapolate velocity and pressure";
-    Variants::of(&PROGRAM)
+    let rules = |m: &_, s: &_| Ok(Cylinders::new(s, m, &Context::of_rules())?.rules);
+    Variants::of(&Program { run, rules })
         .with(INTERFACE, interface, flow::cylinders_interface(), |_| {})
         .with(EXTRAPOLATING, extrapolating, flow::cylinders_extrapolating(), |_| {})
         .all

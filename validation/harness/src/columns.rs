@@ -115,10 +115,4 @@ impl<'a> Columns<'a, Record> {
     pub fn ended(self) -> Self {
         self.text("ended", |record| record.status.to_string())
     }
-
-    /// One more column: how many time steps.
-    #[must_use]
-    pub fn steps(self) -> Self {
-        self.num(["steps", "1"], |record| Cell::count(record.cost.steps))
-    }
 }

@@ -502,6 +502,8 @@ pub struct Picture {
     pub size: [f64; 2],
     /// The panels: runs that keep particles, their spacing in the unit of the places, and titles as labels.
     pub panels: Vec<Level>,
+    /// Lines over the particles of each panel, in the unit of the places; of panels without an entry none.
+    pub lines: Vec<Vec<Vec<(f64, f64)>>>,
 }
 
 /// One panel of curves.

@@ -2,7 +2,7 @@
 
 use base::record::{Profile, Record};
 use nalgebra::Vector2;
-use report::{Axis, Dots, Figure, Plot};
+use report::{Axis, Colour, Dots, Figure, Plot, Series};
 
 use crate::{
     declare::{Level, Picture},
@@ -34,15 +34,19 @@ pub fn points(record: &Record, profile: &str, value: &str) -> Vec<(f64, f64, f64
 
 /// The runs that are there.
 pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
-    let panel = |Level { run, spacing, label: title }: &Level| {
+    let panel = |(k, Level { run, spacing, label: title }): (usize, &Level)| {
         let record = runs.record(&run.spec)?;
         let [x, _, value] = &record.profiles.get(END)?.columns[..] else { return None };
         let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
         let points = points(record, END, &value.name);
         let (label, colours) = of.colours;
-        Some(Plot::new(title, x, y).layer(Dots::new(label, colours, *spacing, points)))
+        let plot = Plot::new(title, x, y).layer(Dots::new(label, colours, *spacing, points));
+        let lines = of.lines.get(k).into_iter().flatten();
+        let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(2.0);
+        Some(lines.map(line).fold(plot, Plot::layer))
     };
     let [id, title, caption] = of.texts;
     let figure = Figure::new(id, caption).panel_size(of.size[0], of.size[1]);
-    Study::new(id, title).block(of.panels.iter().filter_map(panel).fold(figure, Figure::panel))
+    Study::new(id, title)
+        .block(of.panels.iter().enumerate().filter_map(panel).fold(figure, Figure::panel))
 }

@@ -138,7 +138,7 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
             let (label, spacing) = panel(row);
             Level { run: row.run.clone(), spacing, label }
         });
-        Picture { texts, colours, size, panels: panels.collect() }
+        Picture { texts, colours, size, panels: panels.collect(), lines: Vec::new() }
     }
 
     /// The plan: every run with its gates.

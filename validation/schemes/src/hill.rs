@@ -44,8 +44,6 @@ methods! { driven => HillMethod:
     modern: Modern<Pairs, Stabilised, Mean>;
     /// Where shifting carries the velocity of the new place, and walls know how the velocity bends.
     carried: Modern<Carried, Stabilised, Curved>;
-    /// The same with one pair sweep a step.
-    single_sweep: Modern<Carried, Stabilised, Curved, SingleSweep>;
-    /// `carried` with sums that are exact for linear fields.
+    /// The same with sums that are exact for linear fields.
     consistent: Modern<Consistent, ConsistentDrift, Curved>;
 }

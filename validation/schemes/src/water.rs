@@ -18,8 +18,8 @@ type Diffusion = DensityDiffusion<Hydrostatic>;
 type Slipping = FluidPairs<ArtificialViscosity<Tait>>;
 type Walls = ExtrapolatingWall<Tait>;
 /// The best known settings.
-type Modern<D = (Continuity, Diffusion), W = Walls, I = Leapfrog, V = Slipping> =
-    Compose<WendlandC2, Water<(), V>, D, W, I>;
+type Modern<D = (Continuity, Diffusion), W = Walls, V = Slipping> =
+    Compose<WendlandC2, Water<(), V>, D, W, Leapfrog>;
 
 /// A method whose simulations can say what each term does to the energy.
 pub type WaterMethod = Method<(), dyn Metered<()>>;
@@ -43,13 +43,11 @@ methods! { metered => WaterMethod:
     /// The best known.
     modern: Modern;
     /// The same with artificial viscosity between water and walls too.
-    sticking: Modern<(Continuity, Diffusion), Walls, Leapfrog, ArtificialViscosity<Tait>>;
-    /// `modern` with one pair sweep a step.
-    single_sweep: Modern<(Continuity, Diffusion), Walls, SingleSweep>;
+    sticking: Modern<(Continuity, Diffusion), Walls, ArtificialViscosity<Tait>>;
     /// `modern` with the density diffusion of Molteni and Colagrossi.
     molteni: Modern<(Continuity, DensityDiffusion)>;
     /// The same without walls.
-    free: Modern<(Continuity, DensityDiffusion), Open, Leapfrog, ArtificialViscosity<Tait>>;
+    free: Modern<(Continuity, DensityDiffusion), Open, ArtificialViscosity<Tait>>;
     /// (3), (5) and (7) alone, without walls.
     plain: Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
 }

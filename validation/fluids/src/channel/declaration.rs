@@ -1,17 +1,15 @@
 //! What the channel flows declare: profiles over the exact ones, ladders of resolutions, an error budget, the
 //! largest stable steps, maps and the errors of constants that gates must detect; and what only they have to
-//! say: one rule for every Reynolds number, what a step saves that viscosity does not limit, and the paper's
-//! hypotheses on waves and instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
+//! say: what a step saves that viscosity does not limit, and the paper's hypotheses on waves and instability.
+//! Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
     ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,
 };
 use base::{gate::*, mutation::Constant, record::*, spec::*};
-use harness::{
-    case::*, columns::Columns, declare::*, runs::Runs, studies::causes::*, study::Study,
-};
+use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
 use nalgebra::Vector2;
-use report::{Axis, Cell};
+use report::Axis;
 
 /// What a flow declares.
 pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
@@ -288,30 +286,11 @@ fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
 /// The studies of a flow.
 pub fn studies(flow: Flow, tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = &plan::table(flow, tier);
-    let mut studies = vec![reynolds(flow, table, runs), stiff::study(flow, table, runs)];
+    let mut studies = vec![stiff::study(flow, table, runs)];
     if flow == Flow::Poiseuille {
         studies.extend([waves::study(table, runs), maps::study(table, runs)]);
     }
     studies
-}
-
-/// The modern variant over the Reynolds number.
-fn reynolds(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
-    let caption = "Variant `modern` at 20 rows over the Reynolds number, with the same settings. The quick \
-                   tier leaves higher Re to the full tier, in which Poiseuille flow at Re 1000 shows where \
-                   the rule breaks.";
-    let settings = |record: &Record| record.settings_as::<ChannelSettings>();
-    let shown = Columns::<Record>::default()
-        .num(["Re", "-"], move |record| Cell::exact(settings(record).re))
-        .num(["to νt/L²", "-"], move |record| Cell::exact(settings(record).end))
-        .percent("worst error from νt/L² = 0.1 on", "-", L2_WORST, 1.0)
-        .metric(["rms p", "ρV²"], P_RMS, |value| Cell::sci(value, 2))
-        .metric(["rms v", "V"], V_RMS, |value| Cell::sci(value, 2))
-        .ended()
-        .steps()
-        .table(caption, runs.records(table.specs(For::Reynolds)));
-    let id = format!("{}-reynolds", flow.case().name);
-    Study::new(&id, "One rule for every Reynolds number").block(shown)
 }
 
 #[cfg(test)]

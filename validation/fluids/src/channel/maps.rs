@@ -107,89 +107,72 @@ fn map(id: &str, title: &str, y: &str, panel: MapPanel) -> Map {
 
 /// Which of the outcomes a cell is, and its text.
 fn outcome(records: &[&Record]) -> (usize, String) {
-    let starts = Starts::of(records);
-    match (starts.failed(), starts.median()) {
-        (_, None) => (3, "refused".into()),
-        (0, Some((error, text))) => (usize::from(*error > 0.01), text.clone()),
-        (failed, Some(_)) if failed < starts.0.len() => {
-            (2, format!("{failed} of {} fail", starts.0.len()))
-        }
-        (_, Some((_, text))) => (3, text.clone()),
+    let ends = ends(records);
+    let Some(median) = ends.get(ends.len().saturating_sub(1) / 2) else {
+        return (3, "refused".into());
+    };
+    let words = match median {
+        diverged if *diverged > MOST_ERROR => format!("t = {}", sig(DIVERGED - diverged, 2)),
+        error => percent(*error, 2),
+    };
+    match failed(&ends) {
+        0 => (usize::from(*median > 0.01), words),
+        failed if failed < ends.len() => (2, format!("{failed} of {} fail", ends.len())),
+        _ => (3, words),
     }
 }
 
-/// How one run ended: how bad that is, and in words. An error is as bad as it is large, and a divergence is
-/// worse, the earlier it came.
-type Ended = (f64, String);
+/// No error counts as worse.
+const MOST_ERROR: f64 = 1e3;
+/// A divergence is worse than any error, by this much less the time at which it came.
+const DIVERGED: f64 = 1e6;
 
-/// It diverged at this νt/L².
-fn diverged(time: f64) -> Ended {
-    (1e6 - time, format!("t = {}", sig(time, 2)))
+/// How bad the ends of the runs of a cell were, the worst first: the worst relative L2 error, or, if a run
+/// diverged, more, the earlier it did. Runs that were refused are left out.
+fn ends(records: &[&Record]) -> Vec<f64> {
+    let end = |record: &&Record| match record.status {
+        // L²/ν is 1 s in these channels.
+        Status::Diverged { time, .. } => Some(DIVERGED - time),
+        Status::Refused { .. } => None,
+        _ => Some(record.value(L2_WORST).map_or(MOST_ERROR, |error| error.min(MOST_ERROR))),
+    };
+    let mut ends: Vec<f64> = records.iter().filter_map(end).collect();
+    ends.sort_by(|a, b| b.total_cmp(a));
+    ends
 }
 
-/// It reached its end with this worst relative L2 error.
-fn reached(error: f64) -> Ended {
-    (error.min(1e3), percent(error, 2)) // NaN too
+/// How many diverged, or were wrong at the end.
+fn failed(ends: &[f64]) -> usize {
+    ends.iter().filter(|end| **end > 0.05).count()
 }
 
-/// How the runs of one cell ended, worst first, without runs that were refused.
-struct Starts(Vec<Ended>);
-
-impl Starts {
-    fn of(records: &[&Record]) -> Self {
-        let ended = records.iter().filter_map(|record| match record.status {
-            // L²/ν is 1 s in these channels.
-            Status::Diverged { time, .. } => Some(diverged(time)),
-            Status::Refused { .. } => None,
-            _ => Some(reached(record.value(L2_WORST).unwrap_or(f64::NAN))),
-        });
-        Self::new(ended.collect())
-    }
-
-    fn new(mut ended: Vec<Ended>) -> Self {
-        ended.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Self(ended)
-    }
-
-    /// How many diverged, or were wrong at the end.
-    fn failed(&self) -> usize {
-        self.0.iter().filter(|(badness, _)| *badness > 0.05).count()
-    }
-
-    /// Did more than half fail? A setting that is refused from every start fails too.
-    fn mostly_fails(&self) -> bool {
-        self.0.is_empty() || 2 * self.failed() > self.0.len()
-    }
-
-    /// The middle one.
-    fn median(&self) -> Option<&Ended> {
-        self.0.get(self.0.len().saturating_sub(1) / 2)
-    }
+/// Did more than half fail? A setting that is refused from every start fails too.
+fn mostly_fails(ends: &[f64]) -> bool {
+    ends.is_empty() || 2 * failed(ends) > ends.len()
 }
 
 /// The hypotheses.
 pub fn study(table: &ChannelTable, runs: &Runs) -> Study {
-    let starts = |re, sound| Starts::of(&runs.records(of_sound(table, re, sound)));
-    let row = |re| (re, SOUND.map(|sound| starts(re, sound)));
-    let found: Vec<(f64, [Starts; 3])> = reynolds(table).into_iter().map(row).collect();
-    let first = found.iter().find(|(_, [_, usual, _])| usual.mostly_fails());
+    let ends = |re, sound| ends(&runs.records(of_sound(table, re, sound)));
+    let row = |re| (re, SOUND.map(|sound| ends(re, sound)));
+    let found: Vec<(f64, [Vec<f64>; 3])> = reynolds(table).into_iter().map(row).collect();
+    let first = found.iter().find(|(_, [_, usual, _])| mostly_fails(usual));
     let because = "H4: with the settings of `seed` and c0 = 10 V, every start holds at Re 1 and fails at \
                    Re 5, where only a perfect lattice holds (error 0.99 %, but 5.6 % with a disorder of \
                    1e-6 dx). The ends of the bound are the geometric means of 1 and 5 and of 10 and 20, so \
                    no outcome of the map lies at an end.";
     let (id, bound) = ("poiseuille.map.first-failing-re", Bound::Within(2.2, 14.0));
     let gate = Gate::new(id, "first_failing_re", bound, Evidence::Regression, because);
-    let failed = |k: usize| found.iter().map(|(_, starts)| starts[k].failed()).sum::<usize>();
-    let [low, usual, high] = [0, 1, 2].map(failed);
-    let all: usize = found.iter().map(|(_, [_, usual, _])| usual.0.len()).sum();
+    let of_sound = |k: usize| found.iter().map(|(_, ends)| failed(&ends[k])).sum::<usize>();
+    let [low, usual, high] = [0, 1, 2].map(of_sound);
+    let all: usize = found.iter().map(|(_, [_, usual, _])| usual.len()).sum();
+    let [lower, morris, higher] = SOUND;
     let words = format!(
         "**H4** (with rising Re the waves grow until the run is unstable) is supported if the gate below \
          passes; that waves are the reason is not shown. **H5** (a lower sound speed stabilises the run) is \
-         **{}**: of {all} starts fail {low} at c0 = {} V, {usual} at {} V and {high} at {} V.",
-        h5_verdict(low, high),
-        SOUND[0],
-        SOUND[1],
-        SOUND[2]
+         **{}**: of {all} starts fail {low} at c0 = {lower} V, {usual} at {morris} V and {high} at \
+         {higher} V.",
+        h5_verdict(low, high)
     );
     let title = "H4 and H5: when the seed's run becomes unstable";
     let value = first.map_or(f64::NAN, |(re, _)| *re);
@@ -209,19 +192,36 @@ fn h5_verdict(low: usize, high: usize) -> &'static str {
 mod tests {
     use super::*;
 
+    /// A record that ended so: with this worst error, or by divergence at this νt/L².
+    fn record(end: Result<f64, f64>) -> Record {
+        let mut record = Record::new("poiseuille", "seed", serde_json::Value::Null, 1);
+        match end {
+            Ok(error) => record.put(L2_WORST, error),
+            Err(time) => {
+                let (field, value_text) = ("density".into(), "NaN".into());
+                record.status = Status::Diverged { step: 1, time, particle: 0, field, value_text };
+            }
+        }
+        record
+    }
+
     #[test]
     fn the_median_and_the_count_of_failures_use_one_criterion() {
-        let starts = Starts::new(vec![reached(0.004), diverged(0.7), reached(0.08)]);
-        assert_eq!((starts.failed(), starts.median()), (2, Some(&reached(0.08))));
-        assert!(starts.mostly_fails());
-        let starts = Starts::new(vec![reached(0.004), diverged(0.7), diverged(0.5)]);
-        assert_eq!((starts.failed(), starts.median()), (2, Some(&diverged(0.7))));
-        assert_eq!(starts.median().map(|(_, text)| text.as_str()), Some("t = 0.70"));
-        assert!(!Starts::new(vec![reached(0.01), reached(0.01), diverged(0.5)]).mostly_fails());
-        let not_measured = Starts::new(vec![reached(f64::NAN)]);
-        assert!(not_measured.failed() == 1 && Starts::new(Vec::new()).mostly_fails());
-        let wrong = Starts::new(vec![reached(0.2), reached(f64::NAN), reached(0.01)]);
-        assert_eq!((wrong.failed(), wrong.median()), (2, Some(&reached(0.2))));
+        let of = |all: &[Result<f64, f64>]| {
+            let records: Vec<Record> = all.iter().copied().map(record).collect();
+            let records: Vec<&Record> = records.iter().collect();
+            let ends = ends(&records);
+            let (class, words) = outcome(&records);
+            (failed(&ends), mostly_fails(&ends), class, words)
+        };
+        let text = |words: &str| words.to_string();
+        assert_eq!(of(&[Ok(0.004), Err(0.7), Ok(0.08)]), (2, true, 2, text("2 of 3 fail")));
+        assert_eq!(of(&[Err(0.4), Err(0.7), Err(0.5)]), (3, true, 3, text("t = 0.50")));
+        assert_eq!(of(&[Ok(0.2), Ok(f64::NAN), Err(0.5)]), (3, true, 3, percent(1e3, 2)));
+        assert_eq!(of(&[Ok(0.01), Ok(0.01), Err(0.5)]), (1, false, 2, text("1 of 3 fail")));
+        assert_eq!(of(&[Ok(0.2), Ok(0.06), Ok(0.07)]), (3, true, 3, percent(0.07, 2)));
+        assert_eq!(of(&[Ok(0.004), Ok(0.02), Ok(0.03)]), (0, false, 1, percent(0.02, 2)));
+        assert_eq!(of(&[]), (0, true, 3, text("refused")));
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! What is measured in a channel flow, each norm with its formula.
 
-use solver::{EquationOfState, Flow as Going, Particle, Stepper};
+use solver::{EquationOfState, Particle, Stepper};
 
 use super::Setup;
 use base::functions::cos;
-use base::record::{MetricKey, Profile, Record};
+use base::record::{Profile, Record};
 use maths::metrics::norms::{l2, linf};
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
@@ -15,13 +15,9 @@ base::metrics! {
     // Relative error of the velocity; at a νt/L².
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles";
     LINF = "linf" ["-"] "max|u - u_exact|/V over particles";
-}
-const SHEAR: &str = "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
-/// Error of the slope at the lower wall; at a νt/L².
-pub const SHEAR_LOWER: MetricKey = MetricKey::new("shear_lower", "-", SHEAR);
-/// Error of the slope at the upper wall; at a νt/L².
-pub const SHEAR_UPPER: MetricKey = MetricKey::new("shear_upper", "-", SHEAR);
-base::metrics! {
+    // Error of the slope at the lower and at the upper wall; at a νt/L².
+    SHEAR_LOWER = "shear_lower" ["-"] "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
+    SHEAR_UPPER = "shear_upper" ["-"] "(wall slope - exact)/(V/L), parabola fitted within 3 dx of the wall";
     // The largest [`L2`] once the boundary layer of the start is resolved.
     L2_WORST = "l2_worst" ["-"] "largest l2 over the times of comparison with nu t/L^2 >= 0.1";
     // Cross-flow.
@@ -119,47 +115,30 @@ fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
 pub const WINDOW: f64 = 60.0;
 /// Name of the curve of the pressure mode; it is missing if the run was over before the window was full.
 pub const MODE: &str = "mode";
-/// Watches the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of hypothesis H3.
-pub struct Mode<'a> {
-    setup: &'a Setup,
-    /// Time \[s\] and amplitude \[ρV²\] after every step.
-    series: Vec<(f64, f64)>,
+
+/// Amplitude \[ρV²\] of the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of
+/// hypothesis H3.
+pub fn pressure_mode(setup: &Setup, simulation: &dyn Stepper<()>) -> f64 {
+    let Setup { settings: s, medium, v, .. } = setup;
+    let (mut mode, mut count) = (0.0, 0.0);
+    for (_, e) in simulation.fluid() {
+        let phase = std::f64::consts::PI * e.position.y / s.width;
+        mode += 2.0 * medium.eos.pressure(e.density) / (s.rho * v * v) * cos(phase);
+        count += 1.0;
+    }
+    mode / count
 }
 
-harness::observed! { Mode<'_>: changes(series), stays(setup) }
-
-impl<'a> Mode<'a> {
-    /// Nothing seen yet.
-    pub fn new(setup: &'a Setup) -> Self {
-        Self { setup, series: Vec::new() }
+/// Of the time \[s\] and amplitude after every step the last [`WINDOW`] of a run that ended at `end` \[s\].
+pub fn last_of_mode(setup: &Setup, series: &[[f64; 2]], end: f64) -> Option<Profile> {
+    let crossing = setup.settings.width / setup.medium.eos.sound_speed;
+    let since_end = |t: f64| (t - end) / crossing;
+    if since_end(0.0) > -WINDOW {
+        return None;
     }
-
-    /// The last [`WINDOW`] of a run that ended at `end` \[s\].
-    pub fn until(&self, end: f64) -> Option<Profile> {
-        let crossing = self.setup.settings.width / self.setup.medium.eos.sound_speed;
-        let since_end = |t: f64| (t - end) / crossing;
-        if since_end(0.0) > -WINDOW {
-            return None;
-        }
-        let all = self.series.iter().map(|(t, p)| [since_end(*t), *p]);
-        let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
-        Some(Profile::of_rows(&[("t", "L/c0"), ("amplitude", "rho V^2")], &rows))
-    }
-
-    /// Adds the mode after a step.
-    pub fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Going {
-        let Setup { settings: s, medium, v, .. } = self.setup;
-        if s.watch_mode {
-            let (mut mode, mut count) = (0.0, 0.0);
-            for (_, e) in simulation.fluid() {
-                let phase = std::f64::consts::PI * e.position.y / s.width;
-                mode += 2.0 * medium.eos.pressure(e.density) / (s.rho * v * v) * cos(phase);
-                count += 1.0;
-            }
-            self.series.push((simulation.time(), mode / count));
-        }
-        Going::Continue
-    }
+    let all = series.iter().map(|[t, amplitude]| [since_end(*t), *amplitude]);
+    let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
+    Some(Profile::of_rows(&[("t", "L/c0"), ("amplitude", "rho V^2")], &rows))
 }
 
 #[cfg(test)]
@@ -259,15 +238,15 @@ mod tests {
             p.density = eos.density(0.05 * s.rho * v * v * mode + eos.background);
         }
         let simulation = (method().build)(parts).expect("a scene");
-        let mut mode = Mode::new(&setup);
-        let _ = mode.after_step(&*simulation);
-        assert!((mode.series[0].1 - 0.05).abs() < 1e-4, "{}", mode.series[0].1);
+        let amplitude = pressure_mode(&setup, &*simulation);
+        assert!((amplitude - 0.05).abs() < 1e-4, "{amplitude}");
         // A sample in every crossing of the channel by sound: the last 60 and the end are kept.
         let crossing = s.width / eos.sound_speed;
-        mode.series = (0..=100).map(|k| (f64::from(k) * crossing, f64::from(k))).collect();
-        let last = mode.until(100.001 * crossing).expect("long enough");
+        let series: Vec<_> = (0..=100).map(|k| [f64::from(k) * crossing, f64::from(k)]).collect();
+        let until = |end: f64| last_of_mode(&setup, &series, end * crossing);
+        let last = until(100.001).expect("long enough");
         assert_eq!(last.column("amplitude").first(), Some(&41.0));
         assert!((last.column("t")[0] + 59.001).abs() < 1e-9);
-        assert!(mode.until(59.0 * crossing).is_none());
+        assert!(until(59.0).is_none());
     }
 }

@@ -6,7 +6,6 @@ mod maps;
 mod measure;
 mod plan;
 mod run;
-mod settings;
 mod setup;
 mod stiff;
 pub mod variants;
@@ -14,8 +13,7 @@ mod waves;
 
 use declaration::{declaration, is_stable, studies};
 pub use plan::{GHOSTS, ladder};
-pub use settings::ChannelSettings;
-pub use setup::{Flow, Setup};
+pub use setup::{ChannelSettings, Flow, Setup};
 
 use harness::{composed::*, method::Method, table::Table};
 

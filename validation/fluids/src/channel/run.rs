@@ -2,9 +2,9 @@
 
 use base::record::{Record, Status};
 use harness::{case::*, composed::Program, context::Context, method::*, runner::Drive, simulate};
-use solver::{Particle, Role};
+use solver::{Flow as Going, Particle, Role};
 
-use super::measure::{self, MODE, Mode};
+use super::measure::{self, MODE};
 use super::{ChannelProgram, ChannelSettings, Flow, Setup};
 
 /// Runs of the flow that a plate drives.
@@ -36,7 +36,7 @@ fn run(
     record.numerics.insert("columns".into(), setup.columns.into());
     let compared = s.compared();
     let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
-    let mut mode = Mode::new(setup);
+    let mut mode: Vec<[f64; 2]> = Vec::new();
     let fluid = |mut all: Vec<Particle>| {
         all.retain(|p| p.role == Role::Fluid);
         all
@@ -45,7 +45,12 @@ fn run(
     let (status, cost) = Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
         .at_least(s.least_steps)
         .sweeps(setup.rules.sweeps())
-        .after_step("pressure mode", &|(mode, _), simulation| mode.after_step(simulation))
+        .after_step("pressure mode", &|(mode, _), simulation| {
+            if s.watch_mode {
+                mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
+            }
+            Going::Continue
+        })
         .at("profiles and errors", &|(_, record), simulation, k| {
             measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
         })
@@ -56,7 +61,9 @@ fn run(
     if record.status == Status::Completed {
         measure::at_the_end(setup, &fluid(all), &mut record);
     }
-    let mode = mode.until(simulation.time()).filter(|_| s.watch_mode);
-    record.profiles.extend(mode.map(|mode| (MODE.into(), mode)));
+    if s.watch_mode {
+        let last = measure::last_of_mode(setup, &mode, simulation.time());
+        record.profiles.extend(last.map(|last| (MODE.into(), last)));
+    }
     Ok(record)
 }

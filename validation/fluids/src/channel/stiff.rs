@@ -3,8 +3,7 @@
 
 use super::{ChannelSettings, ChannelTable, Flow, For, measure::L2};
 use base::{gate::*, record::Record};
-use harness::{columns::Columns, runs::Runs, study::Study};
-use report::Cell;
+use harness::{runs::Runs, study::Study};
 
 /// Reynolds numbers, and the share of the pair interactions of `modern` that is allowed. At the lower one
 /// sound limits no step any more, so that the cost is that of accuracy.
@@ -16,12 +15,9 @@ static SOUND: Cause = Cause::new(
     "A sound speed chosen by the pressure of the flow, which is 0 here, and not by its force.",
 );
 
-/// The settings of a run of `modern` and of one of `stiff`, the error of both, and the pair interactions of
-/// `stiff` over those of `modern`; NaN without a run.
-type Pair<'a> = (&'a ChannelSettings, [f64; 2], f64);
-
-/// The gates of one pair.
-fn gates(flow: Flow, (settings, [modern, error], share): Pair) -> [(Gate, f64); 2] {
+/// The gates of a run of `stiff` on its error and on its pair interactions over those of `modern`, whose
+/// error is `modern`; NaN without a run.
+fn gates(flow: Flow, settings: &ChannelSettings, modern: f64) -> [Gate; 2] {
     let ChannelSettings { rows, re, .. } = *settings;
     let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.case().name);
     let is_poiseuille = flow == Flow::Poiseuille;
@@ -41,37 +37,21 @@ fn gates(flow: Flow, (settings, [modern, error], share): Pair) -> [(Gate, f64); 
                      the bound adds 5 % for pairs at the edge of the kernel.";
         pairs = pairs.with_limitation(Bound::Below(1.05 / 3.7), known, &SOUND);
     }
-    [(l2, error), (pairs, share)]
+    [l2, pairs]
 }
 
 /// The study.
 pub fn study(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
-    let caption = format!(
-        "Variant `stiff` (super-time-stepping of viscosity) against `modern`: relative L2 error of u at \
-         νt/L² = {}, and pair interactions, each stage counted as one pair sweep.",
-        flow.compared_at()
-    );
-    let of = |variant| table.of(For::Stiff).filter(move |row| row.variant == variant);
-    let found: Vec<Pair> = of("modern")
-        .zip(of("stiff"))
-        .map(|(modern, stiff)| {
-            let records = [modern, stiff].map(|row| runs.record(&row.run.spec));
-            let error = |record: &Record| record.value(L2.at(flow.compared_at()));
-            let pairs = |record: &Record| record.cost.pair_interactions as f64;
-            let errors = records.map(|record| record.and_then(error).unwrap_or(f64::NAN));
-            let pairs = records.map(|record| record.map_or(f64::NAN, pairs));
-            (&modern.settings, errors, pairs[1] / pairs[0])
-        })
-        .collect();
-    let shown = Columns::<Pair>::default()
-        .num(["rows", "1"], |(s, ..)| Cell::count(s.rows as u64))
-        .num(["Re", "-"], |(s, ..)| Cell::exact(s.re))
-        .num(["error, modern", "-"], |(_, errors, _)| Cell::percent(errors[0], 3))
-        .num(["error, stiff", "-"], |(_, errors, _)| Cell::percent(errors[1], 3))
-        .num(["pairs, modern/stiff", "-"], |(.., share)| Cell::num(1.0 / share, 3))
-        .table(caption, &found);
     let id = format!("{}-stiff", flow.case().name);
-    let study = Study::new(&id, "Steps that viscosity does not limit").block(shown);
-    let judged = found.into_iter().flat_map(|pair| gates(flow, pair));
-    judged.fold(study, |study, (gate, value)| study.judge(gate, value))
+    let study = Study::new(&id, "Steps that viscosity does not limit");
+    let of = |variant| table.of(For::Stiff).filter(move |row| row.variant == variant);
+    of("modern").zip(of("stiff")).fold(study, |study, (modern, stiff)| {
+        let records = [modern, stiff].map(|row| runs.record(&row.run.spec));
+        let error = |record: &Record| record.value(L2.at(flow.compared_at()));
+        let errors = records.map(|record| record.and_then(error).unwrap_or(f64::NAN));
+        let count = |record: &Record| record.cost.pair_interactions as f64;
+        let counts = records.map(|record| record.map_or(f64::NAN, count));
+        let [l2, pairs] = gates(flow, &stiff.settings, errors[0]);
+        study.judge(l2, errors[1]).judge(pairs, counts[1] / counts[0])
+    })
 }

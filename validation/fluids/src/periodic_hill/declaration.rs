@@ -1,16 +1,14 @@
 //! What the studies that every case has are made of: profiles and shear over finite elements, order, error
 //! against run time, error budget, largest stable time step, errors of constants that gates must detect; and
-//! what only the hills have to say: pictures, all runs, whether the start matters.
+//! what only the hills have to say: whether the start matters.
 
 use nalgebra::Vector2;
 
-use super::{BEST, CASE, HillSettings, NAME, SINGLE_SWEEP, measure::*, plan::*, reference::*};
+use super::{BEST, CASE, HillSettings, NAME, measure::*, plan::*, reference::*};
 use base::{gate::*, mutation::Constant, record::*};
-use harness::{
-    case::*, columns::Columns, declare::*, pictures, runs::Runs, studies::causes::*, study::Study,
-};
+use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
 use maths::metrics::norms::rms;
-use report::{Axis, Colour, ColourMap, Dots, Figure, Plot, Series};
+use report::{Axis, ColourMap};
 
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
@@ -20,6 +18,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         card: Some(card(tier, &accuracy)),
         comparisons: comparisons(tier, &accuracy),
         curves: vec![profiles(&table)],
+        pictures: vec![picture(&table)],
         budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
         accuracy: vec![accuracy],
         limits: limits(tier),
@@ -75,22 +74,18 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let about = "Flow over periodic hills at Re 50 after 40 H/U_b, against finite elements at ten stations. \
                  In the quick tier at Re 10 after 10 H/U_b, when 0.3 % of U_b is left of the start.";
     let level = |s: &HillSettings| (1.0 / s.n as f64, format!("H/dx = {}", s.n));
-    let mut variants = vec!["interface-wall", BEST];
+    let mut ladders = ["interface-wall", BEST, "modern", "consistent"]
+        .map(|variant| table.ladder(&[For::Ladder], variant, level));
     if tier == Tier::Full {
-        variants.extend(["modern", "consistent", SINGLE_SWEEP]);
-    }
-    let ladders = variants.into_iter();
-    let mut ladders: Vec<_> = ladders.map(|of| table.ladder(&[For::Ladder], of, level)).collect();
-    for ladder in ladders.iter_mut().filter(|of| of.variant == BEST && tier == Tier::Full) {
         let because = "Walls are of first order on disordered particles, sums of second.";
         let (id, bound) = (format!("{NAME}.{BEST}.50.order"), Bound::Above(1.0));
-        ladder.order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
+        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders,
+        ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
         ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
     }
 }
@@ -100,9 +95,11 @@ fn budgets() -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
                  effect of disorder.";
     let change = |what, part, variant, set: fn(&mut HillSettings)| {
-        let mut settings = CASE.chosen(variant, |s| flow(s, (50.0, 10, END, false)));
-        set(&mut settings);
-        Change::new(what, part, CASE.spec_of(variant, &settings))
+        let spec = CASE.spec(variant, |s| {
+            flow(s, (50.0, 10, END, false));
+            set(s);
+        });
+        Change::new(what, part, spec)
     };
     let mut changes = vec![
         change("none", "none", BEST, |_| {}),
@@ -238,44 +235,14 @@ fn sensitivity(tier: Tier, table: &Table) -> Sensitivity {
     Sensitivity::new(tier, run, watched)
 }
 
-/// All of them.
-pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let table = &table(tier);
-    vec![pictures(table, runs), starts(all(runs), table, runs)]
-}
-
-/// Every run.
-fn all(runs: &Runs) -> Study {
-    let caption = "All runs. The error of u is rms over the points of ten stations, the flux of sections the \
-                   largest error of ten. The drag balance is the sum of the three drags over the force, less \
-                   1; in `interface-wall` and `modern` it fails by the pressure on the hill, for the \
-                   pressure of the field at the wall is not that of the sums that move particles. Runs from \
-                   the reference start within 0.04 % of U_b.";
-    let [hill, lid, pressure] = DRAGS;
-    let drag = "rho U_b^2 H";
-    let table = Columns::of_variants()
-        .changed("settings", &CASE)
-        .ended()
-        .percent("error of u", "U_b", L2_U, 1.0)
-        .number("force", "U_b^2/H", FORCE)
-        .percent("error of it", "-", FORCE_ERROR, 1.0)
-        .number("separation", "H", SEPARATION)
-        .number("reattachment", "H", REATTACHMENT)
-        .percent("flux of sections", "-", SECTION_FLUX, 1.0)
-        .number("shear on the hill", drag, hill)
-        .number("on the lid", drag, lid)
-        .number("pressure", drag, pressure)
-        .percent("drag balance", "-", DRAG_BALANCE, 1.0)
-        .table(caption, runs.simulations());
-    Study::new("periodic-hill-runs", "All runs").block(table)
-}
-
 /// Runs from rest and from the reference, ten spacings a hill: only the full tier has both.
-fn starts(study: Study, table: &Table, runs: &Runs) -> Study {
+pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let because =
         "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
-    REYNOLDS.into_iter().fold(study, |study, re| {
-        let rows = shown(table, re).into_iter().filter(|row| row.settings.n == 10);
+    let table = table(tier);
+    let study = Study::new("periodic-hill-starts", "Whether the start matters");
+    let study = REYNOLDS.into_iter().fold(study, |study, re| {
+        let rows = shown(&table, re).into_iter().filter(|row| row.settings.n == 10);
         let [rest, other] = rows.collect::<Vec<_>>()[..] else { return study };
         let u = |row: &Row| Some(runs.completed(&row.run.spec)?.column("stations", "u"));
         let both = u(rest).zip(u(other));
@@ -283,33 +250,20 @@ fn starts(study: Study, table: &Table, runs: &Runs) -> Study {
         let metric = "rms over stations of the difference of u [U_b]";
         let (id, bound) = (format!("{NAME}.{BEST}.{re}.starts"), Bound::Below(0.005));
         study.judge(Gate::new(id, metric, bound, Evidence::Invariant, because), found)
-    })
+    });
+    if study.judged.is_empty() { Vec::new() } else { vec![study] }
 }
 
-/// Particles by their velocity.
-fn pictures(table: &Table, runs: &Runs) -> Study {
+/// Particles of the finest run at each Reynolds number, the floor, and the line that encloses the fluid that
+/// circulates.
+fn picture(table: &Table) -> Picture {
     let caption = "Particles of the finest run of variant `carried`, by their velocity u along the channel. \
-                   A line encloses the fluid that circulates in finite elements (none at Re 10).";
-    let shown = REYNOLDS.into_iter().filter_map(|re| {
-        let (row, reference) = (*shown(table, re).last()?, reference(re)?);
-        Some((row, reference, runs.completed(&row.run.spec)?))
-    });
-    let shown: Vec<_> = shown.collect();
-    let velocities = shown.iter().flat_map(|(.., record)| record.column("particles", "u"));
-    let most = velocities.fold(0.0, |most: f64, u| most.max(u.abs()));
-    let panels = shown.into_iter().map(|(row, reference, record)| {
-        let title = format!("Re {}, {}", row.settings.re, name(row));
-        let (x, y) =
-            (Axis::linear("x [H]").range(-0.1, 9.1), Axis::linear("y [H]").range(-0.1, 3.1));
-        let points = pictures::points(record, "particles", "u");
-        let diameter = 1.0 / row.settings.n as f64;
-        let dots = Dots::new("u [U_b]", ColourMap::Diverging, diameter, points);
-        let black = |line| Series::line("", line).colour(Colour::BLACK);
-        Plot::new(title, x, y)
-            .layer(dots.values(-most, most))
-            .layer(black(floor()).width(1.4))
-            .layer(black(reference.line.clone()).width(2.4))
-    });
-    let figure = panels.fold(Figure::new("periodic-hill-pictures", caption), Figure::panel);
-    Study::new("periodic-hill-pictures", "Pictures").block(figure.panel_size(640.0, 230.0))
+                   The line encloses the fluid that circulates in finite elements (none at Re 10).";
+    let texts = ["periodic-hill-pictures", "Pictures", caption];
+    let panel =
+        |row: &Row| (format!("Re {}, {}", row.settings.re, name(row)), 1.0 / row.settings.n as f64);
+    let picture = table.picture(texts, ("u [U_b]", ColourMap::Diverging), [640.0, 230.0], panel);
+    let kept = table.rows.iter().filter(|row| row.run.spec.keep.particles);
+    let lines = kept.map(|row| vec![floor(), bubble(row.settings.re)]).collect();
+    Picture { lines, ..picture }
 }

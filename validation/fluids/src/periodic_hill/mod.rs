@@ -4,7 +4,6 @@
 //!
 //! Judged against finite elements (`references/periodic_hill`), for nobody has published these numbers.
 
-mod control;
 mod declaration;
 mod measure;
 mod plan;
@@ -52,12 +51,6 @@ fn strong(s: &mut HillSettings) {
     s.shift = 3.0;
 }
 
-/// The same, in the same share of the limit of its step.
-fn single_sweep(s: &mut HillSettings) {
-    strong(s);
-    s.courant /= 8_f64.sqrt();
-}
-
 fn variants() -> Vec<Composition<HillSettings>> {
     let plain =
         "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser: is one needed?";
@@ -67,7 +60,6 @@ fn variants() -> Vec<Composition<HillSettings>> {
         "plain with density diffusion and shifting: does what suits channels suit curved walls?";
     let carried = "modern with stronger shifting that takes the velocity of the new place, and walls that \
                    know how the velocity bends: the best";
-    let single = "carried with one pair sweep a step in place of two: is its error cheaper?";
     let consistent = "carried with sums that are exact for linear fields: are they worth more work for each \
                       pair?";
     Variants::of(&run::PROGRAM)
@@ -75,7 +67,6 @@ fn variants() -> Vec<Composition<HillSettings>> {
         .with("interface-wall", interface, hill::interface_wall(), |_| {})
         .with("modern", modern, hill::modern(), |_| {})
         .with(BEST, carried, hill::carried(), strong)
-        .with(SINGLE_SWEEP, single, hill::single_sweep(), single_sweep)
         .with("consistent", consistent, hill::consistent(), strong)
         .all
 }
@@ -84,9 +75,6 @@ const NAME: &str = "periodic_hill";
 
 /// The variant that is held to the goals.
 const BEST: &str = "carried";
-
-/// It with one pair sweep a step.
-const SINGLE_SWEEP: &str = "single-sweep";
 
 static CASE: Composed<HillSettings> = Composed {
     name: NAME,

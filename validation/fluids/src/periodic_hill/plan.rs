@@ -1,6 +1,6 @@
 //! The runs of the case and their gates.
 
-use super::{BEST, CASE, HillSettings, SINGLE_SWEEP, measure::*};
+use super::{BEST, CASE, HillSettings, measure::*};
 use base::gate::*;
 use harness::{case::Tier, table};
 
@@ -43,7 +43,7 @@ pub fn table(tier: Tier) -> Table {
     let quick = [4, 5, 7].map(|n| (10.0, n, 10.0, false));
     let coarse = [4, 5, 7, 10].map(|n| (50.0, n, END, false));
     table.over(For::Ladder, &["interface-wall", BEST], [&quick, &coarse], flow);
-    table.over(For::Ladder, &["modern", "consistent", SINGLE_SWEEP], [&[], &coarse], flow);
+    table.over(For::Ladder, &["modern", "consistent"], [&[], &coarse], flow);
     table.over(For::Ladder, &[BEST], [&[], &[(50.0, 20, END, false)]], flow);
     let long = |s: &mut HillSettings, n| (s.re, s.n, s.end, s.average) = (50.0, n, 2.0 * END, 0.3);
     table.over(For::Long, &[BEST], [&[], &[20]], long);
@@ -68,7 +68,7 @@ pub fn table(tier: Tier) -> Table {
     let fine = if tier == Tier::Quick { 10 } else { 20 };
     for Row { group, settings: HillSettings { n, end, .. }, run, .. } in &mut table.rows {
         run.seconds = 0.4 * *end * (*n as f64 / 10.0).powi(3);
-        if matches!(group, For::Figures | For::Ladder) && *n >= fine {
+        if *group == For::Figures && *n >= fine {
             run.spec = run.spec.clone().keep_particles();
         }
     }

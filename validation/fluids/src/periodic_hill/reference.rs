@@ -38,8 +38,6 @@ pub struct Reference {
     starts: Vec<Station>,
     /// x \[H\], shear stress on the hill, on the lid \[ρ U_b²\].
     pub wall: Vec<[f64; 3]>,
-    /// The line between bubble and stream \[H\]; empty where the flow does not separate.
-    pub line: Vec<(f64, f64)>,
     re: f64,
     /// Root mean square of the uncertainty of u over all points of the profiles \[U_b\].
     pub uncertainty: f64,
@@ -60,7 +58,6 @@ impl Reference {
         let (package, text) = (Package::load("periodic_hill")?, re.to_string());
         let of = [("re", &*text)];
         let wall = package.table("wall")?.select(&of, ["x", "hill_shear", "lid_shear"])?;
-        let line = package.table("line")?.select(&of, ["x", "y"])?;
         let profiles = package.table("profiles")?;
         let uncertainty = profiles.select(&of, ["u_uncertainty"])?;
         let profiles = profiles.select(&of, ["x", "y", "u", "v"])?;
@@ -72,7 +69,6 @@ impl Reference {
             stations: stations(&profiles),
             starts: stations(&starts),
             wall,
-            line: line.into_iter().map(|[x, y]| (x, y)).collect(),
             re,
             uncertainty: rms(uncertainty.into_iter().map(|[u]| u)),
         })
@@ -108,6 +104,11 @@ impl Reference {
         };
         near.iter().enumerate().map(|(k, station)| at(station) * weight(k)).sum()
     }
+}
+
+/// The line between bubble and stream at a Reynolds number \[H\]; empty where the flow does not separate.
+pub fn bubble(re: f64) -> Vec<(f64, f64)> {
+    Package::curve("periodic_hill", "line", ["x", "y"], &[("re", &re.to_string())])
 }
 
 /// Rows of x, y, u, v as stations.

@@ -1,10 +1,10 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
-use base::record::*;
+use base::{functions::exp, record::*};
 use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
 use schemes::hill::{Driving, HillMethod};
 
-use super::{HillSettings, NAME, Setup, control::*, measure::*};
+use super::{HillSettings, NAME, Setup, measure::*};
 
 /// Runs of the flow over hills.
 pub const PROGRAM: Program<HillSettings, HillMethod> =
@@ -28,26 +28,56 @@ fn is_last(time: f64, end: f64, length: f64) -> bool {
     (end - time) / length - 1e-9 < 1.0
 }
 
+/// The force that holds the flux: f' = \[(u* − u)/T − u'\]/t, u the mean velocity along x over the fluid, u*
+/// the one wanted.
+///
+/// As u' = f − d with the drag d of the walls, f follows d within t, and u goes to u* within T. At rest
+/// f = d whatever d is.
+///
+/// With t = T/4 both roots are −2/T: the fastest without overshoot.
+#[derive(Clone, Copy, Debug)]
+struct Controller {
+    /// u* \[m/s\].
+    wanted: f64,
+    /// T \[s\]; 0 keeps the force.
+    response: f64,
+    /// The force now \[m/s²\].
+    force: f64,
+    /// u at the last look \[m/s\].
+    last: f64,
+}
+
+harness::observed! { Controller: changes(wanted, response, force, last), stays() }
+
+impl Controller {
+    /// Looks at the mean velocity after `dt` \[s\].
+    fn look(&mut self, mean: f64, dt: f64) {
+        if self.response > 0.0 {
+            let settle = 0.25 * self.response;
+            // Exact for a constant right-hand side: never more than the whole way.
+            let share = 1.0 - exp(-dt / settle);
+            self.force += share * ((self.wanted - mean) / self.response - (mean - self.last) / dt);
+        }
+        self.last = mean;
+    }
+}
+
 /// Holds the flux and samples the flow through time.
-struct Monitor<'a> {
-    setup: &'a Setup,
-    area: f64,
+struct Monitor {
     controller: Controller,
     window: Window,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
 }
 
-harness::observed! {
-    Monitor<'_>: changes(controller, window, series), stays(setup, area)
-}
+harness::observed! { Monitor: changes(controller, window, series), stays() }
 
-impl Monitor<'_> {
+impl Monitor {
     /// After a stretch: the controller acts, and the flow is sampled if it is time.
-    fn look(&mut self, simulation: &mut dyn Driving, stretch: f64) {
-        let (setup, time, force) = (self.setup, simulation.time(), self.controller.force);
-        let mean = mean_velocity(simulation, self.area);
-        let flux = mean * self.area / setup.hill.period();
+    fn look(&mut self, setup: &Setup, area: f64, simulation: &mut dyn Driving, stretch: f64) {
+        let (time, force) = (simulation.time(), self.controller.force);
+        let mean = mean_velocity(simulation, area);
+        let flux = mean * area / setup.hill.period();
         let HillSettings { end, average, .. } = setup.settings;
         if is_last(time, end, average * end) {
             self.window.forces.push([force, flux]);
@@ -87,11 +117,10 @@ fn run(
     let last = mean_velocity(&*simulation, area);
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
-    let (window, series) = (Window::default(), vec![start]);
-    let mut monitor = Monitor { setup, area, controller, window, series };
+    let mut monitor = Monitor { controller, window: Window::default(), series: vec![start] };
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut monitor)
-            .at("controller and samples", &|monitor, s, _| monitor.look(s, stretch))
+            .at("controller and samples", &|monitor, s, _| monitor.look(setup, area, s, stretch))
             .resumed(&|monitor, simulation| {
                 // Until its first look the force is that of the scene, which may have a deliberate error.
                 if !monitor.series.is_empty() {
@@ -113,6 +142,28 @@ fn run(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A body with a drag that grows with its speed.
+    #[test]
+    fn the_flux_is_met_and_the_force_is_the_drag() {
+        let (mut speed, dt, rate) = (0.0, 0.02, 0.3);
+        let mut controller = Controller { wanted: 0.8, response: 1.0, force: 0.0, last: 0.0 };
+        let mut largest = 0.0_f64;
+        for _ in 0..2000 {
+            speed += dt * (controller.force - rate * speed);
+            controller.look(speed, dt);
+            largest = largest.max(speed);
+        }
+        assert!((speed - 0.8).abs() < 1e-9 && (controller.force - 0.24).abs() < 1e-9);
+        assert!(largest < 0.82, "{largest}");
+    }
+
+    #[test]
+    fn without_response_the_force_stays() {
+        let mut controller = Controller { wanted: 1.0, response: 0.0, force: 0.3, last: 0.0 };
+        controller.look(0.1, 0.1);
+        assert_eq!(controller.force, 0.3);
+    }
 
     /// Clocks that were off by a part of a window passed every test.
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use solver::{Domain, EquationOfState, Particle};
 
-use super::VortexSettings;
+use super::{NAME, VortexSettings};
 use crate::unit_flow::{Scales, UnitFlow};
 use base::{random::Random, record::*};
 use harness::{
@@ -99,7 +99,7 @@ fn run(
     let flow = &setup.flow;
     let parts = flow.parts(Domain::torus(1.0, 1.0), setup.particles(), context);
     let mut simulation = (method.build)(parts)?;
-    let name = (super::NAME, variant);
+    let name = (NAME, variant);
     let numbers = flow.rules.numbers([settings.h_over_dx, flow.medium.dx]);
     let mut record = simulate::begin(name, settings, method, &numbers, context);
     let end = settings.end;
@@ -108,7 +108,6 @@ fn run(
     let mut series = vec![[0.0, setup.error(0.0, &start)]];
     (record.status, record.cost) =
         Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut series)
-            .sweeps(flow.rules.sweeps())
             .at("series", &|series, simulation, _| {
                 let time = simulation.time();
                 series.push([time, setup.error(time, &simulation.particles())]);

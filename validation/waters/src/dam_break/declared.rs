@@ -143,8 +143,8 @@ fn compared(
 fn accuracy(tier: Tier) -> Accuracy {
     let table = plan::table(tier);
     let level = |s: &DamSettings| (1.0 / s.n as f64, format!("a/dx {}", s.n));
-    let mut ladders = ["seed", "modern", "single-sweep"]
-        .map(|variant| table.ladder(&[Group::Ladder], variant, level));
+    let mut ladders =
+        ["seed", "modern"].map(|variant| table.ladder(&[Group::Ladder], variant, level));
     if tier == Tier::Full {
         let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
                        order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \

@@ -101,16 +101,12 @@ fn variants() -> Vec<Composition<DamSettings>> {
                 makes `ghosts` noisy?";
     let sticking = "modern with artificial viscosity that sees the particles of the walls too, which stand \
                     still: how much do they drag the water?";
-    let single = "modern with one pair sweep a step in place of two, in the same share of its limit: is its \
-                  error cheaper?";
-    let slower = |s: &mut DamSettings| (s.alpha, s.courant) = (0.02, 0.28);
     Variants::of(&run::PROGRAM)
         .with("seed", paper, water::seed(), seed)
         .with("ghosts", ghosts, water::ghosts(), seed)
         .with("modern", best, water::modern(), modern)
         .with("ghosts-slip", slip, water::slip_ghosts(), seed)
         .with("modern-sticking", sticking, water::sticking(), modern)
-        .with("single-sweep", single, water::single_sweep(), slower)
         .all
 }
 

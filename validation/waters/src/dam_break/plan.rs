@@ -44,7 +44,6 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     table.over(Free, &["ghosts-slip", "modern-sticking"], [&[], &[20]], across);
     let ladder: [&[usize]; 2] = [&[7, 10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over(Ladder, &["seed", "modern"], ladder, across);
-    table.over(Ladder, &["single-sweep"], [&[10], ladder[1]], across);
     for n in if tier == Tier::Quick { &[][..] } else { &ENSEMBLES } {
         for variant in ["modern", "seed"] {
             table.starts(Ensemble, variant, SEEDS, |s| {
