@@ -1,11 +1,10 @@
-//! Total Lagrangian solids, which have no scheme: bodies alone, with weight, and beside a plane.
+//! Total Lagrangian solids, which have no scheme: bodies, and one with weight.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use harness::method::{Medium, Parts, mutate};
 use lagrangian::*;
-use maths::geometry::corners;
 use maths::theory::bending;
 use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use nalgebra::Vector2;
@@ -38,11 +37,6 @@ methods! { heavy => Method:
     /// The same with that of Saint Venant and Kirchhoff.
     heavy_saint_venant_kirchhoff: SaintVenantKirchhoff;
 }
-methods! { beside_a_plane => Method:
-    /// Two bodies with the stored energy of Hencky, and a rigid plane between them.
-    divided_hencky: Hencky;
-}
-
 /// The method with the stored energy `L`. Particles of the scene that are held are left out: the planes of
 /// its parts hold the body instead.
 fn bodies<L: Law>() -> Method {
@@ -62,25 +56,6 @@ fn heavy<L: Law>() -> Method {
         mutate(&mut parts);
         let weight = Weight(parts.medium.acceleration);
         Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
-    })
-}
-
-/// The same of two bodies with a rigid plane at rest half-way between them, in place of contact between
-/// faces.
-fn beside_a_plane<L: Law>() -> Method {
-    named::<L>(|mut parts| {
-        mutate(&mut parts);
-        // Extents do not depend on the order of the particles.
-        let middle = |body: u32| {
-            let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
-            let [low, high] = corners(all.map(|(p, _)| p.position));
-            0.5 * (low + high)
-        };
-        let [left, right] = [middle(0), middle(1)];
-        let (point, normal) = (0.5 * (left + right), (right - left).normalize());
-        let plane =
-            RigidPlane { point, normal, stiffness: contact_stiffness(&moduli(&parts.medium)) };
-        Ok(Box::new(scene(parts, plane).build::<WendlandC2, L>()?))
     })
 }
 

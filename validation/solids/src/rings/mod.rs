@@ -84,8 +84,6 @@ pub const CORRECTED: &str = "corrected";
 
 /// The variant with a stored energy.
 pub const LAGRANGIAN: &str = "lagrangian";
-/// The same with a rigid plane between the rings.
-pub const PLANE: &str = "plane";
 
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
@@ -127,13 +125,6 @@ fn variants() -> Vec<Composition<RingSettings>> {
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between the rings, velocity Verlet; nothing dissipates",
             schemes::total::hencky(),
-            choose,
-        )
-        .with(
-            PLANE,
-            "lagrangian with a rigid plane between the rings in place of contact between their faces: is \
-             an error that of the contact?",
-            schemes::total::divided_hencky(),
             choose,
         )
         .all

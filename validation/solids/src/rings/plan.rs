@@ -15,8 +15,6 @@ pub enum Group {
     Unstressed,
     /// Few layers, which only show how the error falls.
     Coarse,
-    /// The total Lagrangian collision with another law of contact, which a study compares with its own.
-    Contact,
 }
 
 /// A run of the table.
@@ -30,7 +28,7 @@ pub const FRAMES: usize = 20;
 
 /// The runs of a tier, with their gates.
 pub fn table(tier: Tier) -> Table<RingSettings, Group> {
-    use Group::{Coarse, Contact, Paper, Speed, Unstressed};
+    use Group::{Coarse, Paper, Speed, Unstressed};
     const COARSE: &[f64] = &[1.0 / 3.0, 0.25];
     let mut table = Table::new(&RUBBER_RINGS, tier);
     let dx = |s: &mut RingSettings, spacing| s.spacing = spacing;
@@ -43,7 +41,6 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     // Rings of 20 layers tear, and are refused.
     table.over(Paper, &[CORRECTED], [&[], &[0.2, 0.1]], dx);
     table.over(Paper, &[LAGRANGIAN], [&[0.2, 0.1], &[0.2, 0.1, 0.05]], dx);
-    table.over(Contact, &[PLANE], [&[], &[0.2, 0.1, 0.05]], dx);
     // 0.03 has a reference that no setting was chosen with, the others none.
     let full = [(0.2, 0.03), (0.1, 0.03), (0.2, 0.12), (0.1, 0.12), (0.2, 0.2)];
     table.over(Speed, &["seed"], [&[(0.2, 0.12)], &full], at);
@@ -72,7 +69,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
 /// Gates of a run: what holds whatever the settings, whether the rings stay whole, distances from finite
 /// elements.
 fn gates(row: &Row) -> Vec<Gate> {
-    if [Group::Coarse, Group::Contact].contains(&row.group) {
+    if row.group == Group::Coarse {
         return Vec::new();
     }
     let (id, s, is_lagrangian) = (&id(row), &row.settings, row.variant == LAGRANGIAN);

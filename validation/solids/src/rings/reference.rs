@@ -85,7 +85,7 @@ impl Reference {
         if rings(settings) != rings(&RingSettings::default()) {
             return None;
         }
-        let law = if [LAGRANGIAN, PLANE].contains(&variant) { Hencky::NAME } else { JAUMANN };
+        let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {

@@ -8,38 +8,12 @@ use super::*;
 /// All of them.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let rows = &table(tier).rows;
-    let contact = (tier != Tier::Quick).then(|| contact(rows, runs));
-    [collisions(rows, runs), pictures(rows, runs)].into_iter().chain(contact).collect()
+    vec![collisions(rows, runs), pictures(rows, runs)]
 }
 
 /// The rows of some groups.
 fn of<'a>(rows: &'a [Row], groups: &'a [Group]) -> impl Iterator<Item = &'a Row> {
     rows.iter().filter(|row| groups.contains(&row.group))
-}
-
-/// Rings against a rigid plane beside rings against each other: what another law of contact changes.
-fn contact(rows: &[Row], runs: &Runs) -> Study {
-    const BECAUSE: &str = "By symmetry a ring against a rigid plane is half of two rings. What another law \
-        of contact changes has to be less than what finite elements leave uncertain of the restitution.";
-    let value = |row: &Row| runs.completed(&row.run.spec).and_then(|r| r.value(RESTITUTION));
-    let study = Study::new("rubber-rings-contact", "Contact or folds").prose(
-        "Is the error of the restitution one of the contact or one of the folds? An error of the contact \
-         would hang on its law. If a rigid plane between the rings, which has another law, changes the \
-         restitution by less than finite elements leave uncertain, the error is that of the folds.",
-    );
-    of(rows, &[Group::Contact]).fold(study, |study, row| {
-        let is_own =
-            |own: &&Row| own.variant == LAGRANGIAN && own.settings.spacing == row.settings.spacing;
-        let own = of(rows, &[Group::Paper]).find(is_own).and_then(value);
-        let change = value(row).zip(own).map_or(f64::NAN, |(plane, own)| plane / own - 1.0);
-        let exact = Reference::of(LAGRANGIAN, &row.settings).and_then(|of| of.number(RESTITUTION));
-        let Some([value, spread]) = exact else { return study };
-        let uncertainty = spread / value;
-        let id = format!("rubber_rings.contact.{}", (1.0 / row.settings.spacing).round());
-        let bound = Bound::Within(-uncertainty, uncertainty);
-        let what = "change of the restitution by a rigid plane";
-        study.judge(Gate::new(id, what, bound, Evidence::Invariant, BECAUSE), change)
-    })
 }
 
 /// Every collision: claim M2, restitution and energy. Gates have the distances from the reference.
