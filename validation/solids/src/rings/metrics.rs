@@ -40,39 +40,6 @@ base::metrics! {
     HISTORIES = "histories" ["-"] "the largest of x_c_rms, width_rms and height_rms/outer diameter";
 }
 
-/// What has become of two rings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
-    /// Each is one piece with a hole, at every count.
-    Whole,
-    /// One is cut through once, like a C, and so has no hole; it is one piece all the same.
-    Torn,
-    /// There are more pieces than rings.
-    InPieces,
-    /// The run did not reach its end.
-    Diverged,
-}
-
-impl Fate {
-    /// Of a run.
-    pub fn of(record: &Record) -> Self {
-        match (record.value(PIECES_MOST), record.value(HOLES_LEAST)) {
-            (None, _) => Self::Diverged,
-            (Some(pieces), _) if pieces > 2.0 => Self::InPieces,
-            (_, Some(holes)) if holes < 1.0 => Self::Torn,
-            _ => Self::Whole,
-        }
-    }
-
-    /// Names, for tables and maps.
-    pub const NAMES: [&'static str; 4] = ["whole", "torn", "in pieces", "diverged"];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
-}
-
 /// Numbers that finite elements have too, and the distance from these.
 pub const COMPARED: [(MetricKey, MetricKey); 3] = [
     (RESTITUTION, RESTITUTION_ERROR),

@@ -16,8 +16,8 @@ mod tests;
 
 use base::{functions::*, gate::*, mutation::Constant, record::*};
 use harness::{
-    case::*, columns::Columns, composed::*, context::Context, declare::*, method::Method, pictures,
-    runs::Runs, simulate, studies::causes::*, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::Method, pictures, runs::Runs,
+    simulate, studies::causes::*, study::Study, table,
 };
 use nalgebra::{Rotation2, Vector2};
 use solver::{EquationOfState, Limits, Observer, Particle, Stepper, Symmetric};
