@@ -287,6 +287,22 @@ impl Reference {
         read().unwrap_or([f64::NAN; 2])
     }
 
+    /// A column of a table of a reference over another one, in the rows that have these texts; empty if there
+    /// is none, so that nothing follows from it.
+    pub fn curve(
+        name: &str,
+        table: &str,
+        [x, y]: [&str; 2],
+        of: &[(&str, &str)],
+    ) -> Vec<(f64, f64)> {
+        let read = || -> Result<_, ReferenceError> {
+            let table = Self::load(name)?.table(table)?;
+            let (x, y, rows) = (table.numbers(x)?, table.numbers(y)?, table.rows_of(of)?);
+            Ok(rows.into_iter().map(|row| (x[row], y[row])).collect())
+        };
+        read().unwrap_or_default()
+    }
+
     /// How far the second code is from the first, if the grade names one.
     pub fn agreement(&self) -> Result<Option<Agreement>, ReferenceError> {
         let Grade::TwoCodes(second) = &self.package.grade else { return Ok(None) };

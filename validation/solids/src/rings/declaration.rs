@@ -121,10 +121,7 @@ fn histories(tier: Tier) -> Curves {
             let name = format!("{}, spacing {} L", row.variant, row.settings.spacing);
             CurveOf::columns(name, row.run.spec.clone(), "series", ["t", Reference::COLUMNS[k]])
         });
-        let points = exact.iter().flat_map(|exact: &Reference| {
-            exact.times.iter().copied().zip(exact.columns[k].iter().copied())
-        });
-        let points = points.collect();
+        let points = exact.as_ref().map(|exact| exact.histories[k].clone()).unwrap_or_default();
         let axes = ["t [L/c0]", label];
         CurvePanel::linear("", axes, lines.collect(), ("finite elements", points))
     };

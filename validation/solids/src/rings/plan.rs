@@ -182,10 +182,10 @@ impl Distances<'_> {
         faces::known_excess((1.0 / spacing).round() as usize, h_over_dx)
     }
 
-    /// When finite elements touch first, and when they part, with its uncertainty \[L/c0\].
-    fn contact(&self) -> (f64, (f64, f64)) {
+    /// When finite elements touch first, and when they part \[L/c0\].
+    fn contact(&self) -> [f64; 2] {
         let phases = &self.exact.phases;
-        (phases[0][1].0, phases[phases.len() - 1][2])
+        [phases[0][1], phases[phases.len() - 1][2]]
     }
 
     /// Restitution, largest height, least width, and the path of the centre of mass.
@@ -199,11 +199,12 @@ impl Distances<'_> {
         if flatter > allowed {
             gates[2] = soft(gates[2].clone(), Bound::Within(-flatter, allowed));
         }
-        let [x, v, ..] = &self.exact.columns;
-        let least = x.iter().copied().fold(f64::INFINITY, f64::min);
-        let allowed = allowed * (x[0] - least + x[x.len() - 1] - least);
-        let (touch, (last, _)) = self.contact();
-        let behind = softer * (last - touch) * v[v.len() - 1];
+        let [x, v, ..] = &self.exact.histories;
+        let least = x.iter().map(|(_, x)| *x).fold(f64::INFINITY, f64::min);
+        let last = x.len() - 1;
+        let allowed = allowed * (x[0].1 - least + x[last].1 - least);
+        let [touch, parted] = self.contact();
+        let behind = softer * (parted - touch) * v[last].1;
         let known = Bound::Within(-behind, allowed);
         gates.push(soft(self.near_zero(X_C_WORST, allowed), known));
         gates
@@ -226,7 +227,7 @@ impl Distances<'_> {
                 if is_fine { end } else { end.with_limitation(late, LIGHT_TOUCH, &FOLDS) },
             ];
         }
-        let (touch, (last, doubt)) = self.contact();
+        let ([touch, last], doubt) = (self.contact(), self.exact.doubt);
         let late = self.allowed * (last - touch) + doubt;
         let after = self.exact.leaves(spacing) - last;
         let end = reference(self.id, end, Bound::Within(-late, after + late), REACH);

@@ -42,7 +42,7 @@ fn beside_elements(record: &Record) -> Figure {
         figure.panel_size(185.0, 170.0),
         |figure, (share, mut map)| {
             map.points.retain(|(x, ..)| *x > 0.0);
-            let outlines = reference::outlines(SPEED, 200.0 * share).unwrap_or_default();
+            let outlines = reference::outlines(SPEED, 200.0 * share);
             let black = |map: ParticleMap, line| map.curve(Series::line("", line).width(0.9));
             figure.panel(outlines.into_iter().fold(map, black))
         },

@@ -138,7 +138,7 @@ fn finite_elements(speed: f64, late: f64) -> impl Fn(f64) -> [f64; 4] {
         let place = ((time - late) / 0.5).clamp(0.0, 400.0);
         let (k, part) = (place as usize, place.fract());
         [0, 1, 2, 3].map(|column: usize| {
-            let [a, b] = [k, (k + 1).min(400)].map(|k| exact.columns[column][k]);
+            let [a, b] = [k, (k + 1).min(400)].map(|k| exact.histories[column][k].1);
             a + part * (b - a)
         })
     }
