@@ -109,8 +109,8 @@ impl Problem for BarSettings {
         self.speed * self.wave()
     }
 
-    fn approach(&self) -> f64 {
-        if self.collide { 2.0 * self.speed() } else { 0.0 }
+    fn bodies(&self) -> usize {
+        if self.collide { 2 } else { 1 }
     }
 
     fn end(&self) -> f64 {
@@ -123,8 +123,7 @@ impl Problem for BarSettings {
     }
 
     fn count(&self) -> f64 {
-        let bars = if self.collide { 2 } else { 1 };
-        (bars * self.n * self.rows()) as f64
+        (self.bodies() * self.n * self.rows()) as f64
     }
 
     fn domain(&self) -> Domain {
@@ -150,11 +149,6 @@ impl Problem for BarSettings {
             Particle { density: density / (1.0 + e), extra, ..at(x, v) }
         };
         lattice(0.5 * dx).map(strained).collect()
-    }
-
-    fn bodies(&self) -> Vec<u32> {
-        let body = |k: usize| u32::from(k >= self.n * self.rows());
-        if self.collide { (0..2 * self.n * self.rows()).map(body).collect() } else { Vec::new() }
     }
 
     /// The integral of the strain −v/c_p of the pulse.

@@ -205,10 +205,6 @@ impl Problem for CantileverSettings {
         row(0.0, columns).chain(held).collect()
     }
 
-    fn held(&self) -> Vec<PlaneWall> {
-        solid::clamp()
-    }
-
     fn gravity(&self) -> Vector2<f64> {
         Vector2::new(0.0, -self.gravity)
     }

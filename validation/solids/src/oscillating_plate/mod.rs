@@ -155,10 +155,6 @@ impl Problem for PlateSettings {
         free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
     }
 
-    fn held(&self) -> Vec<PlaneWall> {
-        solid::clamp()
-    }
-
     fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Tip {
         let energy = Energy::of_all(start, &self.material()).kinetic;
         Tip { settings: self.clone(), until: 0, energy, series: vec![[0.0; 3]] }
