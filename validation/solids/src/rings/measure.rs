@@ -77,7 +77,7 @@ harness::observed! {
     changes(next, samples, counted, rows), stays(settings, least_hole, bonds, is_seen)
 }
 
-const COLUMNS: usize = 12;
+const COLUMNS: usize = 11;
 const NAMES: [(&str, &str); COLUMNS] = [
     ("t", "L/c0"),
     ("x_c", "L"),
@@ -88,7 +88,6 @@ const NAMES: [(&str, &str); COLUMNS] = [
     ("kinetic", "J/m"),
     ("compression", "J/m"),
     ("shear", "J/m"),
-    ("mirror", "dx"),
     ("holes", "1"),
     ("stretch", "dx"),
 ];
@@ -140,7 +139,6 @@ impl Series {
             kinetic,
             compression,
             shear,
-            mirror_error(left, right) / dx,
             self.counted[1],
             stretch,
         ]);
@@ -159,22 +157,18 @@ impl Series {
         let most = |k: usize| column(k).fold(0.0, f64::max);
         record.put(PIECES_MOST, most(5));
         if self.is_seen {
-            record.put(HOLES_LEAST, least(10));
-            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[10]])) {
+            record.put(HOLES_LEAST, least(9));
+            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[9]])) {
                 record.put(TORN_AT, torn[0]);
             }
         }
-        record.put(STRETCH_MOST, largest(column(11)));
+        record.put(STRETCH_MOST, largest(column(10)));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
-        record.put(MIRROR, most(9));
-        let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
-        let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
         let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
         let highest = self.rows.iter().map(energy).fold(0.0, f64::max);
         let speed = self.settings.speed;
         for (metric, value) in [
-            (PUSHED_BY_ITSELF, pushed / speed),
             (ENERGY_LOST, 1.0 - energy(last) / energy(first)),
             (ENERGY_GAINED, highest / energy(first) - 1.0),
         ] {
@@ -247,14 +241,6 @@ const TOUCH: f64 = 0.01;
 const PAUSE: f64 = 5.0;
 /// Force of round-off, over mass and speed of a ring \[c₀/L\].
 const ROUND_OFF: f64 = 1e-9;
-
-/// Largest distance of a particle from the mirror image of its partner.
-fn mirror_error(left: &[Solid], right: &[Solid]) -> f64 {
-    let error = |(l, r): (&Solid, &Solid)| {
-        Vector2::new(l.position.x + r.position.x, l.position.y - r.position.y).norm()
-    };
-    left.iter().zip(right).map(error).fold(0.0, f64::max)
-}
 
 impl Observer<Symmetric> for Series {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Going {
@@ -338,7 +324,7 @@ mod tests {
         }
         let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
         series.put(&mut record);
-        (record, series.points(10))
+        (record, series.points(9))
     }
 
     /// Seen from outside at 0.09 to 0.12 c0: a ring opens at its rear pole into a C. It is one piece still.

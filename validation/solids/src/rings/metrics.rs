@@ -16,9 +16,6 @@ base::metrics! {
     HEIGHT_MAX = "height_max" ["L"] "largest extent of a ring across it";
     ENERGY_LOST = "energy_lost" ["-"] "1 - (kinetic + strain energy) at the end/at the start";
     ENERGY_GAINED = "energy_gained" ["-"] "largest total energy at any time/at the start - 1";
-    PUSHED_BY_ITSELF = "pushed_by_itself" ["-"]
-        "max |v_c - v_c(end)|/V of a ring in the last tenth of the run";
-    MIRROR = "mirror" ["dx"] "max over particles and times of the distance from the mirror image";
     PHASES = "phases" ["1"] "phases of contact, at least 5 L/c0 apart";
     MOMENTUM = "momentum" ["-"] "|sum m v| at the end/momentum of one ring, exactly 0";
     IMPULSE = "impulse" ["rho c0 L^2"] "mass of a ring times the change of its velocity in this phase";

@@ -1,7 +1,7 @@
 //! Two rubber rings that collide head-on (Monaghan 2000; Gray, Monaghan & Swift 2001), in units of
 //! ring size L, density ρ and bulk sound speed c₀ = √(K/ρ), plane strain.
 //!
-//! Judged against conservation, mirror symmetry, and an independent finite-element run of one ring
+//! Judged against conservation and an independent finite-element run of one ring
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
 mod declaration;
@@ -149,8 +149,8 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     about: "Two rubber rings, inner radius 3, outer radius 4, fly at each other at 0.059 of the bulk sound \
             speed each, touch, flatten, and part. Plane strain, shear modulus 0.22 K. By symmetry it is one \
             ring against a frictionless plane, which finite elements have computed independently. Momentum \
-            and mirror symmetry are exact, and a ring must not break: numerical fracture is the tensile \
-            instability that artificial stress is there to prevent.",
+            is exact, and a ring must not break: numerical fracture is the tensile instability that \
+            artificial stress is there to prevent.",
     variants,
     is_stable,
     declaration: declaration::declaration,
