@@ -1,6 +1,6 @@
 //! What is measured of the rings, sample by sample and at the end.
 
-use maths::geometry::{Bonds, Topology};
+use maths::geometry::Topology;
 use solver::Flow as Going;
 
 use super::*;
@@ -8,9 +8,6 @@ use super::*;
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;
 const COUNTED_EVERY: usize = 8;
-/// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
-/// nearest one or two of the layers beside it.
-pub const NEIGHBOURS: f64 = 1.2;
 /// Shares of the run at which particles are kept for pictures.
 pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
 
@@ -61,8 +58,6 @@ pub struct Series {
     settings: RingSettings,
     /// Area below which a hole is none of a ring \[m²\].
     least_hole: f64,
-    /// Neighbours of each ring at the start.
-    bonds: [Bonds; 2],
     /// Is each ring seen as one at the start? Not if its hole is narrower than a disc.
     is_seen: bool,
     next: f64,
@@ -74,10 +69,10 @@ pub struct Series {
 
 harness::observed! {
     Series:
-    changes(next, samples, counted, rows), stays(settings, least_hole, bonds, is_seen)
+    changes(next, samples, counted, rows), stays(settings, least_hole, is_seen)
 }
 
-const COLUMNS: usize = 11;
+const COLUMNS: usize = 10;
 const NAMES: [(&str, &str); COLUMNS] = [
     ("t", "L/c0"),
     ("x_c", "L"),
@@ -89,7 +84,6 @@ const NAMES: [(&str, &str); COLUMNS] = [
     ("compression", "J/m"),
     ("shear", "J/m"),
     ("holes", "1"),
-    ("stretch", "dx"),
 ];
 
 impl Series {
@@ -98,10 +92,9 @@ impl Series {
         let settings = settings.clone();
         let least_hole = Topology::least_hole_of_ring(settings.inner, settings.outer);
         let start = along_flight(&settings, start.to_vec());
-        let bonds = halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
         let (is_seen, next, samples) = (false, settings.end() / SAMPLES, 0);
         let (counted, rows) = (Vec::new(), Vec::new());
-        let mut this = Self { settings, least_hole, bonds, is_seen, next, samples, counted, rows };
+        let mut this = Self { settings, least_hole, is_seen, next, samples, counted, rows };
         this.is_seen = is_whole(this.count(&start));
         this.sample(0.0, &start, energy);
         this
@@ -119,7 +112,7 @@ impl Series {
     /// unless the simulation knows them.
     pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
         let (c0, dx) = (self.settings.c0(), self.settings.dx());
-        let [left, right] = halves(particles);
+        let [_, right] = halves(particles);
         if self.samples.is_multiple_of(COUNTED_EVERY) {
             self.counted = self.count(particles).into();
         }
@@ -127,8 +120,6 @@ impl Series {
         let [centre, velocity, extent] = side(right, dx);
         let Energy { kinetic, compression, shear } =
             known.unwrap_or_else(|| Energy::of_all(particles, &self.settings.material()));
-        let bonds = self.bonds.iter().zip([left, right]);
-        let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
         self.rows.push([
             time * c0,
             centre.x,
@@ -140,7 +131,6 @@ impl Series {
             compression,
             shear,
             self.counted[1],
-            stretch,
         ]);
     }
 
@@ -162,7 +152,6 @@ impl Series {
                 record.put(TORN_AT, torn[0]);
             }
         }
-        record.put(STRETCH_MOST, largest(column(10)));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
         let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
@@ -341,8 +330,6 @@ mod tests {
         // 1.5 dx apart at t = 16, 1.7 at 18; counted at every eighth sample.
         assert_eq!(record.value(TORN_AT), Some(24.0));
         assert!(holes.iter().all(|(t, holes)| *holes == if *t < 24.0 { 1.0 } else { 0.0 }));
-        let stretch = record.value(STRETCH_MOST).unwrap();
-        assert!((stretch - 3.85).abs() < 0.1, "{stretch} dx: 1 + 28 x 0.1");
     }
 
     #[test]
@@ -354,8 +341,6 @@ mod tests {
         let (record, _) = watched(bend);
         assert_eq!((record.value(HOLES_LEAST), record.value(PIECES_MOST)), (Some(1.0), Some(2.0)));
         assert_eq!(record.value(TORN_AT), None);
-        let stretch = record.value(STRETCH_MOST).unwrap();
-        assert!((1.2..1.45).contains(&stretch), "{stretch} dx: at most 1.2 x 1.195");
         let split = |time: f64, p: &mut Particle<Symmetric>| {
             if p.position.x < 0.0 && time > 20.0 {
                 p.position.y += 0.3 * p.position.y.signum();

@@ -86,7 +86,6 @@ fn gates(row: &Row) -> Vec<Gate> {
     gates.extend(of_wholeness(row, id));
     let Some(exact) = Reference::of(row.variant, s).filter(|_| is_compared) else { return gates };
     let distances = Distances { row, id, exact, allowed: 0.5 * s.spacing };
-    gates.push(distances.of_stretch());
     match is_lagrangian {
         true => gates.extend(distances.of_lagrangian()),
         false => gates.extend(distances.of_extremes()),
@@ -183,7 +182,7 @@ impl Distances<'_> {
         let least = self.exact.number(WIDTH_MIN).map_or(f64::NAN, |[width, _]| width);
         let flatter = softer * (2.0 * self.row.settings.outer / least - 1.0);
         if flatter > allowed {
-            gates[2] = soft(gates[2].clone(), Bound::Within(-flatter, allowed));
+            gates[2] = faces::soft(gates[2].clone(), Bound::Within(-flatter, allowed));
         }
         let [x, v, ..] = &self.exact.histories;
         let least = x.iter().map(|(_, x)| *x).fold(f64::INFINITY, f64::min);
@@ -192,7 +191,7 @@ impl Distances<'_> {
         let [touch, parted] = self.contact();
         let behind = softer * (parted - touch) * v[last].1;
         let known = Bound::Within(-behind, allowed);
-        gates.push(soft(self.near_zero(X_C_WORST, allowed), known));
+        gates.push(faces::soft(self.near_zero(X_C_WORST, allowed), known));
         gates
     }
 
@@ -220,7 +219,7 @@ impl Distances<'_> {
         if spacing > 0.1 {
             let one = phases.with_limitation(Bound::Within(1.0, 2.0), NO_GAP, &SOFT_CONTACT);
             let later = after + self.softer() * (last - touch) + doubt;
-            return vec![one, soft(end, Bound::Within(-late, later))];
+            return vec![one, faces::soft(end, Bound::Within(-late, later))];
         }
         let known = [Bound::Within(-0.09, self.allowed), Bound::Within(-self.allowed, 0.14)];
         let impulses = known.into_iter().enumerate().map(|(k, known)| {
@@ -228,23 +227,6 @@ impl Distances<'_> {
             gate.with_limitation(known, SHARED, &SHARED_IMPULSE)
         });
         [phases, end].into_iter().chain(impulses).collect()
-    }
-
-    /// The largest distance of particles that were neighbours at the start.
-    fn of_stretch(&self) -> Gate {
-        let because = "Neighbours at the start are at most 1.2 dx apart, and no line becomes longer than \
-                       by the largest principal strain in finite elements.";
-        let most = Bound::Below(NEIGHBOURS * exp(self.exact.strain));
-        let gate = reference(self.id, STRETCH_MOST, most, because);
-        let RingSettings { spacing, h_over_dx, .. } = self.row.settings;
-        let tears_below = match self.row.variant {
-            LAGRANGIAN => 0.0,
-            CORRECTED => 0.2,
-            _ => 0.1,
-        };
-        let let_go = Bound::Below(2.0 * h_over_dx);
-        let torn = |gate: Gate| gate.with_limitation(let_go, TEAR_BEGINS, &TEARING);
-        if spacing < tears_below { torn(gate) } else { gate }
     }
 
     /// Extremes of the total Lagrangian rings.
@@ -260,15 +242,6 @@ impl Distances<'_> {
     }
 }
 
-/// A limitation of rings of few layers.
-fn soft(gate: Gate, known: Bound) -> Gate {
-    const SOFT: &str = "Rings of few layers are softer than first order says: they bend further, leave \
-        later, and their centre stays behind. The bound: sums over the layers that there are lengthen the \
-        period of bending by 30 % with 5, 15 % with 10 and 7 % with 20 layers, and published plates have \
-        another 7 %.";
-    gate.with_limitation(known, SOFT, &FREE_FACES)
-}
-
 const GOAL: &str = "Finite elements of the same law. The bounds are what the project set out to reach: 2, 1 \
     and 0.5 % with 5, 10 and 20 layers, and an end of contact within 3 L/c0.";
 const NO_GAP: &str = "Kernels in rings of 5 layers reach across a gap of 0.4 L, and between the two phases \
@@ -282,9 +255,6 @@ const SHARED: &str = "Rings of 10 and 20 layers have 6 and 4 % less impulse in t
     in the second, up to 7 and 12 % at 0.03 c0. It is one error seen twice, because the sum goes with the \
     restitution. The bound: the largest of these, and the 2 % by which a quarter of the viscosity changes \
     it.";
-const TEAR_BEGINS: &str = "A tear begins at the inner face: neighbours part to 2.7 dx in rings of 20 layers, \
-    and with corrected gradients to 2.9 dx in rings of 10 while they fly apart. The bound: beyond 3 dx, the \
-    reach of the kernel, neighbours have let go.";
 const HALF_A_SPACING: &str = "The surface of a body of particles is known to half a spacing, and so are its \
     extents over time. The bound: half a spacing over the outer diameter.";
 const SENSITIVE: &str = "The restitution hangs on how the second contact meets the vibration of the rings: \
