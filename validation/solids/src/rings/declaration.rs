@@ -77,21 +77,20 @@ fn comparisons(accuracy: &Accuracy) -> Vec<Comparison> {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes, steps, contact, disorder \
                            (`references/rubber_rings`)";
     let of = |ladder: &Ladder| {
-        let reference = Reference::of(ladder.variant, &RingSettings::default());
-        let number = |quantity| reference.as_ref().and_then(|reference| reference.number(quantity));
-        let share = |quantity| number(quantity).map_or(f64::NAN, |[value, spread]| spread / value);
-        let histories = reference.as_ref().map_or(f64::NAN, |reference| reference.uncertainty);
+        let exact = Reference::of(ladder.variant, &RingSettings::default())?;
+        let share =
+            |quantity| exact.number(quantity).map_or(f64::NAN, |[value, spread]| spread / value);
         let quantities = [
-            ("histories", HISTORIES, histories),
+            ("histories", HISTORIES, exact.uncertainty),
             ("restitution", RESTITUTION_ERROR, share(RESTITUTION)),
             ("least width", WIDTH_MIN_ERROR, share(WIDTH_MIN)),
         ];
-        quantities.map(|(what, metric, uncertainty)| {
+        Some(quantities.map(|(what, metric, uncertainty)| {
             Comparison::new(what, "finite elements", metric, ladder, (uncertainty, BECAUSE))
-        })
+        }))
     };
     let compared = |ladder: &&Ladder| SHOWN.contains(&ladder.variant);
-    accuracy.ladders.iter().filter(compared).flat_map(of).collect()
+    accuracy.ladders.iter().filter(compared).filter_map(of).flatten().collect()
 }
 
 /// What the report says first of the case.
@@ -285,14 +284,13 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     };
     let worst = fate(record);
     let alike = records.iter().filter(|record| fate(record) == worst).count();
-    let number = |metric, none: &str, text: fn(f64) -> String| {
-        record.value(metric).map_or(none.to_string(), text)
-    };
+    let number = |metric| record.value(metric).unwrap_or(f64::NAN);
     let text = match worst {
         _ if records.len() > 1 => format!("{alike} of {}", records.len()),
-        Fate::Whole => number(RESTITUTION, "in touch", |e| format!("e = {}", sig(e, 2))),
-        Fate::Torn => number(TORN_AT, "–", |time| format!("at {}", sig(time, 2))),
-        Fate::InPieces => number(PIECES_MOST, "–", |count| format!("{count} pieces")),
+        Fate::Whole if record.value(RESTITUTION).is_none() => "in touch".into(),
+        Fate::Whole => format!("e = {}", sig(number(RESTITUTION), 2)),
+        Fate::Torn => format!("at {}", sig(number(TORN_AT), 2)),
+        Fate::InPieces => format!("{} pieces", number(PIECES_MOST)),
         Fate::Diverged => "diverged".into(),
     };
     (worst as usize, text)

@@ -35,11 +35,6 @@ pub fn side(ring: &[Solid], dx: f64) -> [Vector2<f64>; 3] {
     [centre / mass, momentum / mass, high - low + Vector2::repeat(dx)]
 }
 
-/// Where the particles of a ring are.
-fn places(ring: &[Solid]) -> Vec<Vector2<f64>> {
-    ring.iter().map(|p| p.position).collect()
-}
-
 /// Are there two pieces, each with a hole?
 fn is_whole([pieces, holes]: [f64; 2]) -> bool {
     pieces == 2.0 && holes >= 1.0
@@ -56,21 +51,11 @@ type Solid = Particle<Symmetric>;
 /// Watches a run.
 pub struct Series {
     settings: RingSettings,
-    /// Area below which a hole is none of a ring \[m²\].
-    least_hole: f64,
-    /// Is each ring seen as one at the start? Not if its hole is narrower than a disc.
-    is_seen: bool,
     next: f64,
-    samples: usize,
-    /// Pieces of both rings at the last count, and the fewest holes of one.
-    counted: Vec<f64>,
     rows: Vec<[f64; COLUMNS]>,
 }
 
-harness::observed! {
-    Series:
-    changes(next, samples, counted, rows), stays(settings, least_hole, is_seen)
-}
+harness::observed! { Series: changes(next, rows), stays(settings) }
 
 const COLUMNS: usize = 10;
 const NAMES: [(&str, &str); COLUMNS] = [
@@ -89,21 +74,19 @@ const NAMES: [(&str, &str); COLUMNS] = [
 impl Series {
     /// A series over a run with this start.
     pub fn new(settings: &RingSettings, start: &[Solid], energy: Option<Energy>) -> Self {
-        let settings = settings.clone();
-        let least_hole = Topology::least_hole_of_ring(settings.inner, settings.outer);
-        let start = along_flight(&settings, start.to_vec());
-        let (is_seen, next, samples) = (false, settings.end() / SAMPLES, 0);
-        let (counted, rows) = (Vec::new(), Vec::new());
-        let mut this = Self { settings, least_hole, is_seen, next, samples, counted, rows };
-        this.is_seen = is_whole(this.count(&start));
-        this.sample(0.0, &start, energy);
+        let next = settings.end() / SAMPLES;
+        let mut this = Self { settings: settings.clone(), next, rows: Vec::new() };
+        this.sample(0.0, &along_flight(settings, start.to_vec()), energy);
         this
     }
 
     /// Pieces of both rings, and the fewest holes of one.
     fn count(&self, particles: &[Solid]) -> [f64; 2] {
-        let found = halves(particles)
-            .map(|ring| Topology::of(&places(ring), self.settings.dx(), self.least_hole));
+        let least_hole = Topology::least_hole_of_ring(self.settings.inner, self.settings.outer);
+        let found = halves(particles).map(|ring| {
+            let places: Vec<_> = ring.iter().map(|p| p.position).collect();
+            Topology::of(&places, self.settings.dx(), least_hole)
+        });
         let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
         [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
     }
@@ -113,10 +96,10 @@ impl Series {
     pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
         let (c0, dx) = (self.settings.c0(), self.settings.dx());
         let [_, right] = halves(particles);
-        if self.samples.is_multiple_of(COUNTED_EVERY) {
-            self.counted = self.count(particles).into();
-        }
-        self.samples += 1;
+        let [pieces, holes] = match self.rows.last() {
+            Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => [last[5], last[9]],
+            _ => self.count(particles),
+        };
         let [centre, velocity, extent] = side(right, dx);
         let Energy { kinetic, compression, shear } =
             known.unwrap_or_else(|| Energy::of_all(particles, &self.settings.material()));
@@ -126,11 +109,11 @@ impl Series {
             velocity.x / c0,
             extent.x,
             extent.y,
-            self.counted[0],
+            pieces,
             kinetic,
             compression,
             shear,
-            self.counted[1],
+            holes,
         ]);
     }
 
@@ -146,7 +129,8 @@ impl Series {
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
         let most = |k: usize| column(k).fold(0.0, f64::max);
         record.put(PIECES_MOST, most(5));
-        if self.is_seen {
+        // A hole that is narrower than a disc is not seen at the start either.
+        if is_whole([first[5], first[9]]) {
             record.put(HOLES_LEAST, least(9));
             if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[9]])) {
                 record.put(TORN_AT, torn[0]);

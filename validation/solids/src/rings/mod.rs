@@ -125,15 +125,12 @@ fn variants() -> Vec<Composition<RingSettings>> {
             "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
              Hencky, contact between the rings, velocity Verlet; nothing dissipates",
             schemes::total::hencky(),
-            choose,
+            |s| {
+                total::choose(s);
+                s.courant = total::COURANT_OF_FOLDS;
+            },
         )
         .all
-}
-
-/// The settings of total Lagrangian rings.
-fn choose(s: &mut RingSettings) {
-    total::choose(s);
-    s.courant = total::COURANT_OF_FOLDS;
 }
 
 /// Colliding rubber rings.
