@@ -2,6 +2,7 @@
 
 use base::{gate::*, record::*};
 use harness::{case::*, composed::*, declare::*, simulate, table::*};
+use maths::metrics::history;
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::{PI, TAU};
@@ -195,11 +196,8 @@ fn first_row(particles: &[Particle<Symmetric>]) -> ([f64; 4], f64) {
 
 /// Angular momentum at a time \[s\], between two samples of the series; NaN outside of it.
 fn momentum_at(series: &[[f64; 4]], time: f64) -> f64 {
-    let around = series.windows(2).find(|w| w[0][0] <= time && time <= w[1][0]);
-    around.map_or(f64::NAN, |w| {
-        let [a, b] = [w[0], w[1]];
-        a[1] + (b[1] - a[1]) * ((time - a[0]) / (b[0] - a[0]))
-    })
+    let spins: Vec<(f64, f64)> = series.iter().map(|row| (row[0], row[1])).collect();
+    history::differences(&spins, &[(time, 0.0)]).map_or(f64::NAN, |found| found[0])
 }
 
 fn metrics(series: &[[f64; 4]], revolutions: f64, scale: f64, record: &mut Record) {
