@@ -30,7 +30,7 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     name: DiskSettings::NAME,
     problem: "A free elastic disk spins",
     best: Best {
-        variant: "lagrangian",
+        variant: LAGRANGIAN,
         because: "it keeps its angular momentum to round-off, where the paper's disk loses all of its spin",
         papers: Some("seed"),
     },
@@ -234,7 +234,7 @@ fn table(tier: Tier) -> Table<DiskSettings, For> {
     table.over(For::Braked, &["seed", "bare"], [&[8], &[8]], spacings);
     table.over(For::Order, &["seed"], [&[4], &[4, 16]], spacings);
     table.over(For::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
-    table.over(For::Kept, &["lagrangian"], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
+    table.over(For::Kept, &[LAGRANGIAN], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
     table.judge(gates);
     table
 }

@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn the_end_is_half_a_spacing_beyond_the_last_column() {
         let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
-        let method = schemes::total::heavy_hencky();
+        let method = schemes::total::hencky();
         let (medium, domain) = (s.medium(&method, s.dx()), s.domain());
         let parts = Parts::new(medium, domain, s.particles(), &Context::default());
         let mut simulation =

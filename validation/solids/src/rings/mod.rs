@@ -82,9 +82,6 @@ pub const COMPONENTWISE: &str = "componentwise";
 /// The variant with corrected gradients.
 pub const CORRECTED: &str = "corrected";
 
-/// The variant with a stored energy.
-pub const LAGRANGIAN: &str = "lagrangian";
-
 /// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
@@ -122,8 +119,7 @@ fn variants() -> Vec<Composition<RingSettings>> {
         )
         .with(
             LAGRANGIAN,
-            "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
-             Hencky, contact between the rings, velocity Verlet; nothing dissipates",
+            TOTAL,
             schemes::total::hencky(),
             |s| {
                 total::choose(s);

@@ -59,7 +59,7 @@ pub trait Problem: SharedSettings {
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
-    /// The acceleration of weight \[m/s²\], which only heavy methods read.
+    /// The acceleration of weight \[m/s²\], which only methods with weight read.
     fn gravity(&self) -> Vector2<f64> {
         Vector2::zeros()
     }
@@ -125,9 +125,8 @@ pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composi
             |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
         )
         .with(
-            "lagrangian",
-            "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
-             Hencky, contact between bodies, velocity Verlet: what is left where nothing dissipates?",
+            lagrangian::LAGRANGIAN,
+            lagrangian::TOTAL,
             schemes::total::hencky(),
             lagrangian::choose,
         )
