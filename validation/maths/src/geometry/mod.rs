@@ -9,7 +9,7 @@ mod topology;
 pub use curve::{Curve, Row};
 pub use hill::Hill;
 pub use tank::Tank;
-pub use topology::Topology;
+pub use topology::{BOND, Bonds, Topology};
 
 use nalgebra::Vector2;
 

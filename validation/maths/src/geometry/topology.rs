@@ -25,7 +25,7 @@ use super::corners;
 type Point = Vector2<f64>;
 
 /// Particles that are no farther apart hold together \[dx\].
-const BOND: f64 = 1.5;
+pub const BOND: f64 = 1.5;
 /// Distance of scan lines \[dx\].
 const LINE: f64 = 0.2;
 
@@ -58,6 +58,28 @@ impl Topology {
     pub fn least_hole_of_ring(inner: f64, outer: f64) -> f64 {
         let wall = outer - inner;
         0.25 * PI * (0.25 * wall * wall).min(inner * inner)
+    }
+}
+
+/// Particles that were neighbours once.
+#[derive(Clone, Debug, Default)]
+pub struct Bonds(Vec<[usize; 2]>);
+
+impl Bonds {
+    /// Pairs of particles that are at most `reach` \[m\] apart.
+    pub fn of(points: &[Point], reach: f64) -> Self {
+        let mut bonds = Vec::new();
+        each_pair(points, reach, |a, b| bonds.push([a, b]));
+        Self(bonds)
+    }
+
+    /// The largest distance of such a pair where its particles are now \[m\]; 0 without pairs.
+    pub fn longest(&self, points: &[Point]) -> f64 {
+        let distance2 = |[a, b]: &[usize; 2]| match (points.get(*a), points.get(*b)) {
+            (Some(a), Some(b)) => (a - b).norm_squared(),
+            _ => 0.0,
+        };
+        self.0.iter().map(distance2).fold(0.0, f64::max).sqrt()
     }
 }
 
@@ -359,5 +381,22 @@ mod tests {
         let mut debris = annulus();
         debris.push(Point::new(1e9, -1e9));
         assert_eq!(of(&debris), (2, 1));
+    }
+
+    #[test]
+    fn bonds_know_how_far_neighbours_have_come_apart() {
+        let ring = annulus();
+        let bonds = Bonds::of(&ring, 1.2 * DX);
+        // Two in the layer, and 1.3 to each side, each counted once.
+        let of_each = bonds.0.len() as f64 / ring.len() as f64;
+        assert!((2.1..2.4).contains(&of_each), "{of_each} a particle");
+        let rest = bonds.longest(&ring);
+        assert!(rest > DX && rest <= 1.2 * DX, "{rest}");
+        // The bonds across the cut are longer by what it opened.
+        let opened = bonds.longest(&cut(4.0, 0.3)) / DX;
+        assert!((4.0..4.1).contains(&opened), "{opened} dx");
+        let swollen: Vec<Point> = ring.iter().map(|p| 1.5 * p).collect();
+        assert!((bonds.longest(&swollen) / rest - 1.5).abs() < 1e-12);
+        assert_eq!(Bonds::of(&[], DX).longest(&[]), 0.0);
     }
 }

@@ -16,6 +16,7 @@ const STEPWISE: &[MetricKey] = &[
     T_IMPULSE_99,
     CONTACT_BEGIN_ERROR,
     CONTACT_END_ERROR,
+    STRETCH_MOST,
     ENERGY_GAINED,
 ];
 

@@ -1,6 +1,6 @@
 //! What is measured of the rings, sample by sample and at the end.
 
-use maths::geometry::Topology;
+use maths::geometry::{Bonds, Topology};
 use solver::Flow as Going;
 
 use super::*;
@@ -8,6 +8,9 @@ use super::*;
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;
 const COUNTED_EVERY: usize = 8;
+/// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
+/// nearest one or two of the layers beside it.
+pub const NEIGHBOURS: f64 = 1.2;
 /// Shares of the run at which particles are kept for pictures.
 pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
 
@@ -35,6 +38,11 @@ pub fn side(ring: &[Solid], dx: f64) -> [Vector2<f64>; 3] {
     [centre / mass, momentum / mass, high - low + Vector2::repeat(dx)]
 }
 
+/// Where the particles of a ring are.
+fn places(ring: &[Solid]) -> Vec<Vector2<f64>> {
+    ring.iter().map(|p| p.position).collect()
+}
+
 /// Are there two pieces, each with a hole?
 fn is_whole([pieces, holes]: [f64; 2]) -> bool {
     pieces == 2.0 && holes >= 1.0
@@ -51,13 +59,15 @@ type Solid = Particle<Symmetric>;
 /// Watches a run.
 pub struct Series {
     settings: RingSettings,
+    /// Neighbours of each ring at the start.
+    bonds: [Bonds; 2],
     next: f64,
     rows: Vec<[f64; COLUMNS]>,
 }
 
-harness::observed! { Series: changes(next, rows), stays(settings) }
+harness::observed! { Series: changes(next, rows), stays(settings, bonds) }
 
-const COLUMNS: usize = 10;
+const COLUMNS: usize = 11;
 const NAMES: [(&str, &str); COLUMNS] = [
     ("t", "L/c0"),
     ("x_c", "L"),
@@ -69,24 +79,25 @@ const NAMES: [(&str, &str); COLUMNS] = [
     ("compression", "J/m"),
     ("shear", "J/m"),
     ("holes", "1"),
+    ("stretch", "dx"),
 ];
 
 impl Series {
     /// A series over a run with this start.
     pub fn new(settings: &RingSettings, start: &[Solid], energy: Option<Energy>) -> Self {
         let next = settings.end() / SAMPLES;
-        let mut this = Self { settings: settings.clone(), next, rows: Vec::new() };
-        this.sample(0.0, &along_flight(settings, start.to_vec()), energy);
+        let start = along_flight(settings, start.to_vec());
+        let bonds = halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
+        let mut this = Self { settings: settings.clone(), bonds, next, rows: Vec::new() };
+        this.sample(0.0, &start, energy);
         this
     }
 
     /// Pieces of both rings, and the fewest holes of one.
     fn count(&self, particles: &[Solid]) -> [f64; 2] {
         let least_hole = Topology::least_hole_of_ring(self.settings.inner, self.settings.outer);
-        let found = halves(particles).map(|ring| {
-            let places: Vec<_> = ring.iter().map(|p| p.position).collect();
-            Topology::of(&places, self.settings.dx(), least_hole)
-        });
+        let found = halves(particles)
+            .map(|ring| Topology::of(&places(ring), self.settings.dx(), least_hole));
         let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
         [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
     }
@@ -95,7 +106,7 @@ impl Series {
     /// unless the simulation knows them.
     pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
         let (c0, dx) = (self.settings.c0(), self.settings.dx());
-        let [_, right] = halves(particles);
+        let [left, right] = halves(particles);
         let [pieces, holes] = match self.rows.last() {
             Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => [last[5], last[9]],
             _ => self.count(particles),
@@ -103,6 +114,8 @@ impl Series {
         let [centre, velocity, extent] = side(right, dx);
         let Energy { kinetic, compression, shear } =
             known.unwrap_or_else(|| Energy::of_all(particles, &self.settings.material()));
+        let bonds = self.bonds.iter().zip([left, right]);
+        let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
         self.rows.push([
             time * c0,
             centre.x,
@@ -114,6 +127,7 @@ impl Series {
             compression,
             shear,
             holes,
+            stretch,
         ]);
     }
 
@@ -136,6 +150,7 @@ impl Series {
                 record.put(TORN_AT, torn[0]);
             }
         }
+        record.put(STRETCH_MOST, largest(column(10)));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
         let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
@@ -314,6 +329,8 @@ mod tests {
         // 1.5 dx apart at t = 16, 1.7 at 18; counted at every eighth sample.
         assert_eq!(record.value(TORN_AT), Some(24.0));
         assert!(holes.iter().all(|(t, holes)| *holes == if *t < 24.0 { 1.0 } else { 0.0 }));
+        let stretch = record.value(STRETCH_MOST).unwrap();
+        assert!((stretch - 3.85).abs() < 0.1, "{stretch} dx: 1 + 28 x 0.1");
     }
 
     #[test]
@@ -325,6 +342,8 @@ mod tests {
         let (record, _) = watched(bend);
         assert_eq!((record.value(HOLES_LEAST), record.value(PIECES_MOST)), (Some(1.0), Some(2.0)));
         assert_eq!(record.value(TORN_AT), None);
+        let stretch = record.value(STRETCH_MOST).unwrap();
+        assert!((1.2..1.45).contains(&stretch), "{stretch} dx: at most 1.2 x 1.195");
         let split = |time: f64, p: &mut Particle<Symmetric>| {
             if p.position.x < 0.0 && time > 20.0 {
                 p.position.y += 0.3 * p.position.y.signum();

@@ -10,6 +10,8 @@ base::metrics! {
         "least number of holes of a ring at any time, discs of 0.75 dx; 1 is whole, 0 is torn";
     TORN_AT = "torn_at" ["L/c0"]
         "first sample at which a ring has no hole or more than one piece; absent if none";
+    STRETCH_MOST = "stretch_most" ["dx"]
+        "largest distance at any time of particles that were within 1.2 dx at the start";
     WIDTH_MIN = "width_min" ["L"] "least extent of a ring along the line of flight";
     HEIGHT_MAX = "height_max" ["L"] "largest extent of a ring across it";
     ENERGY_LOST = "energy_lost" ["-"] "1 - (kinetic + strain energy) at the end/at the start";

@@ -24,6 +24,8 @@ pub struct Reference {
     pub uncertainty: f64,
     /// Least distance of the ring from the plane \[L\] over t \[L/c0\].
     gap: Vec<(f64, f64)>,
+    /// Largest principal logarithmic strain at any time and place \[-\].
+    pub strain: f64,
 }
 
 /// The faces of the right ring at a time of the table \[L\]; none at any other.
@@ -87,6 +89,8 @@ impl Reference {
         let ends = curve("phases", ["impulse_99", "impulse_99_uncertainty"]);
         let (_, doubt) = *ends.last()?;
         let phases = begins.into_iter().zip(ends);
+        let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
+        let strains = Package::curve(PACKAGE, "checks", ["mesh", "value"], &strain);
         let summary = Package::load(PACKAGE).ok()?.table("summary").ok()?;
         Some(Self {
             quantities: quantities(summary, &of).ok()?,
@@ -95,6 +99,8 @@ impl Reference {
             uncertainty: largest(doubts) / diameter(&histories),
             histories,
             gap: curve("series", ["t", "gap"]),
+            // The finest mesh comes last.
+            strain: strains.last().map_or(f64::NAN, |(_, strain)| *strain),
         })
     }
 

@@ -88,6 +88,24 @@ fn a_known_motion_has_known_measures() {
     }
 }
 
+#[test]
+fn a_ring_that_grows_by_a_quarter_is_stretched_by_a_quarter() {
+    let short = RingSettings { end: 10.0, ..settings() };
+    let of = |factor: f64| {
+        let record = measured(&short, |t| {
+            let size = 8.0 * if t > 5.0 { factor } else { 1.0 };
+            let dx = short.spacing;
+            [5.0, -0.06, (size - dx) + dx, size]
+        });
+        value(&record, STRETCH_MOST)
+    };
+    let (start, grown) = (of(1.0), of(1.25));
+    // Extents have half a spacing on either side that does not grow.
+    let stretch = (10.0 - 0.25) / (8.0 - 0.25);
+    assert!((1.1..=1.2).contains(&start), "{start} dx");
+    assert_abs_diff_eq!(grown / start, stretch, epsilon = 1e-3);
+}
+
 /// Rings at 0.01 c0 had a restitution, 0.54, though they still pushed each other at the end of the run.
 #[test]
 fn rings_that_still_touch_at_the_end_have_no_restitution() {
