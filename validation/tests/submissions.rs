@@ -128,7 +128,7 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
         ("poiseuille --variant modern --set rows=8", "profile.csv", 20, "v_rms"),
         ("cantilever --variant lagrangian --set n=4", "end.csv", 20, "energy_change"),
         ("dam_break --variant modern --set n=8", "series.csv", 6, "mach"),
-        ("rubber_rings --variant lagrangian --set spacing=0.25", "series.csv", 10, "mirror"),
+        ("rubber_rings --variant lagrangian --set spacing=0.25", "series.csv", 10, "momentum"),
     ] {
         let (folder, found) = of_curve(line, file);
         let own = Record::from_json(&read(&folder.path().join("run/record.json"))).unwrap();

@@ -34,5 +34,5 @@ pub mod reference;
 pub mod solid;
 
 pub use law::{Hencky, Law, Moduli, SaintVenantKirchhoff};
-pub use load::{BetweenFaces, Load, RigidPlane, Weight, contact_stiffness};
+pub use load::{BetweenFaces, Load, Weight, contact_stiffness};
 pub use solid::{Solid, SolidScene};

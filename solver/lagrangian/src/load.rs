@@ -1,5 +1,5 @@
-//! What acts on a solid in its present configuration: weight, a rigid plane, and contact between bodies.
-//! Each derives from an energy.
+//! What acts on a solid in its present configuration: weight, and contact between bodies. Each
+//! derives from an energy.
 
 use nalgebra::Vector2;
 use solver::{Evolved, Smoothing, Symmetric, WendlandC2};
@@ -73,59 +73,6 @@ impl Load for Weight {
 /// waves that are hardly longer than two spacings, a softer one lets bodies overlap more.
 pub fn contact_stiffness(moduli: &Moduli) -> f64 {
     0.25 * moduli.longitudinal()
-}
-
-/// A rigid plane without friction, which pushes and never pulls. Each particle stays on the side of it on
-/// which it is without stress, so that a plane between two bodies keeps them apart. A particle touches it at
-/// the distance t = s/2, half of its size. Nearer, at d < t, it is pushed with the force 2 k (t − d) t/d:
-/// twice the stiffness of a face, since the plane does not yield, and so much at last that nothing passes.
-#[derive(Clone, Copy, Debug)]
-pub struct RigidPlane {
-    /// A point of it \[m\].
-    pub point: Vector2<f64>,
-    /// Unit normal.
-    pub normal: Vector2<f64>,
-    /// k \[Pa\], see [`contact_stiffness`].
-    pub stiffness: f64,
-}
-
-impl RigidPlane {
-    /// The normal to the side of each particle, half its size t, and its distance d from the plane \[m\].
-    fn distances<'a>(
-        &self,
-        on: &Loaded<'a>,
-    ) -> impl Iterator<Item = (Vector2<f64>, f64, f64)> + use<'a> {
-        let Self { point, normal, .. } = *self;
-        let of = move |((at, size), reference): ((&Evolved<Symmetric>, &f64), &Vector2<f64>)| {
-            let out = normal * (reference - point).dot(&normal).signum();
-            (out, 0.5 * size, (at.position - point).dot(&out))
-        };
-        on.state.iter().zip(&on.reference.sizes).zip(&on.reference.places).map(of)
-    }
-
-    /// 2 k (t − d) t/d \[N/m\].
-    fn force(&self, touch: f64, distance: f64) -> f64 {
-        let inverse = if distance > 0.0 { touch / distance } else { f64::INFINITY };
-        2.0 * self.stiffness * (touch - distance).max(0.0) * inverse
-    }
-
-    /// 2 k t (t ln(t/d) − (t − d)) \[J/m\].
-    fn stored(&self, touch: f64, distance: f64) -> f64 {
-        let overlap = (touch - distance).max(0.0);
-        2.0 * self.stiffness * touch * (-touch * libm::log1p(-overlap / touch) - overlap)
-    }
-}
-
-impl Load for RigidPlane {
-    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
-        let pushed = accelerations.iter_mut().zip(&on.reference.masses).zip(self.distances(on));
-        for ((acceleration, mass), (out, touch, distance)) in pushed {
-            *acceleration += out * (self.force(touch, distance) / mass);
-        }
-    }
-    fn energy(&self, on: &Loaded) -> f64 {
-        self.distances(on).fold(0.0, |sum, (_, touch, distance)| sum + self.stored(touch, distance))
-    }
 }
 
 /// Contact between the faces of bodies, also of a body with itself: without friction and attraction.

@@ -4,8 +4,7 @@ mod common;
 
 use common::{MODULI, block, build, energy, forces, free, number, put, scene, stored};
 use lagrangian::{
-    BetweenFaces, Hencky, Law, Load, RigidPlane, SaintVenantKirchhoff, SolidScene, Weight,
-    contact_stiffness,
+    BetweenFaces, Hencky, Law, Load, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
 };
 use nalgebra::{Matrix2, Vector2};
 use solver::{Domain, Ghosts, Open, PlaneWall, SlipGhosts, Stepper, Symmetric, walls::Walls};
@@ -137,12 +136,6 @@ fn check_load<C: Load + Copy>(load: C) {
 #[test]
 fn forces_of_loads_are_derivatives_of_their_energy() {
     check_load(Weight(Vector2::new(0.3, -2.0)));
-    let plane = RigidPlane {
-        point: Vector2::new(0.0, 0.3),
-        normal: Vector2::new(0.6, 0.8),
-        stiffness: contact_stiffness(&MODULI),
-    };
-    check_load(plane);
     let solid = build::<Hencky, _, _>(two(contact()));
     let energies = solid.potential().unwrap();
     assert!(
@@ -221,62 +214,12 @@ fn faces_that_slide_along_each_other_feel_the_same_pressure_everywhere() {
     assert_eq!(contact.pressure(1.0), 0.0);
 }
 
-/// k o at first, with k = (K + 4μ/3)/4 for K = 2 Pa and μ = 0.7 Pa; and 2 k o of a plane, which does not
-/// yield.
+/// k o at first, with k = (K + 4μ/3)/4 for K = 2 Pa and μ = 0.7 Pa.
 #[test]
 fn the_stiffness_of_contact_is_a_quarter_of_the_modulus_of_longitudinal_waves() {
     let expected = 0.733_333;
     let found = contact().pressure(0.9999) / 1e-4;
     assert!((found / expected - 1.0).abs() < 1e-3, "faces: {found} Pa, expected {expected} Pa");
-    let stiffness = contact_stiffness(&MODULI);
-    let (normal, point) = (Vector2::y(), Vector2::zeros());
-    // A particle of size 1 touches the plane at the distance 1/2.
-    let plane = RigidPlane { point: Vector2::new(0.0, 1e-4), normal, stiffness };
-    let solid = build::<Hencky, _, _>(scene(block(4, 3, 0.0), Open, plane));
-    let of_row = forces(&solid).into_iter().filter(|(_, x, ..)| x.y < 1.0);
-    let found = of_row.fold(0.0, |sum, (.., f)| sum + f.y) / 4.0 / 1e-4;
-    let expected = 2.0 * expected;
-    assert!((found / expected - 1.0).abs() < 1e-3, "plane: {found} Pa, expected {expected} Pa");
-    let beside = RigidPlane { point, ..plane };
-    let solid = build::<Hencky, _, _>(scene(block(4, 3, 0.0), Open, beside));
-    let largest = forces(&solid).iter().map(|(.., f)| f.norm()).fold(0.0, f64::max);
-    assert!(largest < 1e-14, "a plane half a size away pushes with {largest:e} N/m, expected 0");
-}
-
-/// A plane between two blocks pushes each to its own side with the force that it has for the other, and a
-/// block beside it as if it were alone.
-#[test]
-fn a_plane_between_two_bodies_pushes_both_apart() {
-    let normal = Vector2::new(0.6, 0.8);
-    let middle = Vector2::new(0.3, -0.1);
-    let plane = RigidPlane { point: middle, normal, stiffness: contact_stiffness(&MODULI) };
-    // The nearest particle is 0.45 away, of sizes near 1.
-    let mut right = block(4, 3, 0.1);
-    let nearest = |all: &[solver::Particle<solver::Symmetric>]| {
-        all.iter().map(|p| (p.position - middle).dot(&normal)).fold(f64::INFINITY, f64::min)
-    };
-    let shift = normal * (0.45 - nearest(&right));
-    right.iter_mut().for_each(|p| p.position += shift);
-    let mirror = |x: Vector2<f64>| x - normal * (2.0 * (x - middle).dot(&normal));
-    let left: Vec<_> =
-        right.iter().map(|p| solver::Particle { position: mirror(p.position), ..*p }).collect();
-    let count = right.len();
-    let of = |particles: Vec<_>| {
-        let bodies = (0..particles.len()).map(|k| u32::from(k >= count)).collect();
-        build::<Hencky, _, _>(SolidScene { bodies, ..scene(particles, Open, plane) })
-    };
-    let push = |solid: &common::Block<Hencky, RigidPlane>, side: f64| {
-        let own =
-            forces(solid).into_iter().filter(|(_, x, ..)| side * (x - middle).dot(&normal) > 0.0);
-        own.fold(Vector2::zeros(), |sum, (.., force)| sum + force)
-    };
-    let (alone, both) = (of(right.clone()), of([left, right].concat()));
-    let [expected, own, other] = [push(&alone, 1.0), push(&both, 1.0), push(&both, -1.0)];
-    assert!(expected.dot(&normal) > 0.05, "the block touches: {expected}");
-    assert!((own - expected).norm() < 1e-13, "{own}, alone {expected}");
-    assert!((other + expected).norm() < 1e-13, "{other}, expected {}", -expected);
-    let [one, two] = [&alone, &both].map(|solid| solid.potential().unwrap().loads);
-    assert!((two - 2.0 * one).abs() < 1e-13, "energy {two:e}, expected twice {one:e}");
 }
 
 /// Two blocks meet and part: the energy that contact stores is given back, and momentum stays.

@@ -1,11 +1,10 @@
-//! Total Lagrangian solids, which have no scheme: bodies alone, with weight, and beside a plane.
+//! Total Lagrangian solids, which have no scheme.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 use harness::method::{Medium, Parts, mutate};
 use lagrangian::*;
-use maths::geometry::corners;
 use maths::theory::bending;
 use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use nalgebra::Vector2;
@@ -29,67 +28,32 @@ const DENSITIES: [f64; 2] = [0.2, 5.0];
 type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
 
 methods! { bodies => Method:
-    /// Bodies with the stored energy of Hencky, and contact between them.
+    /// Bodies with the stored energy of Hencky.
     hencky: Hencky;
-}
-methods! { heavy => Method:
-    /// One body that has weight, with the stored energy of Hencky.
-    heavy_hencky: Hencky;
     /// The same with that of Saint Venant and Kirchhoff.
-    heavy_saint_venant_kirchhoff: SaintVenantKirchhoff;
-}
-methods! { beside_a_plane => Method:
-    /// Two bodies with the stored energy of Hencky, and a rigid plane between them.
-    divided_hencky: Hencky;
-}
-
-/// The method with the stored energy `L`. Particles of the scene that are held are left out: the planes of
-/// its parts hold the body instead.
-fn bodies<L: Law>() -> Method {
-    named::<L>(|mut parts| {
-        mutate(&mut parts);
-        if parts.bodies.is_empty() {
-            return Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?));
-        }
-        let contact = BetweenFaces::new(contact_stiffness(&moduli(&parts.medium)));
-        Ok(Box::new(scene(parts, contact).build::<WendlandC2, L>()?))
-    })
-}
-
-/// The same of one body that has weight: the acceleration of its medium.
-fn heavy<L: Law>() -> Method {
-    named::<L>(|mut parts| {
-        mutate(&mut parts);
-        let weight = Weight(parts.medium.acceleration);
-        Ok(Box::new(scene(parts, weight).build::<WendlandC2, L>()?))
-    })
-}
-
-/// The same of two bodies with a rigid plane at rest half-way between them, in place of contact between
-/// faces.
-fn beside_a_plane<L: Law>() -> Method {
-    named::<L>(|mut parts| {
-        mutate(&mut parts);
-        // Extents do not depend on the order of the particles.
-        let middle = |body: u32| {
-            let all = parts.particles.iter().zip(&parts.bodies).filter(|(_, of)| **of == body);
-            let [low, high] = corners(all.map(|(p, _)| p.position));
-            0.5 * (low + high)
-        };
-        let [left, right] = [middle(0), middle(1)];
-        let (point, normal) = (0.5 * (left + right), (right - left).normalize());
-        let plane =
-            RigidPlane { point, normal, stiffness: contact_stiffness(&moduli(&parts.medium)) };
-        Ok(Box::new(scene(parts, plane).build::<WendlandC2, L>()?))
-    })
+    saint_venant_kirchhoff: SaintVenantKirchhoff;
 }
 
 /// A simulation, or why there is none.
 type Built = Result<Box<dyn Stepper<Symmetric>>, SceneError>;
 
-/// The method with the stored energy `L` whose simulations this builds.
-fn named<L: Law>(build: fn(Parts<Symmetric>) -> Built) -> Method {
-    let mut method = Method::with::<Named>(build);
+/// The method with the stored energy `L`: of one body with the weight of its medium, if that has any, or of
+/// several without weight and with contact between them. Particles of the scene that are held are left out:
+/// the planes of its parts hold the body instead.
+fn bodies<L: Law>() -> Method {
+    fn build<L: Law>(mut parts: Parts<Symmetric>) -> Built {
+        mutate(&mut parts);
+        let (weight, moduli) = (parts.medium.acceleration, moduli(&parts.medium));
+        if !parts.bodies.is_empty() {
+            let contact = BetweenFaces::new(contact_stiffness(&moduli));
+            return Ok(Box::new(scene(parts, contact).build::<WendlandC2, L>()?));
+        }
+        if weight != Vector2::zeros() {
+            return Ok(Box::new(scene(parts, Weight(weight)).build::<WendlandC2, L>()?));
+        }
+        Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?))
+    }
+    let mut method = Method::with::<Named>(build::<L>);
     (method.integrator, method.walls) = ("velocity Verlet", "planes that hold");
     method.law = Some(L::ENERGY);
     method.limit = Some(step_limit);

@@ -76,8 +76,6 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
         First => vec![fall(), energy()],
         Paper => {
             let longer = 1.0 + faces::known_excess(n, row.settings.h_over_dx);
-            let soft = "Uncorrected sums lengthen the period of bending by 30 % with 5 layers, and published \
-                        plates of many layers have another 7 %. Deflections go with the square of it.";
             let nothing =
                 "Nothing elastic dissipates, and the weight has a potential, so all energy stays.";
             let loses = "Artificial viscosity brakes the swing. The bound: a bar that has come to rest, at \
@@ -86,11 +84,7 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
             let energy =
                 gate(ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, nothing);
             vec![
-                fall().with_limitation(
-                    Bound::Within(-0.01, longer * longer - 1.0),
-                    soft,
-                    &FREE_FACES,
-                ),
+                faces::soft(fall(), Bound::Within(-0.01, longer * longer - 1.0)),
                 energy.with_limitation(Bound::Within(-1.0, 0.01), loses, &VISCOSITY),
             ]
         }

@@ -80,11 +80,6 @@ fn gates(row: &Row<PlateSettings, For>) -> Vec<Gate> {
     }
 }
 
-/// Why the coarse plates swing too slowly.
-const FACES: &str = "Bending strains a plate most near its faces. The bound: sums over the layers that there \
-    are lengthen the period by 30 % with 5 layers, and published plates of many layers by another 7 %. The \
-    error falls as h/H does: with 20 layers the gate holds.";
-
 /// Of a swing by the equations of the paper.
 fn period(row: &Row<PlateSettings, For>) -> Gate {
     let published = "Published SPH of this plate has periods that are 7 to 12 % too long; shear and rotary \
@@ -95,7 +90,7 @@ fn period(row: &Row<PlateSettings, For>) -> Gate {
         return gate;
     }
     let softer = faces::known_excess(s.n, s.h_over_dx);
-    gate.with_limitation(Bound::Within(0.0, softer), FACES, &FREE_FACES)
+    faces::soft(gate, Bound::Within(0.0, softer))
 }
 
 /// The same, of any Poisson's ratio.

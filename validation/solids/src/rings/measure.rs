@@ -59,25 +59,15 @@ type Solid = Particle<Symmetric>;
 /// Watches a run.
 pub struct Series {
     settings: RingSettings,
-    /// Area below which a hole is none of a ring \[m²\].
-    least_hole: f64,
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
-    /// Is each ring seen as one at the start? Not if its hole is narrower than a disc.
-    is_seen: bool,
     next: f64,
-    samples: usize,
-    /// Pieces of both rings at the last count, and the fewest holes of one.
-    counted: Vec<f64>,
     rows: Vec<[f64; COLUMNS]>,
 }
 
-harness::observed! {
-    Series:
-    changes(next, samples, counted, rows), stays(settings, least_hole, bonds, is_seen)
-}
+harness::observed! { Series: changes(next, rows), stays(settings, bonds) }
 
-const COLUMNS: usize = 12;
+const COLUMNS: usize = 11;
 const NAMES: [(&str, &str); COLUMNS] = [
     ("t", "L/c0"),
     ("x_c", "L"),
@@ -88,7 +78,6 @@ const NAMES: [(&str, &str); COLUMNS] = [
     ("kinetic", "J/m"),
     ("compression", "J/m"),
     ("shear", "J/m"),
-    ("mirror", "dx"),
     ("holes", "1"),
     ("stretch", "dx"),
 ];
@@ -96,22 +85,19 @@ const NAMES: [(&str, &str); COLUMNS] = [
 impl Series {
     /// A series over a run with this start.
     pub fn new(settings: &RingSettings, start: &[Solid], energy: Option<Energy>) -> Self {
-        let settings = settings.clone();
-        let least_hole = Topology::least_hole_of_ring(settings.inner, settings.outer);
-        let start = along_flight(&settings, start.to_vec());
+        let next = settings.end() / SAMPLES;
+        let start = along_flight(settings, start.to_vec());
         let bonds = halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
-        let (is_seen, next, samples) = (false, settings.end() / SAMPLES, 0);
-        let (counted, rows) = (Vec::new(), Vec::new());
-        let mut this = Self { settings, least_hole, bonds, is_seen, next, samples, counted, rows };
-        this.is_seen = is_whole(this.count(&start));
+        let mut this = Self { settings: settings.clone(), bonds, next, rows: Vec::new() };
         this.sample(0.0, &start, energy);
         this
     }
 
     /// Pieces of both rings, and the fewest holes of one.
     fn count(&self, particles: &[Solid]) -> [f64; 2] {
+        let least_hole = Topology::least_hole_of_ring(self.settings.inner, self.settings.outer);
         let found = halves(particles)
-            .map(|ring| Topology::of(&places(ring), self.settings.dx(), self.least_hole));
+            .map(|ring| Topology::of(&places(ring), self.settings.dx(), least_hole));
         let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
         [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
     }
@@ -121,10 +107,10 @@ impl Series {
     pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
         let (c0, dx) = (self.settings.c0(), self.settings.dx());
         let [left, right] = halves(particles);
-        if self.samples.is_multiple_of(COUNTED_EVERY) {
-            self.counted = self.count(particles).into();
-        }
-        self.samples += 1;
+        let [pieces, holes] = match self.rows.last() {
+            Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => [last[5], last[9]],
+            _ => self.count(particles),
+        };
         let [centre, velocity, extent] = side(right, dx);
         let Energy { kinetic, compression, shear } =
             known.unwrap_or_else(|| Energy::of_all(particles, &self.settings.material()));
@@ -136,12 +122,11 @@ impl Series {
             velocity.x / c0,
             extent.x,
             extent.y,
-            self.counted[0],
+            pieces,
             kinetic,
             compression,
             shear,
-            mirror_error(left, right) / dx,
-            self.counted[1],
+            holes,
             stretch,
         ]);
     }
@@ -158,23 +143,20 @@ impl Series {
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
         let most = |k: usize| column(k).fold(0.0, f64::max);
         record.put(PIECES_MOST, most(5));
-        if self.is_seen {
-            record.put(HOLES_LEAST, least(10));
-            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[10]])) {
+        // A hole that is narrower than a disc is not seen at the start either.
+        if is_whole([first[5], first[9]]) {
+            record.put(HOLES_LEAST, least(9));
+            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[9]])) {
                 record.put(TORN_AT, torn[0]);
             }
         }
-        record.put(STRETCH_MOST, largest(column(11)));
+        record.put(STRETCH_MOST, largest(column(10)));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
-        record.put(MIRROR, most(9));
-        let late = self.rows.iter().filter(|row| row[0] >= 0.9 * last[0]);
-        let pushed = late.map(|row| (row[2] - last[2]).abs()).fold(0.0, f64::max);
         let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
         let highest = self.rows.iter().map(energy).fold(0.0, f64::max);
         let speed = self.settings.speed;
         for (metric, value) in [
-            (PUSHED_BY_ITSELF, pushed / speed),
             (ENERGY_LOST, 1.0 - energy(last) / energy(first)),
             (ENERGY_GAINED, highest / energy(first) - 1.0),
         ] {
@@ -247,14 +229,6 @@ const TOUCH: f64 = 0.01;
 const PAUSE: f64 = 5.0;
 /// Force of round-off, over mass and speed of a ring \[c₀/L\].
 const ROUND_OFF: f64 = 1e-9;
-
-/// Largest distance of a particle from the mirror image of its partner.
-fn mirror_error(left: &[Solid], right: &[Solid]) -> f64 {
-    let error = |(l, r): (&Solid, &Solid)| {
-        Vector2::new(l.position.x + r.position.x, l.position.y - r.position.y).norm()
-    };
-    left.iter().zip(right).map(error).fold(0.0, f64::max)
-}
 
 impl Observer<Symmetric> for Series {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Going {
@@ -338,7 +312,7 @@ mod tests {
         }
         let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
         series.put(&mut record);
-        (record, series.points(10))
+        (record, series.points(9))
     }
 
     /// Seen from outside at 0.09 to 0.12 c0: a ring opens at its rear pole into a C. It is one piece still.

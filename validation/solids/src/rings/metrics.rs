@@ -16,9 +16,6 @@ base::metrics! {
     HEIGHT_MAX = "height_max" ["L"] "largest extent of a ring across it";
     ENERGY_LOST = "energy_lost" ["-"] "1 - (kinetic + strain energy) at the end/at the start";
     ENERGY_GAINED = "energy_gained" ["-"] "largest total energy at any time/at the start - 1";
-    PUSHED_BY_ITSELF = "pushed_by_itself" ["-"]
-        "max |v_c - v_c(end)|/V of a ring in the last tenth of the run";
-    MIRROR = "mirror" ["dx"] "max over particles and times of the distance from the mirror image";
     PHASES = "phases" ["1"] "phases of contact, at least 5 L/c0 apart";
     MOMENTUM = "momentum" ["-"] "|sum m v| at the end/momentum of one ring, exactly 0";
     IMPULSE = "impulse" ["rho c0 L^2"] "mass of a ring times the change of its velocity in this phase";
@@ -38,39 +35,6 @@ base::metrics! {
     WIDTH_RMS = "width_rms" ["L"] "rms over the run of width - finite elements";
     HEIGHT_RMS = "height_rms" ["L"] "rms over the run of height - finite elements";
     HISTORIES = "histories" ["-"] "the largest of x_c_rms, width_rms and height_rms/outer diameter";
-}
-
-/// What has become of two rings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
-    /// Each is one piece with a hole, at every count.
-    Whole,
-    /// One is cut through once, like a C, and so has no hole; it is one piece all the same.
-    Torn,
-    /// There are more pieces than rings.
-    InPieces,
-    /// The run did not reach its end.
-    Diverged,
-}
-
-impl Fate {
-    /// Of a run.
-    pub fn of(record: &Record) -> Self {
-        match (record.value(PIECES_MOST), record.value(HOLES_LEAST)) {
-            (None, _) => Self::Diverged,
-            (Some(pieces), _) if pieces > 2.0 => Self::InPieces,
-            (_, Some(holes)) if holes < 1.0 => Self::Torn,
-            _ => Self::Whole,
-        }
-    }
-
-    /// Names, for tables and maps.
-    pub const NAMES: [&'static str; 4] = ["whole", "torn", "in pieces", "diverged"];
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        Self::NAMES[self as usize]
-    }
 }
 
 /// Numbers that finite elements have too, and the distance from these.

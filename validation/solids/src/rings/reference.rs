@@ -1,55 +1,49 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
 use ::lagrangian::{Hencky, Law as _};
-use base::reference::{Reference as Package, Table};
+use base::reference::Reference as Package;
 use maths::metrics::{history, norms::rms};
 
 use super::*;
 
+const PACKAGE: &str = "rubber_rings";
 /// The law of (10) to (12), as the tables name it.
 const JAUMANN: &str = "jaumann";
-
-fn table(name: &str) -> Option<&'static Table> {
-    Package::load("rubber_rings").ok()?.table(name).ok()
-}
 
 /// What finite elements say of one law and speed.
 #[derive(Clone, Debug)]
 pub struct Reference {
     quantities: Quantities,
-    /// Phases of contact: impulse \[ρ c₀ L²\] and the times when 1 and 99 % of it have passed \[L/c0\], each
-    /// with its uncertainty.
-    pub phases: Vec<[(f64, f64); 3]>,
-    /// Times \[L/c0\].
-    pub times: Vec<f64>,
-    /// The columns of [`Reference::COLUMNS`] at these times.
-    pub columns: [Vec<f64>; 4],
+    /// Phases of contact: impulse \[ρ c₀ L²\] and the times when 1 and 99 % of it have passed \[L/c0\].
+    pub phases: Vec<[f64; 3]>,
+    /// The uncertainty of the last of these times \[L/c0\].
+    pub doubt: f64,
+    /// The columns of [`Reference::COLUMNS`] over t \[L/c0\].
+    pub histories: Histories,
     /// The uncertainty of [`HISTORIES`], from that of the columns.
     pub uncertainty: f64,
-    /// Least distance of the ring from the plane at these times \[L\].
-    gap: Vec<f64>,
+    /// Least distance of the ring from the plane \[L\] over t \[L/c0\].
+    gap: Vec<(f64, f64)>,
     /// Largest principal logarithmic strain at any time and place \[-\].
     pub strain: f64,
 }
 
 /// The faces of the right ring at a time of the table \[L\]; none at any other.
-pub fn outlines(speed: f64, time: f64) -> Option<Vec<Vec<(f64, f64)>>> {
-    let table = table("outlines")?;
-    let face = |name: &str| {
-        let of = [("law", JAUMANN), ("speed", &speed.to_string()), ("face", name)];
-        let rows = table.select(&of, ["t", "x", "y"]).ok()?.into_iter();
-        let now = rows.filter(|[t, ..]| (t - time).abs() < 1e-9);
-        let half: Vec<(f64, f64)> = now.map(|[_, x, y]| (x, y)).collect();
-        let mirrored = half.iter().rev().map(|(x, y)| (*x, -y));
-        Some(half.iter().copied().chain(mirrored).collect::<Vec<_>>())
+pub fn outlines(speed: f64, time: f64) -> Vec<Vec<(f64, f64)>> {
+    let [speed, time] = [speed, time].map(|number| format!("{number:?}"));
+    let face = |name| {
+        let of = [("law", JAUMANN), ("speed", &*speed), ("t", &*time), ("face", name)];
+        let half = Package::curve(PACKAGE, "outlines", ["x", "y"], &of);
+        let mirrored = half.clone().into_iter().rev().map(|(x, y)| (x, -y));
+        half.into_iter().chain(mirrored).collect::<Vec<_>>()
     };
-    Some([face("outer")?, face("inner")?].into_iter().filter(|line| !line.is_empty()).collect())
+    ["outer", "inner"].map(face).into_iter().filter(|line| !line.is_empty()).collect()
 }
 
 /// What is compared at every time of the reference.
 const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST];
 
-/// Points of [`Reference::COLUMNS`] of a run over t \[L/c0\].
+/// Points of [`Reference::COLUMNS`] over t \[L/c0\].
 type Histories = [Vec<(f64, f64)>; 4];
 
 /// Adds the distances from finite elements to the metrics of a run that has been measured, or says why there
@@ -84,37 +78,30 @@ impl Reference {
         if rings(settings) != rings(&RingSettings::default()) {
             return None;
         }
-        let law = if [LAGRANGIAN, PLANE].contains(&variant) { Hencky::NAME } else { JAUMANN };
+        let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
-        let column = |table: &Table, name: &str, of: &[(&str, &str)]| -> Option<Vec<f64>> {
-            Some(table.select(of, [name]).ok()?.into_flattened())
-        };
-        let series = |name: &str| column(table("series")?, name, &of);
-        let phases = |name: &str| {
-            let table = table("phases")?;
-            let spread = column(table, &format!("{name}_uncertainty"), &of)?;
-            Some(column(table, name, &of)?.into_iter().zip(spread).collect::<Vec<_>>())
-        };
-        let [impulse, early, late] =
-            [phases("impulse")?, phases("impulse_1")?, phases("impulse_99")?];
-        let phase = |k: usize| [impulse[k], early[k], late[k]];
+        let curve = |table, columns| Package::curve(PACKAGE, table, columns, &of);
+        let histories = Self::COLUMNS.map(|name| curve("series", ["t", name]));
+        let doubts = ["x_c_uncertainty", "width_uncertainty", "height_uncertainty"]
+            .map(|name| rms(curve("series", ["t", name]).into_iter().map(|(_, doubt)| doubt)));
+        let begins = curve("phases", ["impulse_1", "impulse"]);
+        let ends = curve("phases", ["impulse_99", "impulse_99_uncertainty"]);
+        let (_, doubt) = *ends.last()?;
+        let phases = begins.into_iter().zip(ends);
         let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
-        let [x_c, v_c, width, height] = Self::COLUMNS;
-        let columns = [series(x_c)?, series(v_c)?, series(width)?, series(height)?];
-        let uncertain = |name: &str| Some(rms(series(&format!("{name}_uncertainty"))?.into_iter()));
-        let uncertain = [uncertain(x_c)?, uncertain(width)?, uncertain(height)?];
-        let found = Self {
-            quantities: quantities(table("summary")?, &of).ok()?,
-            phases: (0..impulse.len()).map(phase).collect(),
-            times: series("t")?,
-            uncertainty: largest(uncertain) / diameter(&columns),
-            columns,
-            gap: series("gap")?,
+        let strains = Package::curve(PACKAGE, "checks", ["mesh", "value"], &strain);
+        let summary = Package::load(PACKAGE).ok()?.table("summary").ok()?;
+        Some(Self {
+            quantities: quantities(summary, &of).ok()?,
+            phases: phases.map(|((begin, impulse), (end, _))| [impulse, begin, end]).collect(),
+            doubt,
+            uncertainty: largest(doubts) / diameter(&histories),
+            histories,
+            gap: curve("series", ["t", "gap"]),
             // The finest mesh comes last.
-            strain: column(table("checks")?, "value", &strain)?.last().copied().unwrap_or(f64::NAN),
-        };
-        (!found.phases.is_empty()).then_some(found)
+            strain: strains.last().map_or(f64::NAN, |(_, strain)| *strain),
+        })
     }
 
     /// A number of the summary with its uncertainty.
@@ -125,19 +112,17 @@ impl Reference {
     /// When the ring of finite elements is farther than this distance \[L\] from the plane after the last
     /// phase \[L/c₀\].
     pub fn leaves(&self, reach: f64) -> f64 {
-        let end = self.phases[self.phases.len() - 1][2].0;
-        let mut gaps = self.times.iter().zip(&self.gap);
-        gaps.find(|(t, gap)| **t > end && **gap > reach).map_or(f64::NAN, |(t, _)| *t)
+        let end = self.phases[self.phases.len() - 1][2];
+        let mut gaps = self.gap.iter();
+        gaps.find(|(t, gap)| *t > end && *gap > reach).map_or(f64::NAN, |(t, _)| *t)
     }
 
     /// Distances of centre, velocity and extents over the times of finite elements, all of which a run must
     /// have.
     fn compare_histories(&self, found: &Histories, record: &mut Record) {
-        let of = |(column, found): (&Vec<f64>, &Vec<(f64, f64)>)| {
-            let exact = self.times.iter().copied().zip(column.iter().copied());
-            history::differences(found, &exact.collect::<Vec<_>>())
-        };
-        let found: Result<Vec<Vec<f64>>, _> = self.columns.iter().zip(found).map(of).collect();
+        let pairs = found.iter().zip(&self.histories);
+        let found: Result<Vec<Vec<f64>>, _> =
+            pairs.map(|(found, exact)| history::differences(found, exact)).collect();
         let found = match found {
             Ok(found) => found,
             Err(why) => {
@@ -150,7 +135,7 @@ impl Reference {
         }
         let lengths = [X_C_RMS, WIDTH_RMS, HEIGHT_RMS].map(|key| record.value(key));
         let lengths = lengths.map(|length| length.unwrap_or(f64::NAN));
-        record.put(HISTORIES, largest(lengths) / diameter(&self.columns));
+        record.put(HISTORIES, largest(lengths) / diameter(&self.histories));
         let path = &found[0];
         let worst = path.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
         record.put(X_C_WORST, worst.unwrap_or(f64::NAN));
@@ -163,7 +148,7 @@ impl Reference {
                               at the end";
         let is_same = found.len() == self.phases.len();
         let is_over = |found: &&Phase| found.is_over;
-        for (k, [(impulse, _), (begin, _), (end, _)]) in self.phases.iter().enumerate() {
+        for (k, [impulse, begin, end]) in self.phases.iter().enumerate() {
             let same = found.get(k).filter(|_| is_same).filter(is_over);
             let first = if k == 0 { found.first() } else { same };
             let is_last = k + 1 == self.phases.len();
@@ -180,8 +165,8 @@ impl Reference {
 }
 
 /// The outer diameter \[L\]: the width before the rings touch.
-fn diameter([_, _, width, _]: &[Vec<f64>; 4]) -> f64 {
-    width.first().copied().unwrap_or(f64::NAN)
+fn diameter([_, _, width, _]: &Histories) -> f64 {
+    width.first().map_or(f64::NAN, |(_, width)| *width)
 }
 
 #[cfg(test)]
@@ -192,21 +177,22 @@ mod tests {
     fn outlines_have_the_extents_of_the_series() {
         let paper = Reference::of("seed", &RingSettings::default()).expect("the paper's speed");
         for time in [32.0, 60.0, 80.0, 120.0, 200.0] {
-            let lines = outlines(0.059, time).expect("a table");
+            let lines = outlines(0.059, time);
             assert_eq!(lines.len(), 2);
-            let at = paper.times.iter().position(|t| *t == time).expect("a time of the series");
+            let series = &paper.histories;
+            let at = series[0].iter().position(|(t, _)| *t == time).expect("a time of the series");
             let extent = |of: fn(&(f64, f64)) -> f64| {
                 let all = || lines[0].iter().map(of);
                 all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
             };
-            let (width, height) = (paper.columns[2][at], paper.columns[3][at]);
+            let (width, height) = (series[2][at].1, series[3][at].1);
             let (found_width, found_height) = (extent(|p| p.0), extent(|p| p.1));
             // Every fourth node of the face is there.
             assert!((found_width - width).abs() < 0.02, "{found_width} for {width} at {time}");
             assert!((found_height - height).abs() < 0.02, "{found_height} for {height} at {time}");
         }
-        assert!(outlines(0.059, 33.0).expect("a table").is_empty());
-        assert!(outlines(0.12, 32.0).expect("a table").is_empty());
+        assert!(outlines(0.059, 33.0).is_empty());
+        assert!(outlines(0.12, 32.0).is_empty());
     }
 
     #[test]
@@ -216,8 +202,8 @@ mod tests {
         let [restitution, spread] = paper.number(RESTITUTION).expect("measured");
         assert!((restitution - 0.8004).abs() < 1e-3 && spread < 0.01);
         assert!(at(0.03).is_some() && at(0.12).is_none());
-        assert!((paper.phases[0][0].0 - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
-        let start = paper.columns.iter().map(|c| c[0]).collect::<Vec<f64>>();
+        assert!((paper.phases[0][0] - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
+        let start = paper.histories.iter().map(|points| points[0].1).collect::<Vec<f64>>();
         assert_eq!(start, [5.0, -0.059, 8.0, 8.0]);
         let other = Reference::of(LAGRANGIAN, &RingSettings::default()).expect("its law");
         assert_eq!(other.number(RESTITUTION).map(|[value, _]| value), Some(0.795617));

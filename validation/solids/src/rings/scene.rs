@@ -50,8 +50,8 @@ impl Problem for RingSettings {
         self.speed * self.c0()
     }
 
-    fn approach(&self) -> f64 {
-        2.0 * self.speed()
+    fn bodies(&self) -> usize {
+        2
     }
 
     fn end(&self) -> f64 {
@@ -116,11 +116,6 @@ impl Problem for RingSettings {
             })
         };
         ring(-1.0).chain(ring(1.0)).collect()
-    }
-
-    fn bodies(&self) -> Vec<u32> {
-        let count = self.particles().len();
-        (0..count).map(|k| u32::from(k >= count / 2)).collect()
     }
 
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Series {

@@ -1,124 +1,58 @@
-//! What the runs of the rings say together, beside what their declaration says: a table of all collisions
-//! with claim M2, and pictures.
+//! Pictures of the rings.
 
-use report::{Axis, Cell, Colour, ColourMap, Dots, Figure, Film, Plot, Series, exact, sig};
+use report::{Axis, Colour, ColourMap, Dots, Figure, Film, Plot, Series, exact};
 
 use super::*;
 
-/// All of them.
+/// Rings that stay whole, beside those of finite elements and in a film, and rings that are torn.
 pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let rows = &table(tier).rows;
-    let contact = (tier != Tier::Quick).then(|| contact(rows, runs));
-    [collisions(rows, runs), pictures(rows, runs)].into_iter().chain(contact).collect()
-}
-
-/// The rows of some groups.
-fn of<'a>(rows: &'a [Row], groups: &'a [Group]) -> impl Iterator<Item = &'a Row> {
-    rows.iter().filter(|row| groups.contains(&row.group))
-}
-
-/// Rings against a rigid plane beside rings against each other: what another law of contact changes.
-fn contact(rows: &[Row], runs: &Runs) -> Study {
-    const BECAUSE: &str = "By symmetry a ring against a rigid plane is half of two rings. What another law \
-        of contact changes has to be less than what finite elements leave uncertain of the restitution.";
-    let value = |row: &Row| runs.completed(&row.run.spec).and_then(|r| r.value(RESTITUTION));
-    let study = Study::new("rubber-rings-contact", "Contact or folds").prose(
-        "Is the error of the restitution one of the contact or one of the folds? An error of the contact \
-         would hang on its law. If a rigid plane between the rings, which has another law, changes the \
-         restitution by less than finite elements leave uncertain, the error is that of the folds.",
-    );
-    of(rows, &[Group::Contact]).fold(study, |study, row| {
-        let is_own =
-            |own: &&Row| own.variant == LAGRANGIAN && own.settings.spacing == row.settings.spacing;
-        let own = of(rows, &[Group::Paper]).find(is_own).and_then(value);
-        let change = value(row).zip(own).map_or(f64::NAN, |(plane, own)| plane / own - 1.0);
-        let exact = Reference::of(LAGRANGIAN, &row.settings).and_then(|of| of.number(RESTITUTION));
-        let Some([value, spread]) = exact else { return study };
-        let uncertainty = spread / value;
-        let id = format!("rubber_rings.contact.{}", (1.0 / row.settings.spacing).round());
-        let bound = Bound::Within(-uncertainty, uncertainty);
-        let what = "change of the restitution by a rigid plane";
-        study.judge(Gate::new(id, what, bound, Evidence::Invariant, BECAUSE), change)
-    })
-}
-
-/// Every collision: claim M2, restitution and energy. Gates have the distances from the reference.
-fn collisions(rows: &[Row], runs: &Runs) -> Study {
-    let whole = |groups: &[Group]| {
-        let seeds = of(rows, groups).filter(|row| row.variant == "seed");
-        let fates: Vec<Fate> =
-            seeds.filter_map(|row| runs.record(&row.run.spec)).map(Fate::of).collect();
-        let whole = fates.iter().filter(|fate| **fate == Fate::Whole).count();
-        format!("{whole} of {} runs", fates.len())
+    let table = table(tier);
+    let shown = |group| {
+        let mut kept = table.of(group).filter(|row| row.run.spec.keep.particles);
+        kept.find_map(|row| runs.completed(&row.run.spec))
     };
-    let verdict = format!(
-        "**M2** (artificial stress prevents fracture): with it, variant `seed` keeps both rings whole in {}; \
-         without it (ξ = 0) in {}.",
-        whole(&[Group::Paper, Group::Speed]),
-        whole(&[Group::Unstressed])
-    );
-    let exact = |r: &Record| {
-        let exact =
-            Reference::of(&r.variant, &r.settings_as()).and_then(|of| of.number(RESTITUTION));
-        let exact = exact.map(|[value, spread]| format!("{} ± {}", sig(value, 4), sig(spread, 1)));
-        exact.unwrap_or("–".into())
-    };
-    let caption = "Every collision; unless changed the spacing is 0.1 L and the speed 0.059 c0. A particle \
-                   stands for a disc of 0.75 spacings: rings are whole as long as a closed chain of discs \
-                   goes around the hole of each, torn where there is none, and in pieces where discs are no \
-                   longer connected. Restitution is the speed of the centre of mass at t = 200 L/c0 over the \
-                   initial one. Energy lost is what stabilisation took.";
-    let table = Columns::of_variants()
-        .changed("changed", &RUBBER_RINGS)
-        .text("rings are", |r| Fate::of(r).name())
-        .number("first seen at", "L/c0", TORN_AT)
-        .metric(["restitution", "-"], RESTITUTION, |x| Cell::num(x, 4))
-        .text("finite elements", exact)
-        .percent("energy lost", "-", ENERGY_LOST, 1.0)
-        .ended();
-    let all = of(rows, &[Group::Paper, Group::Speed, Group::Unstressed]);
-    let records = runs.records(all.map(|row| row.run.spec.clone()));
-    let study = Study::new("rubber-rings-collisions", "Collisions: fracture").prose(verdict);
-    study.block(table.table(caption, records))
-}
-
-/// The rings at five times, coloured by the largest principal stress, with those of finite elements; a film;
-/// rings that are torn.
-fn pictures(rows: &[Row], runs: &Runs) -> Study {
-    let kept = |group| of(rows, group).filter(|row| row.run.spec.keep.particles);
-    let shown = |group| kept(group).find_map(|row| runs.completed(&row.run.spec));
-    let caption = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. \
-                   Particles of variant `seed`, spacing 0.2 L, are coloured by the largest principal \
-                   stress σ₁ over the bulk modulus K; tension is positive. Black lines are the faces of \
-                   the ring in finite elements.";
-    let mut figure = Figure::new("rubber-rings-pictures", caption).columns(5);
-    if let Some(record) = shown(&[Group::Paper]) {
-        let axes =
-            (Axis::linear("x [L]").range(-0.4, 11.9), Axis::linear("y [L]").range(-5.6, 5.6));
-        for (share, plot) in picture(record, &PICTURES, Some(axes)) {
-            let outlines = reference::outlines(SPEED, 200.0 * share).unwrap_or_default();
-            let black = |line| Series::line("", line).colour(Colour::BLACK).width(0.9);
-            figure = figure.panel(outlines.into_iter().map(black).fold(plot, Plot::layer));
-        }
-    }
-    let mut study =
-        Study::new("rubber-rings-pictures", "Pictures").block(figure.panel_size(185.0, 170.0));
-    if let Some(record) = shown(&[Group::Paper]) {
-        let shares: Vec<f64> = (1..=FRAMES).map(|k| k as f64 / FRAMES as f64).collect();
-        let frame = |(_, plot)| Figure::new("frame", "").panel(plot).panel_size(350.0, 175.0);
-        let frames: Vec<Figure> = picture(record, &shares, None).map(frame).collect();
-        let caption = "Film of the same rings, both of which are shown, coloured in the same way.";
-        study = match Film::new("rubber-rings-film", caption, &frames, 200) {
+    let mut study = Study::new("rubber-rings-pictures", "Pictures");
+    if let Some(record) = shown(Group::Paper) {
+        study = study.block(beside_elements(record));
+        study = match film(record) {
             Ok(film) => study.block(film),
             Err(why) => study.prose(format!("There is no film: {why}.")),
         };
     }
-    let Some(record) = shown(&[Group::Unstressed]) else { return study };
-    let caption = "Two rubber rings after a collision at 0.12 c0 each without artificial stress, spacing 0.2 \
-                   L. Colour is the largest principal stress σ₁ over the bulk modulus K. Rubber of this law \
-                   does not break; the method does.";
-    let figure = Figure::new("rubber-rings-fracture", caption).panel_size(420.0, 320.0);
-    study.block(picture(record, &[1.0], None).fold(figure, |figure, (_, plot)| figure.panel(plot)))
+    if let Some(record) = shown(Group::Unstressed) {
+        let caption = "Two rubber rings after a collision at 0.12 c0 each without artificial stress, spacing \
+                       0.2 L. Colour is the largest principal stress σ₁ over the bulk modulus K. Rubber of \
+                       this law does not break; the method does.";
+        let figure = Figure::new("rubber-rings-fracture", caption).panel_size(420.0, 320.0);
+        let end = picture(record, &[1.0], None);
+        study = study.block(end.fold(figure, |figure, (_, plot)| figure.panel(plot)));
+    }
+    vec![study]
+}
+
+/// The right ring at five times, coloured by the largest principal stress, with that of finite elements.
+fn beside_elements(record: &Record) -> Figure {
+    let caption = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. \
+                   Particles of variant `seed`, spacing 0.2 L, are coloured by the largest principal \
+                   stress σ₁ over the bulk modulus K; tension is positive. Black lines are the faces of \
+                   the ring in finite elements.";
+    let axes = (Axis::linear("x [L]").range(-0.4, 11.9), Axis::linear("y [L]").range(-5.6, 5.6));
+    let figure = Figure::new("rubber-rings-pictures", caption).columns(5);
+    let panels = picture(record, &PICTURES, Some(axes)).map(|(share, plot)| {
+        let outlines = reference::outlines(SPEED, 200.0 * share);
+        let black = |line| Series::line("", line).colour(Colour::BLACK).width(0.9);
+        outlines.into_iter().map(black).fold(plot, Plot::layer)
+    });
+    panels.fold(figure.panel_size(185.0, 170.0), Figure::panel)
+}
+
+/// Both rings of the same run through time.
+fn film(record: &Record) -> std::io::Result<Film> {
+    let shares: Vec<f64> = (1..=FRAMES).map(|k| k as f64 / FRAMES as f64).collect();
+    let frame = |(_, plot)| Figure::new("frame", "").panel(plot).panel_size(350.0, 175.0);
+    let frames: Vec<Figure> = picture(record, &shares, None).map(frame).collect();
+    let caption = "Film of the same rings, both of which are shown, coloured in the same way.";
+    Film::new("rubber-rings-film", caption, &frames, 200)
 }
 
 /// Pictures at some shares of a run, with one range of colours and of axes. These hold all particles unless

@@ -13,6 +13,7 @@ pub mod tests;
 
 pub use elements::{Elements, Path, Quantities, compare, quantities};
 pub use energy::{Energy, angular_momentum, norm_squared};
+pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
 pub use maths::{geometry::corners, metrics::norms::largest};
 pub use plates::{FIRST_MODE, clamp, thin_plate_period};

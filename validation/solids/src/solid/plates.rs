@@ -19,6 +19,6 @@ pub fn thin_plate_period(
 }
 
 /// The plane at x = 0 that holds a plate without held particles.
-pub fn clamp() -> Vec<PlaneWall> {
-    vec![PlaneWall::new(Vector2::zeros(), Vector2::x(), Vector2::zeros())]
+pub fn clamp() -> PlaneWall {
+    PlaneWall::new(Vector2::zeros(), Vector2::x(), Vector2::zeros())
 }

@@ -1,9 +1,9 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use nalgebra::Vector2;
-use solver::{Domain, Observer, Particle, PlaneWall, Stepper, Symmetric};
+use solver::{Domain, Observer, Particle, Role, Stepper, Symmetric};
 
-use super::{Energy, Material, lagrangian, limits};
+use super::{Energy, Material, clamp, lagrangian, limits};
 use base::{
     bits::Bits,
     record::{self, Record},
@@ -46,18 +46,20 @@ pub trait Problem: SharedSettings {
     fn dx(&self) -> f64;
     /// Largest speed at the start \[m/s\].
     fn speed(&self) -> f64;
-    /// Speed at which bodies approach each other \[m/s\]: 0 if there is one.
-    fn approach(&self) -> f64 {
-        0.0
+    /// How many equal bodies there are, whose particles follow each other: one, or two that meet, each with
+    /// the largest speed.
+    fn bodies(&self) -> usize {
+        1
     }
     /// End of the run \[s\].
     fn end(&self) -> f64;
-    /// The particles at the start.
+    /// The particles at the start. Those that are held stand behind the plane x = 0, by which methods that
+    /// have no held particles hold the body.
     fn particles(&self) -> Vec<Particle<Symmetric>>;
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
-    /// The acceleration of weight \[m/s²\], which only heavy methods read.
+    /// The acceleration of weight \[m/s²\], which only methods with weight read.
     fn gravity(&self) -> Vector2<f64> {
         Vector2::zeros()
     }
@@ -80,14 +82,6 @@ pub trait Problem: SharedSettings {
     /// Open, unless a case has a period.
     fn domain(&self) -> Domain {
         Domain::open()
-    }
-    /// Planes that hold the body, for methods that have no held particles.
-    fn held(&self) -> Vec<PlaneWall> {
-        Vec::new()
-    }
-    /// The number of the body of each particle; empty if there is one body.
-    fn bodies(&self) -> Vec<u32> {
-        Vec::new()
     }
     /// Displacement at the start of the particle that is at this place without stress \[m\], for methods
     /// whose stress follows from displacements.
@@ -131,9 +125,8 @@ pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composi
             |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
         )
         .with(
-            "lagrangian",
-            "total Lagrangian: neighbours of the reference configuration, forces from the stored energy of \
-             Hencky, contact between bodies, velocity Verlet: what is left where nothing dissipates?",
+            lagrangian::LAGRANGIAN,
+            lagrangian::TOTAL,
             schemes::total::hencky(),
             lagrangian::choose,
         )
@@ -171,8 +164,9 @@ fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
     let (h, speed, force) = (medium.h, settings.speed(), settings.gravity().norm());
     let step = Step::courant(courant, h, [material.p_wave_speed(), speed]);
     let step = step.forced(FORCED, h, force).or_given(dt);
-    let limits = limits(method, &material, &medium, settings.h_over_dx(), settings.approach())
-        .moving(h, speed, force);
+    let approach = if settings.bodies() > 1 { 2.0 * speed } else { 0.0 };
+    let limits =
+        limits(method, &material, &medium, settings.h_over_dx(), approach).moving(h, speed, force);
     Rules { step, limits, sound_speed: material.sound_speed(), end: settings.end() }
 }
 
@@ -200,7 +194,12 @@ fn run<P: Problem>(
     let numbers = [&rules.numbers([settings.h_over_dx(), medium.dx])[..], &own].concat();
     let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
     let (eos, particles) = (material.eos(), settings.particles());
-    let (mirrors, bodies, limits) = (settings.held(), settings.bodies(), settings.bounds());
+    let limits = settings.bounds();
+    let is_held = particles.iter().any(|p| p.role == Role::Wall);
+    let mirrors = if is_held { vec![clamp()] } else { Vec::new() };
+    let (count, all) = (settings.bodies(), particles.len());
+    let body = |k: usize| (k * count / all) as u32;
+    let bodies = if count > 1 { (0..all).map(body).collect() } else { Vec::new() };
     let parts = Parts::new(medium, settings.domain(), particles.clone(), context);
     let mut simulation = (method.build)(Parts { mirrors, bodies, limits, ..parts })?;
     if simulation.potential().is_some() {
