@@ -66,7 +66,7 @@ fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() 
             couette("seed", "{\"re\":1,\"re\":2}", ""),
             "setting re is given twice, the first time as 1",
         ),
-        (couette("seed", "{\"re\":-1}", ""), "setting re is \"-1.0\""),
+        (couette("seed", "{\"re\":-1}", ""), "setting re is \"-1\""),
         (couette("seed", "{\"ra\":1}", ""), "no setting is called \"ra\""),
         (
             couette("seed", "{}", r#","keep":{"pictures":1000000000}"#),

@@ -104,12 +104,6 @@ impl<'a> Columns<'a, Record> {
         self.metric([head, unit], metric, |value| Cell::num(value, 3))
     }
 
-    /// The same as a percentage with two digits, times a sign.
-    #[must_use]
-    pub fn percent(self, head: &str, unit: &str, metric: impl Into<MetricName>, sign: f64) -> Self {
-        self.metric([head, unit], metric, move |value| Cell::percent(sign * value, 2))
-    }
-
     /// One more column: how the run ended.
     #[must_use]
     pub fn ended(self) -> Self {
