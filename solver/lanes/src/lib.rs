@@ -131,14 +131,16 @@ lane! {
 lane! {
     for Portable, 4:
     fn all(x: f64) -> Self = Self(wide::f64x4::splat(x));
-    fn gather(read: impl Fn(usize) -> f64) -> Self = Self(wide::f64x4::from([read(0), read(1), read(2), read(3)]));
+    fn gather(read: impl Fn(usize) -> f64) -> Self =
+        Self(wide::f64x4::from([read(0), read(1), read(2), read(3)]));
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
         [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
     fn sqrt(self) -> Self = Self(self.0.sqrt());
     fn abs(self) -> Self = Self(self.0.abs());
     fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
     fn lane(self, k: usize) -> f64 = self.0.to_array()[k];
-    fn bits_below(self, bound: f64) -> usize = self.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize;
+    fn bits_below(self, bound: f64) -> usize =
+        self.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize;
 }
 
 /// The sum of four lanes, always in the same order: of [`on_four`] alone, for no sum may depend on the number

@@ -37,8 +37,8 @@ pub fn read<T: Bits + Default>(from: &mut &[u8]) -> Result<T, OtherBits> {
     Ok(value)
 }
 
-/// Implements [`Bits`] for a struct: which of its fields change, and which stay as they are. Every field must be
-/// named, so that a new one cannot be forgotten.
+/// Implements [`Bits`] for a struct: which of its fields change, and which stay as they are. Every field must
+/// be named, so that a new one cannot be forgotten.
 #[macro_export]
 macro_rules! observed {
     ($Struct:ty: changes($($change:ident),*), stays($($stay:ident),*)) => {

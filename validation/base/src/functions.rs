@@ -11,8 +11,8 @@
 //! the faster one where the power is known and whole.
 //!
 //! Angles are in radians. [`exp_m1`] and [`ln_1p`] are eˣ − 1 and ln(1 + x) without cancellation for small x,
-//! [`erfc`] is 1 − erf x without cancellation for large x, and [`hypot`] is (x² + y²)^(1/2) without overflow of
-//! the squares.
+//! [`erfc`] is 1 − erf x without cancellation for large x, and [`hypot`] is (x² + y²)^(1/2) without overflow
+//! of the squares.
 
 use nalgebra::{Complex, Matrix2, Rotation2};
 

@@ -90,7 +90,8 @@ impl Bound {
         }
     }
 
-    /// Is it sound, does it reach beyond the other bound, and is it limited on each side on which that one is?
+    /// Is it sound, does it reach beyond the other bound, and is it limited on each side on which that one
+    /// is?
     fn is_beyond(self, other: Self) -> bool {
         let ([low, high], [lowest, highest]) = (self.ends(), other.ends());
         let is_open = (low.is_infinite() && lowest.is_finite())
@@ -165,8 +166,8 @@ pub struct Gate {
     pub metric: String,
     /// where it must lie
     pub bound: Bound,
-    /// how far outside the bound it is known to lie, from the evidence for the cause: outside of this, the gate
-    /// fails
+    /// how far outside the bound it is known to lie, from the evidence for the cause: outside of this, the
+    /// gate fails
     pub known: Option<Bound>,
     /// the kind of evidence behind the bound
     pub evidence: Evidence,
@@ -280,8 +281,8 @@ impl Gate {
         self.bound.to_string() + &known.unwrap_or_default()
     }
 
-    /// Judges a record: its metric by [`Gate::judge`] if the run reached its end, and otherwise the early end,
-    /// however good the run was until then: it fails unless the gate says what it is.
+    /// Judges a record: its metric by [`Gate::judge`] if the run reached its end, and otherwise the early
+    /// end, however good the run was until then: it fails unless the gate says what it is.
     pub fn judge_record(&self, record: &Record) -> Judgement {
         let verdict = match (self.may_end_early, self.control) {
             _ if record.status == Status::Completed => {

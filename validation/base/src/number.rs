@@ -1,10 +1,10 @@
 //! Floats in JSON without loss: a finite number is a JSON number, any other value names itself.
 //!
-//! JSON has no NaN and no infinity, and `serde_json` writes both as `null`, which a reader would take
-//! for "not measured". Here they are written as objects with one key and read back without change:
-//! `{"not_finite": "NaN"}`, `{"not_finite": "inf"}`, `{"not_finite": "-inf"}`.
-//! `null` itself is refused. Use `#[serde(with = "crate::number")]` on an `f64` field, `crate::number::option`
-//! on an `Option<f64>`, and `crate::number::list` on a `Vec<f64>`.
+//! JSON has no NaN and no infinity, and `serde_json` writes both as `null`, which a reader would take for
+//! "not measured". Here they are written as objects with one key and read back without change:
+//! `{"not_finite": "NaN"}`, `{"not_finite": "inf"}`, `{"not_finite": "-inf"}`. `null` itself is refused. Use
+//! `#[serde(with = "crate::number")]` on an `f64` field, `crate::number::option` on an `Option<f64>`, and
+//! `crate::number::list` on a `Vec<f64>`.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -1,10 +1,9 @@
 //! ParaView files: particles as `UnstructuredGrid` (`.vtu`), a run as a collection (`.pvd`).
 //!
-//! Arrays are base64 in the file, so floats are stored without loss. A cell a particle is always written: without
-//! them ParaView opens the file and shows nothing. The plane is z = 0, and vectors get a third
-//! component that is zero, because the filters of ParaView expect three.
-//! Positions must be finite. Fields may hold a NaN: ParaView draws it in a colour of its own,
-//! and a state that diverged is worth inspecting.
+//! Arrays are base64 in the file, so floats are stored without loss. Each particle has a cell of its own:
+//! without cells ParaView opens the file and shows nothing. The plane is z = 0, and vectors get a third
+//! component that is zero, because the filters of ParaView expect three. Positions must be finite. Fields may
+//! hold a NaN: ParaView draws it in a colour of its own, and a state that diverged is worth inspecting.
 //!
 //! ```
 //! use base::{record::Profile, vtk};
@@ -158,7 +157,7 @@ mod tests {
         let columns = columns.with("p & <q>", "Pa", vec![1.0, f64::NAN, 3.0]);
         let xml = particles(0.5, &columns).unwrap();
         let tags = tags(&xml);
-        assert_eq!(tags.iter().filter(|tag| tag.starts_with("DataArray")).count(), 6);
+        assert_eq!(tags.iter().filter(|tag| tag.starts_with("DataArray")).count(), 7);
         assert!(xml.contains("NumberOfPoints=\"3\" NumberOfCells=\"3\""));
         assert!(xml.contains("Name=\"p &amp; &lt;q&gt;\""));
         assert_eq!(array(&xml, "TimeValue"), 0.5_f64.to_le_bytes());
@@ -167,6 +166,7 @@ mod tests {
         assert_eq!(array(&xml, "velocity"), flat);
         assert_eq!(array(&xml, "connectivity"), integers([0, 1, 2].into_iter()));
         assert_eq!(array(&xml, "offsets"), integers([1, 2, 3].into_iter()));
+        assert_eq!(array(&xml, "types"), [1; 3]);
         assert_eq!(array(&xml, "p &amp; &lt;q&gt;").len(), 24);
     }
 

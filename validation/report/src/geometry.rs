@@ -12,8 +12,8 @@ pub(super) fn runs<P: Copy, T: Copy>(points: &[P], place: impl Fn(P) -> Option<T
 /// A distance that is not seen, in CSS pixels.
 const SEEN: f64 = 0.15;
 
-/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains (Ramer,
-/// Douglas and Peucker).
+/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains
+/// (Ramer, Douglas and Peucker).
 pub(super) fn thin(run: &[Point]) -> Vec<Point> {
     let mut is_kept = vec![false; run.len()];
     let mut pieces = vec![(0, run.len().saturating_sub(1))];

@@ -44,8 +44,8 @@ pub struct Section {
     pub id: String,
     /// Heading; inline markup.
     pub title: String,
-    /// How its gates ended: said below the heading, with links to those in the table of all verdicts that have
-    /// its title, and the worst in the table of contents.
+    /// How its gates ended: said below the heading, with links to those in the table of all verdicts that
+    /// have its title, and the worst in the table of contents.
     pub counts: Counts,
     /// Content in order.
     pub blocks: Vec<Block>,

@@ -262,7 +262,8 @@ mod tests {
         assert!(svg(&figure(plot)).len() < 30_000);
     }
 
-    /// Panels with one legend in all of them have it once, and panels that contradict each other each its own.
+    /// Panels with one legend in all of them have it once, and panels that contradict each other each its
+    /// own.
     #[test]
     fn a_legend_stands_below_what_it_explains() {
         let plot = |name: &str, colour| {

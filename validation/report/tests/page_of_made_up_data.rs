@@ -1,5 +1,5 @@
-//! A page with every kind of block, from made-up data, is whole. `.ci/browser` uses it as a reader does: it sets
-//! `TOUCHSTONE_PAGE` to the folder that the page is to be written to.
+//! A page with every kind of block, from made-up data, is whole. `.ci/browser` uses it as a reader does: it
+//! sets `TOUCHSTONE_PAGE` to the folder that the page is to be written to.
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 

@@ -1,4 +1,5 @@
-//! `stability`: the largest stable time steps that cases declare, measured and by theory, as tables of reports.
+//! `stability`: the largest stable time steps that cases declare, measured and by theory, as tables of
+//! reports.
 
 use harness::{
     case::Case,
