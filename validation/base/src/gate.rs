@@ -256,6 +256,14 @@ impl Gate {
         if is_blank(because) || known.is_some() && reason.as_deref().is_none_or(is_blank) {
             return Err(format!("gate {id} does not say why its bound has this value"));
         }
+        let is_limited = known.is_some();
+        if [reason.is_some(), self.cause.is_some()] != [is_limited; 2] || is_limited && self.control
+        {
+            return Err(format!(
+                "gate {id} must have the bound, the reason and the cause of a limitation together, and no \
+                 limitation if it is a control"
+            ));
+        }
         if !bound.is_sound() {
             return Err(format!(
                 "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"

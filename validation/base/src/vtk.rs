@@ -52,8 +52,8 @@ pub fn particles(time: f64, columns: &Profile) -> io::Result<String> {
     data_array(&mut xml, "Float64", one_tuple, &floats(&[time]));
     let _ = write!(
         xml,
-        "</FieldData>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\" \
-         NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n"
+        "</FieldData>\n<Piece NumberOfPoints=\"{count}\" NumberOfCells=\"{count}\">\n\
+         <PointData>\n"
     );
     let others = columns.columns.iter().filter(|c| !["x", "y", "u", "v"].contains(&&*c.name));
     let others = others.map(|column| (&*column.name, 1, &*column.values));

@@ -502,6 +502,12 @@ pub struct Picture {
     pub size: [f64; 2],
     /// The panels: runs that keep particles, their spacing in the unit of the places, and titles as labels.
     pub panels: Vec<Level>,
+    /// The profile of a record that has the particles.
+    pub profile: &'static str,
+    /// What is shown of the value of a particle, such as its logarithm.
+    pub shown: fn(f64) -> f64,
+    /// The ends of the colours, for all panels; each panel has those of its own values without.
+    pub range: Option<[f64; 2]>,
     /// Lines over the particles of each panel, in the unit of the places; of panels without an entry none.
     pub lines: Vec<Vec<Vec<(f64, f64)>>>,
 }

@@ -36,11 +36,14 @@ pub fn points(record: &Record, profile: &str, value: &str) -> Vec<(f64, f64, f64
 pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
     let panel = |(k, Level { run, spacing, label: title }): (usize, &Level)| {
         let record = runs.record(&run.spec)?;
-        let [x, _, value] = &record.profiles.get(END)?.columns[..] else { return None };
+        let [x, _, value] = &record.profiles.get(of.profile)?.columns[..] else { return None };
         let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
-        let points = points(record, END, &value.name);
+        let points = points(record, of.profile, &value.name).into_iter();
+        let points = points.map(|(x, y, value)| (x, y, (of.shown)(value))).collect();
         let (label, colours) = of.colours;
-        let plot = Plot::new(title, x, y).layer(Dots::new(label, colours, *spacing, points));
+        let dots = Dots::new(label, colours, *spacing, points);
+        let dots = of.range.into_iter().fold(dots, |dots, [low, high]| dots.values(low, high));
+        let plot = Plot::new(title, x, y).layer(dots);
         let lines = of.lines.get(k).into_iter().flatten();
         let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(2.0);
         Some(lines.map(line).fold(plot, Plot::layer))

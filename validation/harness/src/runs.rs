@@ -2,7 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{LazyLock, Mutex, PoisonError};
 
 pub use base::gate::Judged;
 use base::{
@@ -97,17 +97,18 @@ impl JudgedRun {
     }
 }
 
-/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first. Those
+/// of a file that states no cause have one that says so.
 pub fn by_cause<'a, T>(
     all: impl IntoIterator<Item = T>,
     judged: impl Fn(&T) -> &'a Judged,
 ) -> Vec<(&'a Cause, Vec<T>)> {
+    static UNSTATED: LazyLock<Cause> =
+        LazyLock::new(|| Cause::new("No cause is stated.", "Stating one."));
     let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
-    for one in all {
-        let judged = judged(&one);
-        if let Some(cause) = judged.gate.cause.as_ref().filter(|_| judged.limitation().is_some()) {
-            causes.entry(cause).or_default().push(one);
-        }
+    for one in all.into_iter().filter(|one| judged(one).limitation().is_some()) {
+        let cause = judged(&one).gate.cause.as_ref().unwrap_or(&UNSTATED);
+        causes.entry(cause).or_default().push(one);
     }
     let mut causes: Vec<_> = causes.into_iter().collect();
     causes.sort_by_key(|(_, gates)| Reverse(gates.len()));

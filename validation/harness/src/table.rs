@@ -11,6 +11,7 @@ use std::ops::RangeInclusive;
 use crate::{
     composed::Composed,
     declare::{Ladder, Level, Picture},
+    pictures,
     runs::{Planned, Tier},
 };
 
@@ -138,7 +139,16 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
             let (label, spacing) = panel(row);
             Level { run: row.run.clone(), spacing, label }
         });
-        Picture { texts, colours, size, panels: panels.collect(), lines: Vec::new() }
+        Picture {
+            texts,
+            colours,
+            size,
+            panels: panels.collect(),
+            profile: pictures::END,
+            shown: |value| value,
+            range: None,
+            lines: Vec::new(),
+        }
     }
 
     /// The plan: every run with its gates.

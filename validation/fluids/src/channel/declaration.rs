@@ -234,7 +234,8 @@ fn limit(flow: Flow, variant: &'static str) -> StepLimit {
         Flow::Couette => format!("stability.default.{variant}"),
         Flow::Poiseuille => format!("poiseuille.time-step.{variant}"),
     };
-    let because = "The default time step must be below the measured limit of stability.";
+    let because = "The default step must be below the measured limit; the bound is the default step over \
+                   the limit of theory.";
     let (id, bound) = (format!("{name}.stable"), Bound::Above(rules.dt() / theory));
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
     StepLimit {

@@ -113,6 +113,7 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     };
     let words = match median {
         diverged if *diverged > MOST_ERROR => format!("t = {}", sig(DIVERGED - diverged, 2)),
+        error if *error == MOST_ERROR => format!("≥ {}", percent(MOST_ERROR, 2)),
         error => percent(*error, 2),
     };
     match failed(&ends) {
@@ -122,13 +123,13 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     }
 }
 
-/// No error counts as worse.
+/// No error counts as worse, and one that is missing or not a number counts as this.
 const MOST_ERROR: f64 = 1e3;
-/// A divergence is worse than any error, by this much less the time at which it came.
+/// A run that diverged at νt/L² = t counts as this less t: worse than any error, and the worse the earlier.
 const DIVERGED: f64 = 1e6;
 
-/// How bad the ends of the runs of a cell were, the worst first: the worst relative L2 error, or, if a run
-/// diverged, more, the earlier it did. Runs that were refused are left out.
+/// How bad each run of a cell ended, the worst first: its worst relative L2 error, or by its divergence
+/// [`DIVERGED`] less the time. Runs that were refused are left out.
 fn ends(records: &[&Record]) -> Vec<f64> {
     let end = |record: &&Record| match record.status {
         // L²/ν is 1 s in these channels.
@@ -146,7 +147,7 @@ fn failed(ends: &[f64]) -> usize {
     ends.iter().filter(|end| **end > 0.05).count()
 }
 
-/// Did more than half fail? A setting that is refused from every start fails too.
+/// Whether more than half failed; a setting that is refused from every start fails too.
 fn mostly_fails(ends: &[f64]) -> bool {
     ends.is_empty() || 2 * failed(ends) > ends.len()
 }
@@ -217,7 +218,10 @@ mod tests {
         let text = |words: &str| words.to_string();
         assert_eq!(of(&[Ok(0.004), Err(0.7), Ok(0.08)]), (2, true, 2, text("2 of 3 fail")));
         assert_eq!(of(&[Err(0.4), Err(0.7), Err(0.5)]), (3, true, 3, text("t = 0.50")));
-        assert_eq!(of(&[Ok(0.2), Ok(f64::NAN), Err(0.5)]), (3, true, 3, percent(1e3, 2)));
+        assert_eq!(
+            of(&[Ok(0.2), Ok(f64::NAN), Err(0.5)]),
+            (3, true, 3, format!("≥ {}", percent(1e3, 2)))
+        );
         assert_eq!(of(&[Ok(0.01), Ok(0.01), Err(0.5)]), (1, false, 2, text("1 of 3 fail")));
         assert_eq!(of(&[Ok(0.2), Ok(0.06), Ok(0.07)]), (3, true, 3, percent(0.07, 2)));
         assert_eq!(of(&[Ok(0.004), Ok(0.02), Ok(0.03)]), (0, false, 1, percent(0.02, 2)));

@@ -257,13 +257,14 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 /// Particles of the finest run at each Reynolds number, the floor, and the line that encloses the fluid that
 /// circulates.
 fn picture(table: &Table) -> Picture {
-    let caption = "Particles of the finest run of variant `carried`, by their velocity u along the channel. \
-                   The line encloses the fluid that circulates in finite elements (none at Re 10).";
+    let caption = "Particles of the finest run of variant `carried`, coloured by their velocity u along the \
+                   channel. Black lines are the floor and, where the flow separates, the border of the \
+                   fluid that circulates in finite elements.";
     let texts = ["periodic-hill-pictures", "Pictures", caption];
     let panel =
         |row: &Row| (format!("Re {}, {}", row.settings.re, name(row)), 1.0 / row.settings.n as f64);
     let picture = table.picture(texts, ("u [U_b]", ColourMap::Diverging), [640.0, 230.0], panel);
     let kept = table.rows.iter().filter(|row| row.run.spec.keep.particles);
     let lines = kept.map(|row| vec![floor(), bubble(row.settings.re)]).collect();
-    Picture { lines, ..picture }
+    Picture { lines, range: Some([-1.5, 1.5]), ..picture }
 }

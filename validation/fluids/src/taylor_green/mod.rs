@@ -3,7 +3,7 @@
 
 mod run;
 
-use base::{gate::*, record::Record};
+use base::{functions::log10, gate::*, record::Record};
 use harness::{case::*, composed::*, declare::*, table};
 use report::{Axis, ColourMap};
 use schemes::flow;
@@ -258,11 +258,13 @@ fn error(record: &Record) -> Vec<(f64, f64)> {
 /// Particles at the end, by their error.
 fn picture(table: &Table) -> Picture {
     let caption = "Particles of Taylor-Green vortices at t = 2 L/U, Re 100, from the disturbed lattice, for \
-                   variant `plain`, without stabilisers, and the best one, by the error of the velocity.";
+                   variant `plain`, without stabilisers, and the best one, coloured by the logarithm of the \
+                   error of the velocity over the largest exact speed, where −2 is 1 %.";
     let texts = ["taylor-green-pictures", "Pictures", caption];
-    let colours = ("error/exact speed [-]", ColourMap::Sequential);
-    table.picture(texts, colours, [300.0, 270.0], |row| {
+    let colours = ("log₁₀(error/largest exact speed)", ColourMap::Sequential);
+    let picture = table.picture(texts, colours, [300.0, 270.0], |row| {
         let n = row.settings.n;
         (format!("{}, {n} x {n}", row.variant), 1.0 / n as f64)
-    })
+    });
+    Picture { shown: |error| log10(error.max(1e-12)), range: Some([-4.0, 0.0]), ..picture }
 }

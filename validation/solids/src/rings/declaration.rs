@@ -202,7 +202,8 @@ fn step_limit(variant: &'static str) -> StepLimit {
     let set = |s: &mut RingSettings| (s.spacing, s.end, s.samples) = (0.25, 100.0, 1);
     let spec = RUBBER_RINGS.spec(variant, set);
     let rules = RUBBER_RINGS.rules(&spec).unwrap_or(Rules::REFUSED);
-    let because = "Nothing drives the rings, so at the default step their energy must not rise.";
+    let because = "Nothing drives the rings, so at the default step, which is the bound over the limit of \
+                   theory, their energy must not rise.";
     let id = format!("rubber_rings.{variant}.step_limit");
     let bound = Bound::Above(rules.dt() / rules.dt_limit());
     let gate = Gate::new(id, "measured/theory", bound, Evidence::Invariant, because);
@@ -237,7 +238,7 @@ fn map(tier: Tier) -> Map {
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
         caption: "Outcome of a collision of two rubber rings over speed and particle spacing; an empty cell \
                   was not run. Claim M2 is that artificial stress, of strength ξ, prevents fracture. In runs \
-                  by hand, rings of ten layers hold at 0.08 c0 and tear at 0.09; rings of five hold at 0.08, \
+                  of `seed` by hand, rings of ten layers hold at 0.08 c0 and tear at 0.09; rings of five hold at 0.08, \
                   are torn at 0.09, and hold at 0.12. Whole rings show the coefficient of restitution e, or that \
                   they still touch at the end; torn rings (cut through once) the time of the tear in L/c0, \
                   and others the largest number of pieces."

@@ -13,6 +13,8 @@ pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
 
 /// When particles are kept for a picture, as a share of the run: the jet has risen at the far wall.
 pub const PICTURE: f64 = 0.6;
+/// The profile of the particles then, with their pressure.
+pub const PICTURED: &str = "particles@0.6";
 
 /// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are summed over them,
 /// and those of an impact last as long as sound takes across a few smoothing lengths. With 0.015
@@ -56,11 +58,9 @@ fn run(
         })
         .at_positions("picture", &|(.., record), s, k| {
             if context.keep_particles && k == pictured {
-                // A few drops that meet have many times the pressure of the water.
-                let share = |p: f64| (p / dam.unit_pressure()).clamp(0.0, 1.0);
-                let value = |p: &Evolved<()>| share(medium.eos.pressure(p.density));
+                let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
                 let fluid = s.fluid().map(|(_, p)| (p.position / settings.height, value(p)));
-                pictures::keep(record, pictures::END, "H", ("p", "rho g H"), fluid);
+                pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
             }
         })
         .run(context)?;
