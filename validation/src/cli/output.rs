@@ -3,7 +3,6 @@
 use std::io::{self, ErrorKind, Write};
 use std::panic::PanicHookInfo;
 
-use report::{Cell, Column, Table};
 use serde_json::Value;
 
 use super::Failure;
@@ -97,35 +96,6 @@ pub fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Str
         text.push('\n');
     }
     text
-}
-
-/// The head of a column of a report, with its unit if that is one.
-fn head(column: &Column) -> String {
-    match &*column.unit {
-        "" | "-" | "1" => column.head.clone(),
-        unit => format!("{} [{unit}]", column.head),
-    }
-}
-
-/// A table of a report as text, and its caption.
-pub fn text_of(of: &Table) -> String {
-    let heads: Vec<String> = of.columns.iter().map(head).collect();
-    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    let plain = |text: &str| text.replace('`', "");
-    let row = |row: &Vec<Cell>| row.iter().map(|cell| plain(&cell.text)).collect();
-    format!("{}\n{}", table(&heads, of.rows.iter().map(row)), wrap(&plain(&of.caption), ""))
-}
-
-/// The rows of a table of a report, each with its texts and, in full, its numbers by the heads of their
-/// columns. A number that there is not has no key.
-pub fn json_of(of: &Table) -> Value {
-    let entry = |(column, cell): (&Column, &Cell)| match cell.value {
-        None if column.numeric => None,
-        None => Some((head(column), cell.text.replace('`', "").into())),
-        Some(value) => value.is_finite().then(|| (head(column), value.into())),
-    };
-    let row = |row: &Vec<Cell>| of.columns.iter().zip(row).filter_map(entry).collect();
-    of.rows.iter().map(row).map(Value::Object).collect()
 }
 
 /// Longest line of text.

@@ -1,17 +1,25 @@
-//! `stability`: the largest stable time steps that cases declare, measured and by theory, as tables of
-//! reports.
+//! `stability`: the largest stable time steps that cases declare, measured and by theory.
 
 use harness::{
     case::Case,
+    declare::StepLimit,
+    limits::Mechanism,
     make::Job,
     runs::{JudgedRun, Planned, Runs},
-    studies::table_of_limits,
+    studies::limit_of_theory,
 };
-use report::Table;
-use serde_json::Value;
+use report::Cell;
+use serde_json::{Value, json};
+
 use validation::stiffness::{self, Row};
 
 use super::{Exit, Failure, Outcome, World, arguments, output, trouble};
+
+/// A declared limit and the case that it is of.
+struct Declared {
+    case: &'static dyn Case,
+    limit: StepLimit,
+}
 
 pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     let cases = world.choose(&arguments.cases)?;
@@ -20,18 +28,19 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         return theory(&cases, arguments.json).map(|()| Exit::Pass);
     }
     let mut declared = Vec::new();
-    let mut jobs = Vec::new();
     for case in cases {
-        let limits = case.declaration(arguments.tier).limits;
-        if limits.of.is_empty() && !arguments.cases.is_empty() {
+        let limits = case.declaration(arguments.tier).limits.of;
+        if limits.is_empty() && !arguments.cases.is_empty() {
             let words = format!("{} declares no largest stable time step", case.name());
             return Err(Failure::usage(words));
         }
-        let planned = |spec| Planned::new(Clone::clone(spec));
-        jobs.extend(limits.of.iter().map(|of| Job { case, planned: planned(&of.spec) }));
-        declared.push((case.name(), limits));
+        declared.extend(limits.into_iter().map(|limit| Declared { case, limit }));
     }
-    declared.retain(|(_, limits)| !limits.of.is_empty());
+    let job = |Declared { case, limit }: &Declared| Job {
+        case: *case,
+        planned: Planned::new(limit.spec.clone()),
+    };
+    let jobs: Vec<Job> = declared.iter().map(job).collect();
     let mut made = world.make(&jobs, world.making(arguments.tier), arguments.threads, None)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined; the same command begins again"));
@@ -41,15 +50,8 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         Some(JudgedRun::new(job.planned, record))
     });
     let runs = Runs::new(found.collect());
-    let tables: Vec<(&str, Table)> =
-        declared.iter().map(|(case, of)| (*case, table_of_limits(case, of, &runs))).collect();
-    let json = |(case, table): &(&str, Table)| (case.to_string(), output::json_of(table));
-    let all = || Value::Object(tables.iter().map(json).collect());
-    let text = || {
-        let texts: Vec<String> = tables.iter().map(|(_, table)| output::text_of(table)).collect();
-        texts.join("\n")
-    };
-    output::answer(arguments.json, all, text)?;
+    let all = || declared.iter().map(|declared| json(declared, &runs)).collect();
+    output::answer(arguments.json, all, || table(&declared, &runs))?;
     Ok(trouble(&made).unwrap_or(Exit::Pass))
 }
 
@@ -63,8 +65,62 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
         let words = format!("{} has no rule for its time step", cases[0].name());
         return Err(Failure::usage(words));
     }
-    let table = stiffness::table(&rows);
-    let reading = || output::wrap(&stiffness::READING.replace('*', ""), "");
-    let text = || format!("{}\n{}", output::text_of(&table), reading());
-    output::answer(as_json, || output::json_of(&table), text)
+    let text = || {
+        let table = stiffness::table(&rows);
+        let heads: Vec<&str> = table.columns.iter().map(|column| &*column.head).collect();
+        let cells = |row: &Vec<Cell>| row.iter().map(|cell| cell.text.replace('`', "")).collect();
+        let reading = output::wrap(&stiffness::READING.replace('*', ""), "");
+        format!("{}\n{reading}", output::table(&heads, table.rows.iter().map(cells)))
+    };
+    output::answer(as_json, || rows.iter().map(row_json).collect(), text)
+}
+
+fn row_json(row: &Row) -> Value {
+    let limits = &row.rules.limits;
+    let all = Mechanism::ALL.into_iter().map(|(of, name)| (name.to_string(), limits.alone(of)));
+    let alone =
+        all.filter(|(_, limit)| limit.is_finite()).map(|(name, limit)| (name, limit.into()));
+    json!({
+        "case": row.case, "variant": row.variant, "step_s": row.rules.dt(),
+        "set_by": json!([row.rules.step.number, row.rules.step.by]),
+        "limits_s": Value::Object(alone.collect()), "together_s": row.rules.dt_limit(),
+        "bound_by": limits.binding().name(), "slowest_over_stiffest": row.stiffness(),
+        "steps": row.steps(), "steps_over_slowest": row.cost(),
+        "sweeps": row.steps() * row.rules.sweeps(),
+    })
+}
+
+fn json(Declared { case, limit }: &Declared, runs: &Runs) -> Value {
+    let mut value = json!({
+        "case": case.name(), "variant": limit.spec.variant, "scene": limit.scene,
+        "theory_s": limit.theory, "default_of_theory": limit.default_at / limit.theory_at,
+    });
+    if let Some(ratio) = limit_of_theory(limit, runs) {
+        value["stable_s"] = (ratio * limit.theory).into();
+    }
+    value
+}
+
+fn table(declared: &[Declared], runs: &Runs) -> String {
+    let row = |Declared { case, limit }: &Declared| {
+        let ratio = limit_of_theory(limit, runs);
+        let number = |value: Option<f64>, digits| {
+            value.map_or("none found".to_string(), |value| report::sig(value, digits))
+        };
+        vec![
+            format!("{} {}", case.name(), limit.spec.variant),
+            limit.scene.clone(),
+            report::sig(limit.theory, 4),
+            number(ratio.map(|ratio| ratio * limit.theory), 4),
+            number(ratio, 3),
+            report::sig(limit.default_at / limit.theory_at, 3),
+        ]
+    };
+    let heads =
+        ["variant", "scene", "theory [s]", "measured [s]", "measured/theory", "default/theory"];
+    format!(
+        "{}\nTheory: linear stability on a lattice at rest. Measured: by bisection, with the criterion that \
+         the report states for each case.\n",
+        output::table(&heads, declared.iter().map(row))
+    )
 }

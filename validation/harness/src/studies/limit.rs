@@ -1,6 +1,6 @@
 //! The largest stable time step compared with theory.
 
-use report::{Cell, Table};
+use report::Cell;
 
 use super::anchor;
 use crate::{
@@ -12,36 +12,28 @@ use crate::{
 };
 
 pub fn study(case: &str, limits: &StepLimits, runs: &Runs) -> Study {
-    let mut study = Study::new(&anchor(case, "time-step"), "Largest stable time step");
-    let judged = |limit: &StepLimit| Some(Judged::new(limit.gate.clone()?, of_theory(limit, runs)));
-    study.judged.extend(limits.of.iter().filter_map(judged));
-    study.block(table(case, limits, runs))
-}
-
-/// What was measured of each limit, beside theory and the default.
-pub fn table(case: &str, limits: &StepLimits, runs: &Runs) -> Table {
     let caption = format!("Largest stable time step of `{case}` by bisection. {}", limits.about);
     let ratio = |value: Option<f64>| Cell::num(value.unwrap_or(f64::NAN), 3);
     let measured = |limit: &StepLimit| of_theory(limit, runs).unwrap_or(f64::NAN) * limit.theory;
-    Columns::<StepLimit>::default()
+    let of_default = |limit: &StepLimit| stable(limit, runs).map(|x| x / limit.default_at);
+    let table = Columns::<StepLimit>::default()
         .code("variant", |limit| limit.spec.variant.clone())
         .text("scene", |limit| limit.scene.clone())
         .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))
         .num(["measured", "s"], |limit| Cell::sci(measured(limit), 3))
         .num(["measured/theory", "-"], |limit| ratio(of_theory(limit, runs)))
         .num(["default/theory", "-"], |limit| Cell::num(limit.default_at / limit.theory_at, 3))
-        .num(["measured/default", "-"], |limit| ratio(of_default(limit, runs)))
-        .table(caption, &limits.of)
+        .num(["measured/default", "-"], |limit| ratio(of_default(limit)))
+        .table(caption, &limits.of);
+    let mut study = Study::new(&anchor(case, "time-step"), "Largest stable time step");
+    let judged = |limit: &StepLimit| Some(Judged::new(limit.gate.clone()?, of_theory(limit, runs)));
+    study.judged.extend(limits.of.iter().filter_map(judged));
+    study.block(table)
 }
 
 /// The largest stable step over the theoretical limit, if one was found.
 pub fn of_theory(limit: &StepLimit, runs: &Runs) -> Option<f64> {
     stable(limit, runs).map(|x| x / limit.theory_at)
-}
-
-/// The same over the default step.
-fn of_default(limit: &StepLimit, runs: &Runs) -> Option<f64> {
-    stable(limit, runs).map(|x| x / limit.default_at)
 }
 
 /// The largest stable x of the bisection.

@@ -15,7 +15,7 @@ mod tests;
 pub mod validation;
 
 pub use card::{card, cost as cost_in_words, headline};
-pub use limit::table as table_of_limits;
+pub use limit::of_theory as limit_of_theory;
 
 use crate::{
     declare::{Accuracy, Declaration},
