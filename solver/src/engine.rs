@@ -26,6 +26,7 @@ pub struct Engine<P: Physics> {
     /// Of the forces, and of the drift.
     pub(crate) terms: (P::Forces, P::Drift),
     pub(crate) wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
+    /// Boxed, for it is moved by code that is compiled for each scheme.
     pub(crate) data: Box<ParticleData<P::Extra>>,
     /// Of the particles, of their images, and the sentinel.
     pub(crate) columns: Vec<Column<Derived<P>>>,

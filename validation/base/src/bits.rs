@@ -14,7 +14,7 @@ use crate::record::{Cost, Record, Status};
 #[error("{0} is expected where the bytes hold something else or end")]
 pub struct OtherBits(&'static str);
 
-/// A value that appends all that changes of it as bytes, and takes it over again with the same bits.
+/// A value that can write all that changes of it as bytes, and read it back with the same bits.
 /// [`observed!`](crate::observed!) implements it for a struct.
 pub trait Bits {
     /// Appends all that changes.

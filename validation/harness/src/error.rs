@@ -6,6 +6,7 @@ use base::{
     settings::{SettingError, hint},
     spec::SpecError,
 };
+use report::sig;
 use thiserror::Error;
 
 use crate::{
@@ -89,7 +90,7 @@ pub enum RunError {
         integrator: &'static str,
     },
     /// Something that a case does not allow to be so large.
-    #[error("{what} would be {value:.3e}, but must be at most {most:.1e}; change {setting}")]
+    #[error("{what} would be {}, but must be at most {}; change {setting}", sig(*value, 4), sig(*most, 2))]
     TooMuch {
         /// What it is.
         what: &'static str,

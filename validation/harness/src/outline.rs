@@ -170,7 +170,12 @@ impl Sink {
         let mut inside = self.inside();
         let method = inside.method;
         let outline = inside.outline.take().filter(|of| !of.times.is_empty());
-        let none = || RunError::Playback(format!("case {case} has no scene to export"));
+        let none = || {
+            RunError::Playback(format!(
+                "case {case} has no scene to export, because its force depends on the place, which no format \
+                 states"
+            ))
+        };
         outline.map(|outline| Outline { method, ..outline }).ok_or_else(none)
     }
 

@@ -18,7 +18,7 @@ pub enum Tier {
     Quick,
     /// About twenty minutes.
     Full,
-    /// About nine hours on one core, for clusters. Cases declare two tiers; the harness extends the full
+    /// About fifteen hours on one core, for clusters. Cases declare two tiers; the harness extends the full
     /// one, see [`crate::deep`].
     Deep,
 }
@@ -97,8 +97,8 @@ impl JudgedRun {
     }
 }
 
-/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first. Those
-/// of a file that states no cause have one that says so.
+/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.
+/// Those of a file that states no cause have one that says so.
 pub fn by_cause<'a, T>(
     all: impl IntoIterator<Item = T>,
     judged: impl Fn(&T) -> &'a Judged,

@@ -125,9 +125,9 @@ pub struct Run {
     /// How much is measured; with --specs, at least so much of each run
     #[arg(long, value_name = "WHICH", value_parser = one_of(&METRICS), default_value = "headline")]
     pub metrics: Measure,
-    /// Write record.json, the curves of the record (series.csv and others) and profile.csv into this folder:
-    /// the velocity across a channel, or all fields of the particles at the end; without --out and --vtk no
-    /// file is written
+    /// Write into this folder record.json, the curves of the record (series.csv and others) and profile.csv,
+    /// which holds the velocity across a channel, or else all fields of the particles at the end; without
+    /// --out and --vtk no file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Write into the folder even if it holds the record of another case; files of both are then mixed
@@ -197,7 +197,7 @@ const TIERS: [Named<Tier>; 3] = [
     (
         "deep",
         Tier::Deep,
-        "About nine hours on one core, for clusters: finer ladders, more starts, all that gates detect",
+        "About fifteen hours on one core, for clusters: finer ladders, more starts, all that gates detect",
     ),
 ];
 
@@ -356,7 +356,7 @@ pub struct Judged {
     /// Write the verdicts as JUnit XML, one test case per gate
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Print every gate, before the line that each case has
+    /// Print every gate, then the line of each case
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
     /// Print the verdicts as JSON on standard output

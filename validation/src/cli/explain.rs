@@ -44,7 +44,8 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Fail
     if let Some(status) = arguments.status {
         let Some(verdicts) = verdicts else {
             return Err(Failure::usage(format!(
-                "{} holds no verdicts; touchstone verify or touchstone report makes them",
+                "{} holds neither verdicts.json nor records; touchstone report, or touchstone verify without \
+                 --store, makes them",
                 arguments.reports.display()
             )));
         };

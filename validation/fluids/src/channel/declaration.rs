@@ -90,7 +90,7 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
         ..table.ladder(&[For::Ladder], variant, level)
     };
     let tau = flow.compared_at();
-    let label = format!("Relative L2 error of u at νt/L² = {tau} [-]");
+    let label = format!("relative L2 error of u at νt/L² = {tau} [-]");
     Accuracy {
         about: "Runs at Re 0.5 to νt/L² = 1.".into(),
         spacing: "Δx/L [-]",

@@ -129,7 +129,8 @@ pub fn pressure_mode(setup: &Setup, simulation: &dyn Stepper<()>) -> f64 {
     mode / count
 }
 
-/// Of the time \[s\] and amplitude after every step the last [`WINDOW`] of a run that ended at `end` \[s\].
+/// The last [`WINDOW`] of the times \[s\] and amplitudes after every step, of a run that ended at `end`
+/// \[s\].
 pub fn last_of_mode(setup: &Setup, series: &[[f64; 2]], end: f64) -> Option<Profile> {
     let crossing = setup.settings.width / setup.medium.eos.sound_speed;
     let since_end = |t: f64| (t - end) / crossing;

@@ -15,8 +15,8 @@ static SOUND: Cause = Cause::new(
     "A sound speed chosen by the pressure of the flow, which is 0 here, and not by its force.",
 );
 
-/// The gates of a run of `stiff` on its error and on its pair interactions over those of `modern`, whose
-/// error is `modern`; NaN without a run.
+/// The gates of a run of `stiff`: on its error, and on its pair interactions over those of `modern`. The
+/// error of `modern` is given, NaN without a run.
 fn gates(flow: Flow, settings: &ChannelSettings, modern: f64) -> [Gate; 2] {
     let ChannelSettings { rows, re, .. } = *settings;
     let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.case().name);

@@ -42,11 +42,11 @@ pub fn study(table: &ChannelTable, runs: &Runs) -> Study {
     let judged: Vec<(Gate, f64)> = judged.collect();
     let is_supported = judged.iter().all(|(_, period)| PERIOD.contains(*period));
     let words = format!(
-        "**H3** (pressure waves leave the ghost-particle walls and keep bouncing between them) is **{}**, by \
-         the period of the lowest pressure mode cos(πy/L) in Poiseuille flow of `seed` at Re 20, from a \
-         start disordered by 1e-4 dx, over the last 60 L/c0 of a run, which ends by divergence or at \
-         νt/L² = 1.5. In the exact flow the mode is 0, and a wave that bounces between the walls has the \
-         period 2L/c0.",
+        "**H3** (pressure waves leave the ghost-particle walls and keep bouncing between them) is **{}**. \
+         The gates hold the period of the lowest pressure mode, cos(πy/L), against 2L/c0, that of a wave \
+         between the walls; in the exact flow the mode is 0. Measured are the last 60 L/c0 of Poiseuille \
+         flow of `seed` at Re 20, whose start is disordered by 1e-4 dx, before it diverges or ends at \
+         νt/L² = 1.5.",
         if is_supported { "supported" } else { "open" }
     );
     let study = Study::new("poiseuille-h3", "H3: pressure waves between the walls").prose(words);

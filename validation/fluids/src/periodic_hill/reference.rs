@@ -150,6 +150,13 @@ impl Station {
 mod tests {
     use super::{super::measure::SEPARATION, *};
 
+    /// A curve that could not be read is empty, too.
+    #[test]
+    fn there_is_a_line_of_separation_where_the_flow_separates() {
+        let counts = REYNOLDS.map(|re| bubble(re).len());
+        assert!(counts[0] == 0 && counts[1..].iter().all(|count| *count > 20), "{counts:?}");
+    }
+
     /// rms distance of the start from what these stations hold \[U_b\].
     fn distance(reference: &Reference, stations: &[Station]) -> f64 {
         let squares: Vec<f64> = stations

@@ -23,7 +23,7 @@ use solver::{
 pub type Slope<'a, X> = &'a dyn Fn(f64, &Evolved<X>, &Rate<X>) -> f64;
 
 /// Powers of terms \[W/m\]: artificial viscosity (16), (17), artificial stress (18), (19), density diffusion,
-/// XSPH (22), and pressure against walls that are not particles of the energy budget.
+/// XSPH (22), and pressure against walls whose particles are outside of the energy budget.
 pub type Powers = [f64; 5];
 
 /// What the rates of one sweep do.

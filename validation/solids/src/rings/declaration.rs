@@ -238,10 +238,10 @@ fn map(tier: Tier) -> Map {
         title: "M2: whole, torn or in pieces over speed and spacing".into(),
         caption: "Outcome of a collision of two rubber rings over speed and particle spacing; an empty cell \
                   was not run. Claim M2 is that artificial stress, of strength ξ, prevents fracture. In runs \
-                  of `seed` by hand, rings of ten layers hold at 0.08 c0 and tear at 0.09; rings of five hold at 0.08, \
-                  are torn at 0.09, and hold at 0.12. Whole rings show the coefficient of restitution e, or that \
-                  they still touch at the end; torn rings (cut through once) the time of the tear in L/c0, \
-                  and others the largest number of pieces."
+                  of `seed` by hand, rings of ten layers hold at 0.08 c0 and tear at 0.09; rings of five \
+                  hold at 0.08, are torn at 0.09, and hold at 0.12. Whole rings show the coefficient of \
+                  restitution e, or that they still touch at the end; torn rings (cut through once) the \
+                  time of the tear in L/c0, and others the largest number of pieces."
             .into(),
         x: "speed of each ring [c0]".into(),
         y: "particle spacing [L]".into(),

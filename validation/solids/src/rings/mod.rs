@@ -71,7 +71,7 @@ base::settings! {
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
         /// exponent of the artificial stress
         exponent: usize ["-"] in 1..=16 = 4,
-        /// samples of the energy budget; no time step is longer than the interval between them
+        /// samples of energy and shape; no time step is longer than the interval between them
         samples: usize ["-"] in 1..=100000 = 200,
     }
 }

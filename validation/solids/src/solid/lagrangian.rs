@@ -10,7 +10,8 @@ use super::leave_out;
 pub const LAGRANGIAN: &str = "lagrangian";
 /// What it is.
 pub const TOTAL: &str = "total Lagrangian: neighbours of the reference configuration, forces from the stored \
-    energy of Hencky, contact between bodies, velocity Verlet: what is left where nothing dissipates?";
+    energy of Hencky, contact where there are several bodies, velocity Verlet: what is left where \
+    nothing dissipates?";
 
 /// The usual Courant number dt (c_p + V)/h: about three quarters of the limit.
 const COURANT: f64 = 0.8;
