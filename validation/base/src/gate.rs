@@ -527,9 +527,18 @@ mod tests {
     fn a_limitation_has_a_bound_that_is_wider_than_the_gates() {
         let known = |bound: Bound, known: Bound| {
             let reason = Some("it is soft".into());
-            Gate { known: Some(known), reason, ..gate(bound) }.check()
+            Gate { known: Some(known), reason, cause: Some(CAUSE), ..gate(bound) }.check()
         };
         let within = Bound::Within(-0.1, 0.1);
+        let whole = gate(within).with_limitation(Bound::Within(-0.5, 0.1), "it is soft", &CAUSE);
+        let halves = [
+            Gate { cause: None, ..whole.clone() },
+            Gate { known: None, ..whole.clone() },
+            Gate { control: true, ..whole },
+        ];
+        for half in halves {
+            assert!(half.check().unwrap_err().contains("together"), "{half:?}");
+        }
         for wider in [Bound::Within(-0.5, 0.1), Bound::Within(0.2, 0.5), Bound::Within(-1.0, 1.0)] {
             assert_eq!(known(within, wider), Ok(()), "{wider}");
         }

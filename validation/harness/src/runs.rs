@@ -2,7 +2,7 @@
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{LazyLock, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 pub use base::gate::Judged;
 use base::{
@@ -103,8 +103,7 @@ pub fn by_cause<'a, T>(
     all: impl IntoIterator<Item = T>,
     judged: impl Fn(&T) -> &'a Judged,
 ) -> Vec<(&'a Cause, Vec<T>)> {
-    static UNSTATED: LazyLock<Cause> =
-        LazyLock::new(|| Cause::new("No cause is stated.", "Stating one."));
+    static UNSTATED: Cause = Cause::new("No cause is stated.", "Stating one.");
     let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
     for one in all.into_iter().filter(|one| judged(one).limitation().is_some()) {
         let cause = judged(&one).gate.cause.as_ref().unwrap_or(&UNSTATED);
