@@ -31,7 +31,8 @@ struct Aligned<T>(T);
 const APART: f64 = 1e200;
 
 /// What becomes of some particles: the number of the first, the particles, and their rates.
-pub(crate) type BlockUpdate<'a, X> = dyn Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync + 'a;
+pub(crate) type BlockUpdate<'a, X, T = Evolved<X>> =
+    dyn Fn(usize, &mut [T], &[Rate<X>]) + Sync + 'a;
 
 /// Gives the rates of particles.
 pub(crate) trait PairSweep<X>: Sync {
@@ -41,11 +42,11 @@ pub(crate) trait PairSweep<X>: Sync {
 }
 
 /// Updates `targets`, which begin with the particles that the lists are of.
-pub(crate) fn run<X: Numbers>(
+pub(crate) fn run<X: Numbers, T: Send>(
     sweep: &dyn PairSweep<X>,
     lists: &Lists,
-    targets: &mut [Evolved<X>],
-    update: &BlockUpdate<X>,
+    targets: &mut [T],
+    update: &BlockUpdate<X, T>,
 ) {
     let targets = targets[..lists.of.len()].chunks_mut(BLOCK);
     let blocks = targets.zip(&lists.blocks).enumerate();
@@ -69,10 +70,7 @@ pub(crate) fn rates<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists) -> Vec<
 
 /// Writes the rates of the particles that the lists are of.
 pub(crate) fn fill<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists, rates: &mut [Rate<X>]) {
-    let blocks = rates.chunks_mut(BLOCK).zip(&lists.blocks).enumerate();
-    parallel::for_each(blocks, lists.parallel, &|(b, (rates, block))| {
-        sweep.rates(block, 0, lists.of.start + b * BLOCK, rates);
-    });
+    run(sweep, lists, rates, &|_, rates, found| rates.copy_from_slice(found));
 }
 
 /// Which of the derived numbers of a column terms read: from its number and these to theirs. Each closure is
