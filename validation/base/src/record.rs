@@ -375,6 +375,23 @@ impl Profile {
         self.columns.iter().find(|c| c.name == name).map_or(&[], |c| &c.values)
     }
 
+    /// Looks for a number that is not finite.
+    ///
+    /// # Errors
+    /// Its column, its row from 1 on, and what it is.
+    pub fn check_finite(&self) -> Result<(), String> {
+        for Column { name, unit, values } in &self.columns {
+            if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+                let value = values[row];
+                return Err(format!(
+                    "column {name}[{unit}] of row {} is {value}, which is not finite",
+                    row + 1
+                ));
+            }
+        }
+        Ok(())
+    }
+
     /// Comma-separated values, each column under `name[unit]`. A number is the shortest text that reads back
     /// to the same bits; one that is not finite leaves a gap, and so does one that a shorter column lacks.
     pub fn to_csv(&self) -> String {
@@ -564,6 +581,14 @@ mod tests {
         record.state = Some(digest(&[1.0]));
         record.cost.alone_s = vec![0.1, 0.3];
         record
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_told_with_its_place() {
+        let sound = Profile::default().with("t", "s", vec![0.0, 1.0]);
+        assert_eq!(sound.check_finite(), Ok(()));
+        let error = sound.with("u", "m/s", vec![2.0, f64::NAN]).check_finite().unwrap_err();
+        assert_eq!(error, "column u[m/s] of row 2 is NaN, which is not finite");
     }
 
     #[test]

@@ -106,6 +106,8 @@ fn solve(
         Some(series) => (CURVE, series),
         None => (RESULTS, results.into_inner().unwrap_or_else(PoisonError::into_inner)),
     };
+    let told = |what| Failure::usage(format!("{name} is not written: {what}"));
+    table.check_finite().map_err(told)?;
     folder.write(name, table.to_csv().as_bytes())?;
     folder.write(METHOD, format!("{method:#}\n").as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
