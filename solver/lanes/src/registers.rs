@@ -71,7 +71,7 @@ pub struct Xmm([__m128d; 2]);
 /// # Safety
 ///
 /// Private: no value of this type is made, and nothing of it called, but under the functions above, where the
-/// processor has AVX2. That is what every `unsafe` of this file relies on.
+/// processor has AVX2. That is what every `unsafe` for it relies on.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 struct Ymm(__m256d);

@@ -400,7 +400,7 @@ impl Profile {
         let cell = |number: Option<&f64>| match number {
             Some(number) if number.is_finite() => {
                 let text = format!("{number:?}");
-                text.strip_suffix(".0").map_or(text.clone(), String::from)
+                text.strip_suffix(".0").unwrap_or(&text).to_string()
             }
             _ => String::new(),
         };

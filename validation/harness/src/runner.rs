@@ -346,8 +346,18 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     }
 
     /// Calls a function after every step, beside those named before; a profile shows its time by this name.
-    pub fn after_step(mut self, name: &'static str, after_step: AfterStep<'a, X, S>) -> Self {
-        self.after_step.push((name, after_step));
+    pub fn after_step(self, name: &'static str, after_step: AfterStep<'a, X, S>) -> Self {
+        self.after_step_if(true, name, after_step)
+    }
+
+    /// The same if that is asked for: a run that does without has no such call.
+    pub fn after_step_if(
+        mut self,
+        asked: bool,
+        name: &'static str,
+        after_step: AfterStep<'a, X, S>,
+    ) -> Self {
+        self.after_step.extend(asked.then_some((name, after_step)));
         self
     }
 

@@ -45,10 +45,8 @@ fn run(
     let (status, cost) = Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
         .at_least(s.least_steps)
         .sweeps(setup.rules.sweeps())
-        .after_step("pressure mode", &|(mode, _), simulation| {
-            if s.watch_mode {
-                mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
-            }
+        .after_step_if(s.watch_mode, "pressure mode", &|(mode, _), simulation| {
+            mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
             Going::Continue
         })
         .at("profiles and errors", &|(_, record), simulation, k| {
