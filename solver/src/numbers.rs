@@ -6,39 +6,59 @@
 
 use nalgebra::Vector2;
 
-use lanes::{Lane, gather_vector};
+use lanes::{Each, Lane};
+
+/// A number for each of the particles whose rates are buffered: few enough to stay in the nearest cache.
+pub type Many = [f64; 64];
 
 /// A fixed set of numbers.
 pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 'static {
-    /// The same set with a lane in place of each number.
-    type In<V: Lane>: Copy;
+    /// The same set with a lane, or the numbers of many particles, in place of each number.
+    type In<V: Each>: Copy;
 
-    /// One set a lane, side by side.
-    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Self::In<V>;
-    /// The same set in every lane.
-    fn spread<V: Lane>(self) -> Self::In<V>;
-    /// The set of one lane.
-    fn lane<V: Lane>(lanes: Self::In<V>, k: usize) -> Self;
+    /// The same set for each.
+    fn spread<V: Each>(self) -> Self::In<V>;
+    /// The sets from number `from` on, one a lane.
+    fn load<V: Lane>(many: &Self::In<Many>, from: usize) -> Self::In<V>;
+    /// Writes the sets of the lanes from number `from` on.
+    fn store<V: Lane>(lanes: Self::In<V>, many: &mut Self::In<Many>, from: usize);
+    /// The set of a single lane.
+    fn one(lane: Self::In<f64>) -> Self;
     /// self + dt rate.
     fn advanced(self, dt: f64, rate: Self) -> Self;
     /// Whether every number is finite.
     fn is_finite(&self) -> bool;
+
+    /// Writes set number `k`.
+    #[inline(always)]
+    fn put(self, many: &mut Self::In<Many>, k: usize) {
+        Self::store::<f64>(self.spread(), many, k);
+    }
+    /// Set number `k`.
+    #[inline(always)]
+    fn take(many: &Self::In<Many>, k: usize) -> Self {
+        Self::one(Self::load::<f64>(many, k))
+    }
 }
 
 impl Numbers for f64 {
-    type In<V: Lane> = V;
+    type In<V: Each> = V;
 
     #[inline(always)]
-    fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> V {
-        V::gather(read)
-    }
-    #[inline(always)]
-    fn spread<V: Lane>(self) -> V {
+    fn spread<V: Each>(self) -> V {
         V::all(self)
     }
     #[inline(always)]
-    fn lane<V: Lane>(lanes: V, k: usize) -> Self {
-        lanes.lane(k)
+    fn load<V: Lane>(many: &Many, from: usize) -> V {
+        V::load(&many[from..])
+    }
+    #[inline(always)]
+    fn store<V: Lane>(lanes: V, many: &mut Many, from: usize) {
+        lanes.store(&mut many[from..]);
+    }
+    #[inline(always)]
+    fn one(lane: f64) -> Self {
+        lane
     }
     #[inline(always)]
     fn advanced(self, dt: f64, rate: Self) -> Self {
@@ -55,21 +75,25 @@ pub type In<N, V> = <N as Numbers>::In<V>;
 
 /// Implements [`Numbers`] for a struct of numbers, field by field.
 macro_rules! fields_of_numbers {
-    ($Struct:ident ($($field:ident),+), gather($read:ident) = $gather:expr) => {
+    ($Struct:ident ($($field:ident),+)) => {
         impl Numbers for $Struct<f64> {
-            type In<V: Lane> = $Struct<V>;
+            type In<V: Each> = $Struct<V>;
 
             #[inline(always)]
-            fn gather<V: Lane>($read: impl Fn(usize) -> Self) -> $Struct<V> {
-                $gather
-            }
-            #[inline(always)]
-            fn spread<V: Lane>(self) -> $Struct<V> {
+            fn spread<V: Each>(self) -> $Struct<V> {
                 $Struct::new($(V::all(self.$field)),+)
             }
             #[inline(always)]
-            fn lane<V: Lane>(lanes: $Struct<V>, k: usize) -> Self {
-                $Struct::new($(lanes.$field.lane(k)),+)
+            fn load<V: Lane>(many: &$Struct<Many>, from: usize) -> $Struct<V> {
+                $Struct::new($(V::load(&many.$field[from..])),+)
+            }
+            #[inline(always)]
+            fn store<V: Lane>(lanes: $Struct<V>, many: &mut $Struct<Many>, from: usize) {
+                $(lanes.$field.store(&mut many.$field[from..]);)+
+            }
+            #[inline(always)]
+            fn one(lane: Self) -> Self {
+                lane
             }
             #[inline(always)]
             fn advanced(self, dt: f64, rate: Self) -> Self {
@@ -83,11 +107,10 @@ macro_rules! fields_of_numbers {
     };
 }
 
-fields_of_numbers! { Vector2 (x, y), gather(read) = gather_vector(read) }
+fields_of_numbers! { Vector2 (x, y) }
 
 /// A symmetric tensor of the plane: three numbers, not four.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)] // xx and yy side by side
 pub struct Symmetric<V = f64> {
     /// Along x.
     pub xx: V,
@@ -97,13 +120,15 @@ pub struct Symmetric<V = f64> {
     pub xy: V,
 }
 
-impl<V: Lane> Symmetric<V> {
+impl<V> Symmetric<V> {
     /// The three numbers.
     #[inline(always)]
     pub fn new(xx: V, yy: V, xy: V) -> Self {
         Self { xx, yy, xy }
     }
+}
 
+impl<V: Lane> Symmetric<V> {
     /// The product with a vector.
     #[inline(always)]
     pub fn times(self, r: Vector2<V>) -> Vector2<V> {
@@ -129,31 +154,30 @@ impl<V: Lane> std::ops::Mul<V> for Symmetric<V> {
     }
 }
 
-fields_of_numbers! {
-    Symmetric (xx, yy, xy), gather(read) = {
-        let [xx, yy] = V::gather_pair(|k| [read(k).xx, read(k).yy]);
-        Symmetric { xx, yy, xy: V::gather(|k| read(k).xy) }
-    }
-}
+fields_of_numbers! { Symmetric (xx, yy, xy) }
 
 /// Implements [`Numbers`] for a tuple, member by member.
 macro_rules! tuple_of_numbers {
     ($($member:ident $index:tt),*) => {
         #[allow(unused_variables, clippy::unused_unit)] // of the empty tuple
         impl<$($member: Numbers),*> Numbers for ($($member,)*) {
-            type In<V: Lane> = ($($member::In<V>,)*);
+            type In<V: Each> = ($($member::In<V>,)*);
 
             #[inline(always)]
-            fn gather<V: Lane>(read: impl Fn(usize) -> Self) -> Self::In<V> {
-                ($($member::gather(|k| read(k).$index),)*)
-            }
-            #[inline(always)]
-            fn spread<V: Lane>(self) -> Self::In<V> {
+            fn spread<V: Each>(self) -> Self::In<V> {
                 ($(self.$index.spread(),)*)
             }
             #[inline(always)]
-            fn lane<V: Lane>(lanes: Self::In<V>, k: usize) -> Self {
-                ($($member::lane::<V>(lanes.$index, k),)*)
+            fn load<V: Lane>(many: &Self::In<Many>, from: usize) -> Self::In<V> {
+                ($($member::load(&many.$index, from),)*)
+            }
+            #[inline(always)]
+            fn store<V: Lane>(lanes: Self::In<V>, many: &mut Self::In<Many>, from: usize) {
+                $($member::store(lanes.$index, &mut many.$index, from);)*
+            }
+            #[inline(always)]
+            fn one(lane: Self::In<f64>) -> Self {
+                ($($member::one(lane.$index),)*)
             }
             #[inline(always)]
             fn advanced(self, dt: f64, rate: Self) -> Self {

@@ -8,20 +8,22 @@
 //! compiled once for each combination of these. Code that is compiled only once calls it through
 //! [`PairSweep`].
 
-use lanes::{Lane, OnLanes, gather_vector, on_widest};
+use std::ops::Range;
+
+use lanes::{Lane, OnLanes, on_widest};
 use nalgebra::Vector2;
 
 use crate::{
     kernel::{Kernel, Smoothing},
     neighbours::{BLOCK, Block, GROUP, Lists},
-    numbers::Numbers,
+    numbers::{In, Many, Numbers},
     parallel,
     particles::{Column, Common, Evolved, Rate},
     terms::{Pair, Term},
 };
 
-/// Particles whose rates are buffered: few enough to stay in the nearest cache.
-const BUFFER: usize = 64;
+/// Particles whose rates are buffered.
+const BUFFER: usize = size_of::<Many>() / size_of::<f64>();
 
 /// Where cache lines begin. Elsewhere, which depends on who calls, a sweep takes up to half as long again.
 #[repr(align(64))]
@@ -36,9 +38,9 @@ pub(crate) type BlockUpdate<'a, X, T = Evolved<X>> =
 
 /// Gives the rates of particles.
 pub(crate) trait PairSweep<X>: Sync {
-    /// Writes the rates of particles from column `first` on, whose neighbour lists are those of a block
-    /// from number `list` on.
-    fn rates(&self, block: &Block, list: usize, first: usize, rates: &mut [Rate<X>]);
+    /// Passes on the rates of the particles in these columns, a few at a time, with the column of the first. Their
+    /// neighbour lists are those of the block.
+    fn rates(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[Rate<X>]));
 }
 
 /// Updates `targets`, which begin with the particles that the lists are of.
@@ -51,14 +53,17 @@ pub(crate) fn run<X: Numbers, T: Send>(
     let targets = targets[..lists.of.len()].chunks_mut(BLOCK);
     let blocks = targets.zip(&lists.blocks).enumerate();
     parallel::for_each(blocks, lists.parallel, &|(b, (targets, block))| {
-        let mut buffer = Aligned([Rate::default(); BUFFER]);
-        for (list, targets) in (0..).step_by(BUFFER).zip(targets.chunks_mut(BUFFER)) {
-            let first = lists.of.start + b * BLOCK + list;
-            let rates = &mut buffer.0[..targets.len()];
-            sweep.rates(block, list, first, rates);
-            update(first, targets, rates);
-        }
+        let start = lists.of.start + b * BLOCK;
+        sweep.rates(block, start..start + targets.len(), &mut |first, rates| {
+            update(first, &mut targets[first - start..][..rates.len()], rates);
+        });
     });
+}
+
+/// Compiled for itself, for it is long.
+#[inline(never)]
+fn zeros<X: Numbers>() -> Aligned<[Rate<X>; BUFFER]> {
+    Aligned([Rate::default(); BUFFER])
 }
 
 /// The rates of the particles that the lists are of.
@@ -108,60 +113,95 @@ pub(crate) struct Sweep<'a, K, T, S, C> {
     pub moving: bool,
 }
 
-impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> PairSweep<X>
-    for Sweep<'_, K, T, S, C>
-{
-    fn rates(&self, block: &Block, list: usize, first: usize, rates: &mut [Rate<X>]) {
-        for (rate, own) in rates.iter_mut().zip(&self.columns[first..]) {
-            let position = if self.moving { own.velocity } else { Vector2::zeros() };
-            *rate = Rate { position, ..Rate::default() };
-        }
-        if !T::IS_EMPTY {
-            on_widest(Particles { sweep: self, block, list, first, rates });
+impl<K, T, S, C> Sweep<'_, K, T, S, C> {
+    /// Passes on the rates of these particles, of which `sum` forms the sums over neighbours.
+    #[inline(always)]
+    fn rates_by<X: Numbers>(
+        &self,
+        sum: impl Fn(Particles<Self, T, X>),
+        block: &Block,
+        of: Range<usize>,
+        pass: &mut dyn FnMut(usize, &[Rate<X>]),
+    ) where
+        T: Term<X>,
+        S: Numbers,
+        C: Select<S, T::Derived>,
+    {
+        let &Sweep { terms, columns, ref select, moving, .. } = self;
+        let mut rates = zeros();
+        let mut own = Aligned(Seen::<T::Derived>::default().spread::<Many>());
+        let mut sums = Aligned(T::Sum::default().spread::<Many>());
+        for first in of.clone().step_by(BUFFER) {
+            let end = (first + BUFFER).min(of.end);
+            if !T::IS_EMPTY {
+                // The last group may lack some.
+                for k in 0..(end - first).next_multiple_of(GROUP) {
+                    let number = if first + k < end { first + k } else { columns.len() - 1 };
+                    let &Column { position, velocity, common, ref derived } = &columns[number];
+                    let numbers = (common.mass, common.density, common.volume);
+                    (position, velocity, numbers, select(number, derived)).put(&mut own.0, k);
+                }
+                let (list, own, sums) = (first - of.start, &own.0, &mut sums.0);
+                sum(Particles { sweep: self, block, list, of: first..end, own, sums });
+            }
+            for (k, (rate, number)) in rates.0.iter_mut().zip(first..end).enumerate() {
+                let own = &columns[number];
+                let mut all = Rate::default();
+                if moving {
+                    all.position = own.velocity;
+                }
+                let derived = select(number, &own.derived);
+                terms.finish(&own.common, derived, T::Sum::take(&sums.0, k), &mut all);
+                terms.place(own.position, &mut all);
+                *rate = all;
+            }
+            pass(first, &rates.0[..end - first]);
         }
     }
 }
 
-/// Some particles of a block. In a profile it is `with_registers_for_eight` or `with_registers_for_four`
-/// with this type (the search for neighbours is the same with its own); the portable form is inlined into
-/// its caller.
-struct Particles<'a, W, X> {
+impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> PairSweep<X>
+    for Sweep<'_, K, T, S, C>
+{
+    fn rates(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[Rate<X>])) {
+        self.rates_by(|particles| on_widest(particles), block, of, pass);
+    }
+}
+
+/// What a term sees of a particle that derives `D`: position and velocity; mass, density and volume; `D`.
+type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
+
+/// The sums of some particles of a block. In a profile it is `with_registers_for_eight` or
+/// `with_registers_for_four` with this type (the search for neighbours is the same with its own); the portable
+/// form is inlined into its caller.
+struct Particles<'a, W, T: Term<X>, X> {
     sweep: &'a W,
     block: &'a Block,
     list: usize,
-    first: usize,
-    rates: &'a mut [Rate<X>],
+    of: Range<usize>,
+    own: &'a In<Seen<T::Derived>, Many>,
+    sums: &'a mut In<T::Sum, Many>,
 }
 
 impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> OnLanes
-    for Particles<'_, Sweep<'_, K, T, S, C>, X>
+    for Particles<'_, Sweep<'_, K, T, S, C>, T, X>
 {
     #[inline(always)]
     fn run<V: Lane>(self) {
         const { assert!(BUFFER.is_multiple_of(GROUP) && GROUP.is_multiple_of(V::LANES)) };
         let &Sweep { kernel, terms, columns, ref select, .. } = self.sweep;
         let support2 = kernel.support() * kernel.support() * (1.0 + 1e-12);
-        let (end, sentinel) = (self.first + self.rates.len(), columns.len() - 1);
-        for (group, rates) in self.rates.chunks_mut(V::LANES).enumerate() {
-            let start = group * V::LANES;
-            let first = self.first + start;
-            let number = |lane: usize| if first + lane < end { first + lane } else { sentinel };
-            let own = |lane: usize| &columns[number(lane)];
-            let position = gather_vector::<V>(|lane| own(lane).position);
-            let velocity = gather_vector::<V>(|lane| own(lane).velocity);
-            let common = Common {
-                mass: V::gather(|lane| own(lane).common.mass),
-                density: V::gather(|lane| own(lane).common.density),
-                volume: V::gather(|lane| own(lane).common.volume),
-            };
-            let derived = T::Derived::gather::<V>(|lane| select(number(lane), &own(lane).derived));
+        for start in (0..self.of.len()).step_by(V::LANES) {
+            let (position, velocity, (mass, density, volume), derived) =
+                Seen::<T::Derived>::load::<V>(self.own, start);
+            let common = Common { mass, density, volume };
             let mut sum = T::Sum::default().spread::<V>();
             for &column in self.block.list((self.list + start) / GROUP) {
                 let other = &columns[column as usize];
                 let r = position - other.position.spread::<V>();
                 let mut r2 = r.x * r.x + r.y * r.y;
                 // A particle is out of its own reach. Members stand first in a list: this is predicted.
-                let member = (column as usize).wrapping_sub(first);
+                let member = (column as usize).wrapping_sub(self.of.start + start);
                 if member < GROUP {
                     r2 += V::gather(|lane| if lane == member { APART } else { 0.0 });
                 }
@@ -174,18 +214,7 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> On
                 let pair = Pair { r, r2, v, f, own: common, other: others, derived, kernel };
                 terms.pair(&pair, &mut sum);
             }
-            // Each lane is taken out of its register by a number that the compiler knows: otherwise all
-            // registers are stored again for every lane, and a sweep of colliding rings takes up to 1.5 of
-            // the time.
-            let mut sums = [T::Sum::default(); GROUP];
-            for (lane, sum_of_lane) in sums.iter_mut().enumerate().take(V::LANES) {
-                *sum_of_lane = T::Sum::lane::<V>(sum, lane);
-            }
-            for (lane, (rate, sum)) in rates.iter_mut().zip(sums).enumerate() {
-                let own = &columns[first + lane];
-                terms.finish(&own.common, select(first + lane, &own.derived), sum, rate);
-                terms.place(own.position, rate);
-            }
+            T::Sum::store(sum, self.sums, start);
         }
     }
 }
@@ -268,18 +297,13 @@ mod tests {
         let kernel = Smoothing::<QuinticSpline>::new(DX);
         let (terms, columns) = (&terms, &columns[..]);
         let sweep = Sweep { kernel: &kernel, terms, columns, select: whole(), moving: true };
-        let start = |column: &Column<_>| Rate { position: column.velocity, ..Rate::default() };
-        let mut portable: Vec<Rate<()>> = columns[..count].iter().map(start).collect();
-        let [mut one, mut widest] = [portable.clone(), portable.clone()];
-        for (b, rates) in portable.chunks_mut(BLOCK).enumerate() {
-            let (sweep, block, first) = (&sweep, &neighbours.lists.blocks[b], b * BLOCK);
-            Particles { sweep, block, list: 0, first, rates }.run::<Portable>();
-            let rates = &mut one[first..first + rates.len()];
-            Particles { sweep, block, list: 0, first, rates }.run::<f64>();
-        }
-        for (b, rates) in widest.chunks_mut(BLOCK).enumerate() {
-            let (sweep, block, first) = (&sweep, &neighbours.lists.blocks[b], b * BLOCK);
-            on_widest(Particles { sweep, block, list: 0, first, rates });
+        let [mut portable, mut one, mut widest] = [const { Vec::<Rate<()>>::new() }; 3];
+        for (b, block) in neighbours.lists.blocks.iter().enumerate() {
+            let of = b * BLOCK..((b + 1) * BLOCK).min(count);
+            let of = || of.clone();
+            sweep.rates_by(|p| p.run::<Portable>(), block, of(), &mut |_, r| portable.extend(r));
+            sweep.rates_by(|p| p.run::<f64>(), block, of(), &mut |_, r| one.extend(r));
+            sweep.rates(block, of(), &mut |_, r| widest.extend(r));
         }
         assert!(neighbours.lists.blocks.len() > 1);
         let bits =

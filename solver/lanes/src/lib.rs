@@ -18,22 +18,28 @@ pub const LANES: usize = 4;
 /// The most lanes of [`on_widest`], a multiple of the lanes of any form.
 pub const MOST: usize = 8;
 
+/// A real number for each of several particles.
+pub trait Each: Copy + Scalar + Send + Sync {
+    /// The same number for every one.
+    fn all(x: f64) -> Self;
+}
+
+impl<const N: usize> Each for [f64; N] {
+    fn all(x: f64) -> Self {
+        [x; N]
+    }
+}
+
 /// A real number per lane.
 pub trait Lane:
-    Copy
-    + Scalar
-    + Send
-    + Sync
-    + Neg<Output = Self>
-    + ClosedAddAssign
-    + ClosedSubAssign
-    + ClosedMulAssign
-    + ClosedDivAssign
+    Each + Neg<Output = Self> + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign + ClosedDivAssign
 {
     /// How many lanes there are.
     const LANES: usize;
-    /// The same number in every lane.
-    fn all(x: f64) -> Self;
+    /// The first of these numbers, as many as there are lanes.
+    fn load(from: &[f64]) -> Self;
+    /// Writes the numbers to the first places of these.
+    fn store(self, to: &mut [f64]);
     /// Reads one number a lane.
     fn gather(read: impl Fn(usize) -> f64) -> Self;
     /// Reads two numbers a lane that stand side by side.
@@ -94,12 +100,20 @@ pub fn on_four(work: impl OnLanes) {
 
 /// Implements [`Lane`], inlined always: what each operation is for the type.
 macro_rules! lane {
-    (for $Type:ty, $lanes:literal: $(fn $name:ident($($takes:tt)*) -> $Gives:ty = $is:expr;)+) => {
+    (for $Type:ty, $lanes:literal: fn all($x:ident: f64) -> Self = $all:expr;
+     $(fn $name:ident($($takes:tt)*) $(-> $Gives:ty)? = $is:expr;)+) => {
+        impl $crate::Each for $Type {
+            #[inline(always)]
+            fn all($x: f64) -> Self {
+                $all
+            }
+        }
+
         impl $crate::Lane for $Type {
             const LANES: usize = $lanes;
             $(
             #[inline(always)]
-            fn $name($($takes)*) -> $Gives {
+            fn $name($($takes)*) $(-> $Gives)? {
                 $is
             }
         )+}
@@ -118,6 +132,8 @@ pub type Portable = simba::simd::WideF64x4;
 lane! {
     for f64, 1:
     fn all(x: f64) -> Self = x;
+    fn load(from: &[f64]) -> Self = from[0];
+    fn store(self, to: &mut [f64]) = to[0] = self;
     fn gather(read: impl Fn(usize) -> f64) -> Self = read(0);
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = read(0);
     fn sqrt(self) -> Self = f64::sqrt(self);
@@ -131,6 +147,10 @@ lane! {
 lane! {
     for Portable, 4:
     fn all(x: f64) -> Self = Self(wide::f64x4::splat(x));
+    fn load(from: &[f64]) -> Self =
+        Self(wide::f64x4::from(*from.first_chunk::<LANES>().expect("four numbers")));
+    fn store(self, to: &mut [f64]) =
+        *to.first_chunk_mut().expect("four places") = self.0.to_array();
     fn gather(read: impl Fn(usize) -> f64) -> Self =
         Self(wide::f64x4::from([read(0), read(1), read(2), read(3)]));
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =

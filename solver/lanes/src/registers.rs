@@ -12,7 +12,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::{LANES, Lane, MOST, OnLanes};
+use crate::{Each, LANES, MOST, OnLanes};
 
 /// Whether the processor has AVX2, and AVX-512 too. The standard library keeps the processor's answer.
 fn has() -> [bool; 2] {
@@ -90,6 +90,13 @@ macro_rules! operators {
     ($Register:ident, $lanes:literal;
      $($Op:ident $op:ident $OpAssign:ident $op_assign:ident = |$a:ident, $b:ident| $is:expr;)+) => {
         impl $Register {
+            /// As many numbers.
+            #[inline(always)]
+            fn of_array(numbers: [f64; $lanes]) -> Self {
+                // SAFETY: both are as many f64 in the same order.
+                Self(unsafe { transmute(numbers) })
+            }
+
             /// The numbers.
             #[inline(always)]
             fn to_array(self) -> [f64; $lanes] {
@@ -159,6 +166,8 @@ operators! {
 lane! {
     for Xmm, 4:
     fn all(x: f64) -> Self = Self([unsafe { _mm_set1_pd(x) }; 2]);
+    fn load(from: &[f64]) -> Self = Self::of_array(*from.first_chunk().expect("four numbers"));
+    fn store(self, to: &mut [f64]) = *to.first_chunk_mut().expect("four places") = self.to_array();
     fn gather(read: impl Fn(usize) -> f64) -> Self =
         Self(unsafe { [_mm_setr_pd(read(0), read(1)), _mm_setr_pd(read(2), read(3))] });
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
@@ -183,6 +192,8 @@ lane! {
 lane! {
     for Ymm, 4:
     fn all(x: f64) -> Self = Self(unsafe { _mm256_set1_pd(x) });
+    fn load(from: &[f64]) -> Self = Self::of_array(*from.first_chunk().expect("four numbers"));
+    fn store(self, to: &mut [f64]) = *to.first_chunk_mut().expect("four places") = self.to_array();
     fn gather(read: impl Fn(usize) -> f64) -> Self =
         Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) });
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = {
@@ -217,6 +228,8 @@ lane! {
 lane! {
     for Zmm, 8:
     fn all(x: f64) -> Self = Self(unsafe { _mm512_set1_pd(x) });
+    fn load(from: &[f64]) -> Self = Self::of_array(*from.first_chunk().expect("eight numbers"));
+    fn store(self, to: &mut [f64]) = *to.first_chunk_mut().expect("eight places") = self.to_array();
     fn gather(read: impl Fn(usize) -> f64) -> Self = Self(unsafe {
         _mm512_setr_pd(read(0), read(1), read(2), read(3), read(4), read(5), read(6), read(7))
     });
@@ -250,6 +263,7 @@ const PACKED: [i32; 16] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Lane;
 
     /// Numbers with signs, zeros of either sign, and extremes.
     const A: [f64; 8] = [-0.0, 1.0 / 3.0, -1e-300, 2e200, 0.7, -3.3e7, 0.0, 5e-324];
@@ -262,7 +276,7 @@ mod tests {
 
     /// What every operation makes of the numbers from number `first` on, a lane after the other.
     fn results_from<V: Lane>(first: usize) -> Vec<u64> {
-        let [a, b] = [A, B].map(|numbers| V::gather(|k| numbers[first + k]));
+        let [a, b] = [A, B].map(|numbers| V::load(&numbers[first..]));
         let (mut sum, mut less, mut times, mut over) = (a, a, a, a);
         sum += b;
         less -= b;
@@ -275,7 +289,7 @@ mod tests {
             [-a, -b, a.abs(), b.abs()],
             [a.at_least(b), b.at_least(a), a.positive(), b.positive()],
             [a.abs().sqrt(), b.abs().sqrt(), V::all(0.1), V::all(0.0)],
-            [pair[0], pair[1], a, b],
+            [pair[0], pair[1], a, V::gather(|k| B[first + k])],
         ];
         let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
         let below = |k: usize, x: V| {
@@ -285,7 +299,9 @@ mod tests {
             let numbers = all.iter().flatten().map(move |x| bits(x.lane(k))).collect::<Vec<_>>();
             [numbers, below(k, a).to_vec(), below(k, b).to_vec()].concat()
         };
-        (0..V::LANES).flat_map(of_lane).collect()
+        let mut stored = [0.0; MOST];
+        b.store(&mut stored);
+        (0..V::LANES).flat_map(|k| [of_lane(k), vec![bits(stored[k])]].concat()).collect()
     }
 
     /// Of each choice of as many columns as there are lanes, those that are packed.

@@ -194,7 +194,7 @@ tuple_of_terms!(Split<A, B>: A 0, B 1);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2};
+    use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2, numbers::Many};
     use lanes::{OnLanes, Portable, on_widest};
 
     /// Up to eight neighbours, number k of field f; one is at the same place as the particle.
@@ -239,20 +239,19 @@ mod tests {
         read: impl Fn(In<T::Sum, f64>) -> [f64; N],
     ) {
         let kernel = Smoothing::<K>::new(0.35);
-        let at = |k: usize, mass: f64, density: f64| {
-            let common = Common { mass, density, volume: mass / density };
-            assert!(k < V::LANES);
-            term.derived(&common, &())
+        let derived = |mass: f64, density: f64| {
+            term.derived(&Common { mass, density, volume: mass / density }, &())
         };
         let wide = pair(&kernel, |field| V::gather(|k| number(field, k)));
         let together = read_wide(sum(&term, &wide, |c| {
-            T::Derived::gather::<V>(|k| at(k, c.mass.lane(k), c.density.lane(k)))
+            let mut all = T::Derived::default().spread::<Many>();
+            (0..V::LANES).for_each(|k| derived(c.mass.lane(k), c.density.lane(k)).put(&mut all, k));
+            T::Derived::load::<V>(&all, 0)
         }));
         let mut nonzero = 0;
         for k in 0..V::LANES {
             let one = pair(&kernel, |field| number(field, k));
-            let alone =
-                read(sum(&term, &one, |c| T::Derived::gather::<f64>(|_| at(k, c.mass, c.density))));
+            let alone = read(sum(&term, &one, |c| derived(c.mass, c.density).spread::<f64>()));
             for (together, alone) in together.iter().zip(alone) {
                 let lane = together.lane(k);
                 let term = std::any::type_name::<T>();
