@@ -38,8 +38,8 @@ pub(crate) type BlockUpdate<'a, X, T = Evolved<X>> =
 
 /// Gives the rates of particles.
 pub(crate) trait PairSweep<X>: Sync {
-    /// Passes on the rates of the particles in these columns, a few at a time, with the column of the first. Their
-    /// neighbour lists are those of the block.
+    /// Passes on the rates of the particles in these columns, a few at a time, with the column of the first.
+    /// Their neighbour lists are those of the block.
     fn rates(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[Rate<X>]));
 }
 
@@ -172,8 +172,8 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> Pa
 type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 
 /// The sums of some particles of a block. In a profile it is `with_registers_for_eight` or
-/// `with_registers_for_four` with this type (the search for neighbours is the same with its own); the portable
-/// form is inlined into its caller.
+/// `with_registers_for_four` with this type (the search for neighbours is the same with its own); the
+/// portable form is inlined into its caller.
 struct Particles<'a, W, T: Term<X>, X> {
     sweep: &'a W,
     block: &'a Block,

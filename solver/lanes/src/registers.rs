@@ -87,14 +87,14 @@ struct Zmm(__m512d);
 
 /// The operators, each one instruction, and a change of sign, of 0 too, as for f64.
 macro_rules! operators {
-    ($Register:ident, $lanes:literal;
+    ($Register:ident, $lanes:literal, $Held:ty;
      $($Op:ident $op:ident $OpAssign:ident $op_assign:ident = |$a:ident, $b:ident| $is:expr;)+) => {
         impl $Register {
             /// As many numbers.
             #[inline(always)]
             fn of_array(numbers: [f64; $lanes]) -> Self {
                 // SAFETY: both are as many f64 in the same order.
-                Self(unsafe { transmute(numbers) })
+                Self(unsafe { transmute::<[f64; $lanes], $Held>(numbers) })
             }
 
             /// The numbers.
@@ -139,7 +139,7 @@ macro_rules! operators {
 }
 
 operators! {
-    Xmm, 4;
+    Xmm, 4, [__m128d; 2];
     Add add AddAssign add_assign = |a, b| [_mm_add_pd(a[0], b[0]), _mm_add_pd(a[1], b[1])];
     Sub sub SubAssign sub_assign = |a, b| [_mm_sub_pd(a[0], b[0]), _mm_sub_pd(a[1], b[1])];
     Mul mul MulAssign mul_assign = |a, b| [_mm_mul_pd(a[0], b[0]), _mm_mul_pd(a[1], b[1])];
@@ -147,7 +147,7 @@ operators! {
 }
 
 operators! {
-    Ymm, 4;
+    Ymm, 4, __m256d;
     Add add AddAssign add_assign = |a, b| _mm256_add_pd(a, b);
     Sub sub SubAssign sub_assign = |a, b| _mm256_sub_pd(a, b);
     Mul mul MulAssign mul_assign = |a, b| _mm256_mul_pd(a, b);
@@ -155,7 +155,7 @@ operators! {
 }
 
 operators! {
-    Zmm, 8;
+    Zmm, 8, __m512d;
     Add add AddAssign add_assign = |a, b| _mm512_add_pd(a, b);
     Sub sub SubAssign sub_assign = |a, b| _mm512_sub_pd(a, b);
     Mul mul MulAssign mul_assign = |a, b| _mm512_mul_pd(a, b);
