@@ -173,11 +173,8 @@ impl<P: Physics> Engine<P> {
     pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
         let lists = &self.data.neighbours.lists;
         let forces = sweep::rates(&self.sweep(&self.terms.0, first(), false), lists);
-        let mut rates = sweep::rates(&self.sweep(&self.terms.1, second(), false), lists);
-        for (rate, forces) in rates.iter_mut().zip(forces) {
-            rate.velocity = forces.velocity;
-        }
-        rates
+        let drift = sweep::rates(&self.sweep(&self.terms.1, second(), false), lists);
+        together(forces, drift)
     }
 
     /// The rates of wall particles by the terms of the walls, for the state that the columns were
@@ -337,6 +334,14 @@ impl<P: Physics> Engine<P> {
         let neighbours = &self.data.neighbours;
         fill_images::<P, (P::Forces, P::Drift)>(neighbours, fluid, motion, &mut self.columns);
     }
+}
+
+/// The rates of velocities by the forces, and the others by the drift.
+fn together<X>(forces: Vec<Rate<X>>, mut drift: Vec<Rate<X>>) -> Vec<Rate<X>> {
+    for (rate, forces) in drift.iter_mut().zip(forces) {
+        rate.velocity = forces.velocity;
+    }
+    drift
 }
 
 /// Where particles are: an iterator whose type depends on no scheme.

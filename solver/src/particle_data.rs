@@ -313,6 +313,17 @@ impl<X: Numbers> ParticleData<X> {
         images.iter().map(|image| (image.source as usize, &maps[image.map as usize]))
     }
 
+    /// Takes over all of a checkpoint but its progress, for which neighbour lists are to be built first; else
+    /// says what is wrong, and has changed nothing.
+    pub(crate) fn replace(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
+        from.check()?;
+        self.put(&from.particles);
+        self.lag = from.lag;
+        self.held.clear();
+        self.past.clone_from(&from.past);
+        Ok(())
+    }
+
     /// Goes to a checkpoint of the same scene whose neighbour lists are those that there are; else says what
     /// is wrong, and has changed nothing.
     pub fn resume(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {

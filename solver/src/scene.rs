@@ -1,5 +1,7 @@
 //! A scene: the complete initial state and method of a simulation, checked before the first step.
 
+use std::ops::{Deref, DerefMut};
+
 use nalgebra::Vector2;
 use thiserror::Error;
 
@@ -44,20 +46,26 @@ pub enum Part {
     Wall(usize),
 }
 
-/// A scene whose method is the scheme `S`.
+/// A scene whose method is the scheme `S`. It dereferences to its [`Setting`].
 pub struct Scene<S: Scheme> {
-    /// Smoothing length h \[m\].
-    pub h: f64,
-    /// The domain, periodic or open in each direction.
-    pub domain: Domain,
-    /// The particles. Results list them in the same order.
-    pub particles: Vec<Particle<S::Extra>>,
+    /// What does not depend on the scheme.
+    pub setting: Setting<S::Extra>,
     /// Terms of dv/dt.
     pub forces: S::Forces,
     /// Terms of dx/dt, dρ/dt and the extra fields.
     pub drift: S::Drift,
     /// The walls.
     pub walls: S::Walls,
+}
+
+/// What of a scene does not depend on its scheme; `X` is what its particles integrate beyond x, v and ρ.
+pub struct Setting<X = ()> {
+    /// Smoothing length h \[m\].
+    pub h: f64,
+    /// The domain, periodic or open in each direction.
+    pub domain: Domain,
+    /// The particles. Results list them in the same order.
+    pub particles: Vec<Particle<X>>,
     /// From each wall particle, in the order of the particles, to its foot, the nearest point of the surface
     /// \[m\]: for walls that read it, [`Walls::FEET`]; else empty.
     pub feet: Vec<Vector2<f64>>,
@@ -84,13 +92,42 @@ impl<S: Scheme> Scene<S> {
         drift: S::Drift,
         walls: S::Walls,
     ) -> Self {
+        Self { setting: Setting::new(h, domain, particles), forces, drift, walls }
+    }
+
+    /// Checks the scene, and builds a simulation that is ready to step.
+    pub fn build(self) -> Result<Simulation<S>, SceneError> {
+        let Self { setting, forces, drift, walls } = self;
+        let h = setting.h;
+        let data = setting.ready(S::Kernel::SUPPORT, walls.mirrors(), S::Walls::FEET)?;
+        Ok(Simulation {
+            engine: Engine::new(h, (forces, drift), walls.terms(), data),
+            integrator: S::Integrator::default(),
+        })
+    }
+}
+
+impl<S: Scheme> Deref for Scene<S> {
+    type Target = Setting<S::Extra>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.setting
+    }
+}
+
+impl<S: Scheme> DerefMut for Scene<S> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.setting
+    }
+}
+
+impl<X: Numbers> Setting<X> {
+    /// A setting with the usual skin, limits and threading.
+    pub fn new(h: f64, domain: Domain, particles: Vec<Particle<X>>) -> Self {
         Self {
             h,
             domain,
             particles,
-            forces,
-            drift,
-            walls,
             feet: Vec::new(),
             skin: 0.4 * h,
             skin_share: 0.5,
@@ -100,37 +137,15 @@ impl<S: Scheme> Scene<S> {
         }
     }
 
-    /// Checks the scene, and builds a simulation that is ready to step.
-    pub fn build(self) -> Result<Simulation<S>, SceneError> {
-        let Self { h, domain, particles, forces, drift, walls, feet, .. } = self;
-        let Self { skin, skin_share, limits, parallel_from, .. } = self;
-        let lengths = [h, skin, skin_share, S::Kernel::SUPPORT];
-        let parallel = particles.len() >= parallel_from;
-        let setting = Setting { lengths, domain, particles, feet, limits, parallel };
-        let data = setting.ready(walls.mirrors(), S::Walls::FEET)?;
-        Ok(Simulation {
-            engine: Engine::new(h, (forces, drift), walls.terms(), data),
-            integrator: S::Integrator::default(),
-        })
-    }
-}
-
-/// What of a scene does not depend on its scheme.
-struct Setting<X> {
-    /// h \[m\], the skin \[m\], the share of it after which lists are stale, and the support \[h\].
-    lengths: [f64; 4],
-    domain: Domain,
-    particles: Vec<Particle<X>>,
-    feet: Vec<Vector2<f64>>,
-    limits: Limits,
-    parallel: bool,
-}
-
-impl<X: Numbers> Setting<X> {
-    /// The particles of a sound scene, sorted, without lists. `reads` says whether the walls read feet.
-    fn ready(self, mirrors: &[PlaneWall], reads: bool) -> Result<Box<ParticleData<X>>, SceneError> {
-        let Self { lengths, domain, particles, feet, limits, parallel } = self;
-        let [h, skin, skin_share, support] = lengths;
+    /// The particles of a sound scene, sorted, without lists, for a kernel with this support \[h\]. `reads`
+    /// says whether the walls read feet.
+    fn ready(
+        self,
+        support: f64,
+        mirrors: &[PlaneWall],
+        reads: bool,
+    ) -> Result<Box<ParticleData<X>>, SceneError> {
+        let Self { h, domain, particles, feet, skin, skin_share, limits, parallel_from } = self;
         let lengths = [
             (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
             (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
@@ -145,6 +160,7 @@ impl<X: Numbers> Setting<X> {
         // The root of the largest number: its square is finite.
         let half_period =
             0.5 * domain.period.iter().flatten().fold(f64::MAX.sqrt(), |a, b| a.min(*b));
+        let parallel = particles.len() >= parallel_from;
         let mut stored: Vec<_> = (0..).zip(particles).collect();
         stored.sort_by_key(|(_, particle)| particle.role);
         let mut neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);

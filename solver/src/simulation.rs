@@ -187,13 +187,9 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         observer.after_step(self);
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
-        from.check()?;
-        self.engine.data.put(&from.particles);
+        self.engine.data.replace(from)?;
         self.engine.build_lists(&mut from.built_at.iter().copied());
-        let data = &mut self.engine.data;
-        (data.progress, data.lag) = (from.progress, from.lag);
-        data.held.clear();
-        data.past.clone_from(&from.past);
+        self.engine.data.progress = from.progress;
         self.integrator = S::Integrator::default();
         Ok(())
     }

@@ -29,8 +29,12 @@ const BUFFER: usize = size_of::<Many>() / size_of::<f64>();
 #[repr(align(64))]
 struct Aligned<T>(T);
 
-/// The square of a distance beyond every support \[m²\].
-const APART: f64 = 1e200;
+/// The square of a distance beyond every support \[m²\], number `GROUP`, between zeros.
+static APART: [f64; 2 * GROUP] = {
+    let mut numbers = [0.0; 2 * GROUP];
+    numbers[GROUP] = 1e200;
+    numbers
+};
 
 /// What becomes of some particles: the number of the first, the particles, and their rates.
 pub(crate) type BlockUpdate<'a, X, T = Evolved<X>> =
@@ -203,7 +207,7 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> On
                 // A particle is out of its own reach. Members stand first in a list: this is predicted.
                 let member = (column as usize).wrapping_sub(self.of.start + start);
                 if member < GROUP {
-                    r2 += V::gather(|lane| if lane == member { APART } else { 0.0 });
+                    r2 += V::load(&APART[GROUP - member..]);
                 }
                 if r2.bits_below(support2) == 0 {
                     continue;

@@ -185,9 +185,9 @@ impl Walls<Symmetric> for Held {
 fn the_work_of_the_forces_is_what_the_stress_stores() {
     for seed in 0..5 {
         let open = balance(scene::<Method>(cloud(seed), stress(()), Open));
-        let torus = Domain::torus(1.0, 1.0);
-        let periodic = scene::<Method>(cloud(seed), stress(()), Open);
-        let periodic = balance(Scene { domain: torus, ..periodic });
+        let mut periodic = scene::<Method>(cloud(seed), stress(()), Open);
+        periodic.domain = Domain::torus(1.0, 1.0);
+        let periodic = balance(periodic);
         let mut particles = cloud(seed);
         for p in particles.iter_mut().filter(|p| p.position.x < 0.3) {
             (p.role, p.velocity) = (Role::Wall, Vector2::zeros());
@@ -210,8 +210,9 @@ fn the_work_of_the_forces_is_what_the_stress_stores() {
 #[test]
 fn the_rates_of_the_terms_alone_are_those_of_a_step() {
     for domain in [Domain::open(), Domain::torus(1.0, 1.0)] {
-        let of = scene::<Method>(cloud(2), stress(()), Open);
-        let (simulation, rates) = begun(Scene { domain, ..of });
+        let mut scene = scene::<Method>(cloud(2), stress(()), Open);
+        scene.domain = domain;
+        let (simulation, rates) = begun(scene);
         let alone = simulation.rates(&stress(()));
         assert!(rates.iter().any(|rate| rate.velocity.norm() > 0.0));
         for (alone, rate) in alone.iter().zip(&rates) {
@@ -233,8 +234,9 @@ where
             Particle::fluid(x, Vector2::new(-x.y, x.x) * 0.02 + shaken, 1.0, DX * DX)
         })
         .collect();
-    let scene = scene::<S>(particles, stress(()), Open);
-    let mut simulation = Scene { parallel_from, ..scene }.build().expect("a scene");
+    let mut scene = scene::<S>(particles, stress(()), Open);
+    scene.parallel_from = parallel_from;
+    let mut simulation = scene.build().expect("a scene");
     let sums = |simulation: &Simulation<S>| {
         simulation.fluid().fold([0.0; 3], |[x, y, spin], (m, p)| {
             let v = p.velocity * m;

@@ -79,7 +79,8 @@ fn flight<I: Integrator<Flight<()>>>(skin: f64, share: f64) -> (Vec<Particle>, u
     let particles = patch(16, 0.2, 3);
     let scene =
         Scene::<Flight<I>>::new(h, Domain::torus(1.0, 1.0), particles, (), Continuity, Open);
-    let scene = Scene { skin: skin * h, skin_share: share, ..scene };
+    let mut scene = scene;
+    (scene.skin, scene.skin_share) = (skin * h, share);
     let mut simulation: Simulation<_> = scene.build().unwrap();
     assert_eq!(simulation.advance(1.0, 1.0 / 64.0, &mut ()), Outcome::Reached);
     (simulation.particles(), simulation.work().list_builds)

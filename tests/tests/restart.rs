@@ -65,7 +65,9 @@ fn scene_of<I: Integrator<Method<(), W>>, W: Walls<()>>(
     let w = Smoothing::<CubicSpline>::new(H).w(1.0 / 256.0);
     let drift = (Continuity, Shifting::new(0.5, H, w));
     // So that lists are built often.
-    Scene { skin: 0.06 * H, ..Scene::new(H, domain, particles, forces, drift, walls) }
+    let mut scene = Scene::new(H, domain, particles, forces, drift, walls);
+    scene.skin = 0.06 * H;
+    scene
 }
 
 /// Stops after so many steps of the run.

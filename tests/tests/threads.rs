@@ -35,7 +35,9 @@ fn scene<W: Walls<()>, I: Integrator<Method<W, ()>>>(
 /// Runs the scene serially, then on 1, 2 and 4 threads.
 fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync) {
     let run = |parallel_from: usize| {
-        let mut simulation = Scene { parallel_from, ..scene() }.build().unwrap();
+        let mut scene = scene();
+        scene.parallel_from = parallel_from;
+        let mut simulation = scene.build().unwrap();
         let outcome = simulation.advance(30.0 * 0.3 * DX, 0.3 * DX, &mut ());
         assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, 30));
         assert!(simulation.work().list_builds > 2, "{name}: rows were rebuilt on the way");
@@ -47,7 +49,9 @@ fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync)
         let parallel = pool.install(|| run(0));
         assert!(parallel == serial, "{name} differs on {threads} threads");
     }
-    let start = Scene { parallel_from: usize::MAX, ..scene() }.build().unwrap();
+    let mut scene = scene();
+    scene.parallel_from = usize::MAX;
+    let start = scene.build().unwrap();
     assert_ne!(bits(&start.particles()), serial.0, "{name}: something happened");
 }
 

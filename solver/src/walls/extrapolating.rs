@@ -241,8 +241,9 @@ mod tests {
         let feet = wall.map(|p| Vector2::new(0.0, -p.position.y)).collect();
         let eos = Tait::new(1.0, 10.0);
         let (pressure, walls) = (Pressure::new(eos), ExtrapolatingWall::new(eos, Vector2::zeros()));
-        let scene = Scene::new(DX, domain, particles, pressure, Continuity, walls);
-        let mut simulation = Scene { feet, ..scene }.build()?;
+        let mut scene = Scene::new(DX, domain, particles, pressure, Continuity, walls);
+        scene.feet = feet;
+        let mut simulation = scene.build()?;
         simulation.advance(0.0, 1.0, &mut ());
         Ok(simulation)
     }
@@ -304,10 +305,11 @@ mod tests {
             let particles = vec![at(0.05), at(-0.05).with_role(Role::Wall)];
             let walls = ExtrapolatingWall::<Tait, CurvedNoSlip>::new(eos, Vector2::zeros());
             let (pressure, domain) = (Pressure::new(eos), Domain::open());
-            let scene = Scene::<Method<CurvedNoSlip>>::new(
+            let mut scene = Scene::<Method<CurvedNoSlip>>::new(
                 DX, domain, particles, pressure, Continuity, walls,
             );
-            Scene { feet, ..scene }.build().map(|_| ()).map_err(|error| error.quantity)
+            scene.feet = feet;
+            scene.build().map(|_| ()).map_err(|error| error.quantity)
         };
         assert_eq!(build(vec![]), Err("number of feet"));
         assert_eq!(build(vec![Vector2::zeros()]), Err("depth of a wall particle in m"));

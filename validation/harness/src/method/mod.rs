@@ -14,7 +14,7 @@ use maths::theory::{Stepping, lattice::SquareLattice, time_step};
 use nalgebra::Vector2;
 use solver::{
     Domain, Integrator as _, Kernel, Numbers, Particle, PlaneWall, Role, Scene, SceneError, Scheme,
-    Smoothing, Stepper, Tait, Term, walls::Walls as _,
+    Smoothing, Stepper, Tait, Term, scene::Setting, walls::Walls as _,
 };
 
 pub use crate::medium::{Knob, Medium};
@@ -94,43 +94,27 @@ impl<X: Numbers> Parts<X> {
 
 /// The scene of a scheme with these parts.
 pub fn scene<S: Standard>(parts: Parts<S::Extra>) -> Scene<S> {
-    let Changed { medium, domain, particles, mirrors, feet, skin, skin_share, limits, threads } =
-        changed(parts);
-    let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
-    let walls = S::Walls::new(&medium, mirrors);
-    let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
-    scene.skin = skin.unwrap_or(scene.skin);
-    scene.skin_share *= skin_share;
-    scene.limits = limits;
-    scene.feet = feet;
-    if threads <= 1 {
-        scene.parallel_from = usize::MAX;
+    let (medium, mirrors, setting) = setting(parts);
+    Scene {
+        setting,
+        forces: S::Forces::new(&medium),
+        drift: S::Drift::new(&medium),
+        walls: S::Walls::new(&medium, mirrors),
     }
-    scene
 }
 
-/// Parts with their errors and their disorder, of which no scheme needs to know.
-struct Changed<X> {
-    medium: Medium,
-    domain: Domain,
-    particles: Vec<Particle<X>>,
-    mirrors: Vec<PlaneWall>,
-    /// From each wall particle to the point of the surface that is nearest to it \[m\], if walls read that.
-    feet: Vec<Vector2<f64>>,
-    skin: Option<f64>,
-    /// The factor of [`Scene::skin_share`].
-    skin_share: f64,
-    limits: solver::Limits,
-    threads: usize,
-}
-
-fn changed<X: Numbers>(mut parts: Parts<X>) -> Changed<X> {
+/// What no scheme needs to know: parts with their errors and their disorder.
+fn setting<X: Numbers>(mut parts: Parts<X>) -> (Medium, Vec<PlaneWall>, Setting<X>) {
     mutate(&mut parts);
     let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
     let feet = pairs.map(|(p, point)| point - p.position).collect();
     let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
-    let skin_share = mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime));
-    Changed { medium, domain, particles, mirrors, feet, skin, skin_share, limits, threads }
+    let usual = Setting::new(medium.h, domain, particles);
+    let skin_share =
+        mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime)) * usual.skin_share;
+    let parallel_from = if threads <= 1 { usize::MAX } else { usual.parallel_from };
+    let skin = skin.unwrap_or(usual.skin);
+    (medium, mirrors, Setting { feet, skin, skin_share, limits, parallel_from, ..usual })
 }
 
 /// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
