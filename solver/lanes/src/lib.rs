@@ -42,18 +42,28 @@ pub trait Lane:
     fn store(self, to: &mut [f64]);
     /// Reads one number a lane.
     fn gather(read: impl Fn(usize) -> f64) -> Self;
-    /// Reads two numbers a lane that stand side by side.
-    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2];
     /// The square root.
     fn sqrt(self) -> Self;
     /// The magnitude.
     fn abs(self) -> Self;
     /// The larger of two numbers that are not NaN.
     fn at_least(self, floor: Self) -> Self;
-    /// The k-th number.
-    fn lane(self, k: usize) -> f64;
     /// Bit k says whether the k-th number is below the bound. For the search of neighbours; no term needs it.
     fn bits_below(self, bound: f64) -> usize;
+
+    /// Reads two numbers a lane that stand side by side.
+    #[inline(always)]
+    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] {
+        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])]
+    }
+
+    /// The k-th number.
+    #[inline(always)]
+    fn lane(self, k: usize) -> f64 {
+        let mut numbers = [0.0; MOST];
+        self.store(&mut numbers);
+        numbers[k]
+    }
 
     /// Writes those of `columns`, one a lane, whose bit is set in order to the front of `places`, of which it
     /// may overwrite as many as there are lanes. Returns how many. For the search of neighbours, too.
@@ -135,11 +145,9 @@ lane! {
     fn load(from: &[f64]) -> Self = from[0];
     fn store(self, to: &mut [f64]) = to[0] = self;
     fn gather(read: impl Fn(usize) -> f64) -> Self = read(0);
-    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = read(0);
     fn sqrt(self) -> Self = f64::sqrt(self);
     fn abs(self) -> Self = f64::abs(self);
     fn at_least(self, floor: Self) -> Self = self.max(floor);
-    fn lane(self, _: usize) -> f64 = self;
     fn bits_below(self, bound: f64) -> usize = usize::from(self < bound);
 }
 
@@ -153,12 +161,9 @@ lane! {
         *to.first_chunk_mut().expect("four places") = self.0.to_array();
     fn gather(read: impl Fn(usize) -> f64) -> Self =
         Self(wide::f64x4::from([read(0), read(1), read(2), read(3)]));
-    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
-        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
     fn sqrt(self) -> Self = Self(self.0.sqrt());
     fn abs(self) -> Self = Self(self.0.abs());
     fn at_least(self, floor: Self) -> Self = Self(self.0.fast_max(floor.0));
-    fn lane(self, k: usize) -> f64 = self.0.to_array()[k];
     fn bits_below(self, bound: f64) -> usize =
         self.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize;
 }

@@ -170,8 +170,6 @@ lane! {
     fn store(self, to: &mut [f64]) = *to.first_chunk_mut().expect("four places") = self.to_array();
     fn gather(read: impl Fn(usize) -> f64) -> Self =
         Self(unsafe { [_mm_setr_pd(read(0), read(1)), _mm_setr_pd(read(2), read(3))] });
-    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
-        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
     fn sqrt(self) -> Self = Self(self.0.map(|x| unsafe { _mm_sqrt_pd(x) }));
     fn abs(self) -> Self = Self(self.0.map(|x| unsafe { _mm_andnot_pd(_mm_set1_pd(-0.0), x) }));
     fn at_least(self, floor: Self) -> Self = {
@@ -184,7 +182,6 @@ lane! {
         });
         low | high << 2
     };
-    fn lane(self, k: usize) -> f64 = self.to_array()[k];
 }
 
 // SAFETY: see `Ymm`; what is transmuted is four `u32` in the same order. Roots are correctly rounded, as for
@@ -209,7 +206,6 @@ lane! {
     fn bits_below(self, bound: f64) -> usize = unsafe {
         _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, _mm256_set1_pd(bound))) as usize
     };
-    fn lane(self, k: usize) -> f64 = self.to_array()[k];
     fn pack(columns: &[u32], bits: usize, places: &mut [u32]) -> usize = {
         let columns: &[u32; LANES] = columns.try_into().expect("four columns");
         let places: &mut [u32; LANES] = places.first_chunk_mut().expect("four places");
@@ -233,12 +229,9 @@ lane! {
     fn gather(read: impl Fn(usize) -> f64) -> Self = Self(unsafe {
         _mm512_setr_pd(read(0), read(1), read(2), read(3), read(4), read(5), read(6), read(7))
     });
-    fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] =
-        [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])];
     fn sqrt(self) -> Self = Self(unsafe { _mm512_sqrt_pd(self.0) });
     fn abs(self) -> Self = Self(unsafe { _mm512_abs_pd(self.0) });
     fn at_least(self, floor: Self) -> Self = Self(unsafe { _mm512_max_pd(self.0, floor.0) });
-    fn lane(self, k: usize) -> f64 = self.to_array()[k];
     fn bits_below(self, bound: f64) -> usize = unsafe {
         _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, _mm512_set1_pd(bound)) as usize
     };
