@@ -17,7 +17,7 @@ use solver::{
 type Couette = Compose<QuinticSpline, (Pressure<Tait>, Viscosity), Continuity, Ghosts, Leapfrog>;
 
 /// Runs the flow and prints its distance from the straight line.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     // Water between plates 1 mm apart, the upper one moving; SI units.
     let (width, speed, nu, rho) = (1e-3, 1e-4, 1e-6, 1000.0);
     let (rows, columns) = (20, 7);
@@ -48,3 +48,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     println!("{} bytes a particle", flow.bytes() / flow.fluid_count());
     Ok(())
 }
+
+#[cfg(test)]
+#[path = "../tests/couette_only.rs"]
+mod tests;

@@ -25,7 +25,7 @@ type Rubber = Compose<
 >;
 
 /// Collides the rings and prints how fast they part.
-pub fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> Result<(), Box<dyn Error>> {
     // Units of length, density and bulk sound speed; the paper's rubber.
     let (radius, layers, dx, speed) = (3.0, 3, 1.0 / 3.0, 0.059);
     let (h, mu) = (1.5 * dx, 0.22);
@@ -66,3 +66,7 @@ pub fn main() -> Result<(), Box<dyn Error>> {
     println!("{} bytes a particle", rings.bytes() / after.len());
     Ok(())
 }
+
+#[cfg(test)]
+#[path = "../tests/rings_only.rs"]
+mod tests;

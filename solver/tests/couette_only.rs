@@ -1,14 +1,12 @@
 //! A program holds what its scheme names and nothing else: the example's symbols, read from the
-//! program of this test, which runs it and links nothing more.
+//! program of this test, which is a module of the example and links nothing more.
 
-#[path = "../examples/couette_only.rs"]
-mod couette_only;
 #[cfg(all(target_os = "linux", target_pointer_width = "64", target_endian = "little"))]
 mod symbols;
 
 #[test]
 fn the_example_reaches_the_end() {
-    couette_only::main().expect("a steady flow");
+    super::main().expect("a steady flow");
 }
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64", target_endian = "little"))]

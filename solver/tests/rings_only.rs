@@ -1,13 +1,11 @@
 //! A ring of rubber holds no fluid: the symbols of the example, read from the program of this test.
 
-#[path = "../examples/rings_only.rs"]
-mod rings_only;
 #[cfg(all(target_os = "linux", target_pointer_width = "64", target_endian = "little"))]
 mod symbols;
 
 #[test]
 fn the_example_reaches_the_end_without_images() {
-    rings_only::main().expect("two rings that part");
+    super::main().expect("two rings that part");
 }
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64", target_endian = "little"))]

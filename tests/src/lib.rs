@@ -2,7 +2,6 @@
 //! right-hand side.
 
 pub mod foreign_solver;
-pub mod new_case;
 pub mod new_term;
 pub mod new_wall;
 pub mod row_matrix;
@@ -13,9 +12,8 @@ use base::functions::{cos, sin};
 use nalgebra::Vector2;
 use serde_json::Value;
 use solver::{
-    Compose, Domain, Engine, Evolved, Flow, Integrator, Kernel, Observer, Open, Outcome, Particle,
-    Physics, Rate, Role, Scene, Stepper, Term, integrator::Stepped, lattice, numbers::Numbers,
-    physics::State, walls::Walls,
+    Compose, Domain, Engine, Integrator, Kernel, Open, Outcome, Particle, Physics, Rate, Scene,
+    Stepper, Term, integrator::Stepped, lattice, numbers::Numbers, physics::State,
 };
 
 /// The JSON of a committed snapshot, `case.variant`; `None` if there is none.
@@ -76,51 +74,39 @@ impl Random {
     }
 }
 
-/// A scheme without the walls, whose rates are looked at.
-pub type RatesOf<K, F, D, W = Open, X = ()> = Compose<K, F, D, W, RateInstead, X>;
+/// Particles that lie still, without terms of their own: one scheme for each kernel, in which any terms
+/// can be asked for their rates.
+type Still<K, X> = Compose<K, (), (), Open, NoStep, X>;
 
-/// Puts the rates where the state was. Not a time integration: it shows one right-hand side.
+/// Makes no step.
 #[derive(Default)]
-pub struct RateInstead;
+struct NoStep;
 
-impl<P: Physics> Integrator<P> for RateInstead {
-    const NAME: &'static str = "rate";
+impl<P: Physics> Integrator<P> for NoStep {
+    const NAME: &'static str = "none";
 
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, _: f64) -> Stepped {
-        engine.begin(state)?;
-        engine.sweep_all(state, |_, evolved, rate| {
-            let Rate { position, velocity, density, extra } = *rate;
-            *evolved = Evolved { position, velocity, density, extra };
-        });
+    fn step(&mut self, _: &mut Engine<P>, _: &mut State<P>, _: f64) -> Stepped {
         Ok(())
     }
 }
 
-/// Keeps the particles of the first step and stops, before anyone takes the rates for a state.
-struct First<X>(Vec<Particle<X>>);
-
-impl<X: Numbers> Observer<X> for First<X> {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        self.0 = simulation.particles();
-        Flow::Stop
-    }
-}
-
-/// d/dt of every particle, in the order of the scene; 0 for interface particles.
-pub fn rates<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, X: Numbers>(
-    scene: Scene<RatesOf<K, F, D, W, X>>,
+/// d/dt of every particle by these terms, in the order of the particles.
+pub fn rates<K: Kernel, T: Term<X>, X: Numbers>(
+    h: f64,
+    domain: Domain,
+    particles: &[Particle<X>],
+    mut terms: T,
 ) -> Vec<Rate<X>> {
-    let mut first = First(Vec::new());
-    let outcome = scene.build().expect("a sound scene").advance(1.0, 1.0, &mut first);
-    assert_eq!(outcome, Outcome::Stopped);
-    let rate = |p: Particle<X>| {
-        let Particle { role, position, velocity, density, extra, .. } = p;
-        match role {
-            Role::Interface => Rate::default(),
-            _ => Rate { position, velocity, density, extra },
-        }
-    };
-    first.0.into_iter().map(rate).collect()
+    terms.prepare(particles.iter().map(|p| p.velocity.norm()).fold(0.0, f64::max));
+    let scene = Scene::<Still<K, X>>::new(h, domain, particles.to_vec(), (), (), Open);
+    let mut still = scene.build().expect("a sound scene");
+    assert_eq!(still.advance(0.0, 1.0, &mut ()), Outcome::Reached);
+    let mut rates = vec![Rate::default(); particles.len()];
+    // As they are stored, which is in another order.
+    for ((k, particle), rate) in still.checkpoint().particles.iter().zip(still.rates(&terms)) {
+        rates[*k as usize] = Rate { position: rate.position + particle.velocity, ..rate };
+    }
+    rates
 }
 
 /// The rates of particles in an open domain.
@@ -130,8 +116,7 @@ pub fn open_rates<K: Kernel, F: Term<X>, D: Term<X>, X: Numbers>(
     forces: F,
     drift: D,
 ) -> Vec<Rate<X>> {
-    let particles = particles.to_vec();
-    rates::<K, F, D, Open, X>(Scene::new(h, Domain::open(), particles, forces, drift, Open))
+    rates::<K, _, X>(h, Domain::open(), particles, (forces, drift))
 }
 
 /// Σ numbers / Σ |numbers|.

@@ -5,13 +5,13 @@ use solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
     Evolved, ExtrapolatingWall, FluidPairs, Hydrostatic, Integrator, Leapfrog, Linear, NoSlip,
-    Open, Outcome, Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, ShiftAdvection,
-    Shifting, Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column,
-    physics::Derived,
+    Open, Outcome, Particle, PredictorCorrector, Pressure, Scene, ShiftAdvection, Shifting,
+    Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column, physics::Derived,
 };
 use touchstone_tests::{assert_small, difference, patch};
 
-type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
+type Moving<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
+type Fluid = Moving<Leapfrog>;
 
 /// Memory of what a term has a particle show, and of what it sums.
 fn sizes<T: Term<()>>() -> [usize; 2] {
@@ -70,23 +70,21 @@ fn forces() -> (Pressure<Tait>, Viscosity) {
     (Pressure::new(Tait::new(1.0, 1.0)), Viscosity { mu: 0.01, eta2: 1e-8 })
 }
 
-type Flight<I> = Compose<QuinticSpline, (), Continuity, Open, I>;
-
 /// Particles that fly straight on, whose densities follow: the trajectories are exact, so that two
-/// runs differ in their rows only.
-fn flight<I: Integrator<Flight<()>>>(skin: f64, share: f64) -> (Vec<Particle>, u64) {
+/// runs differ in their rows only. Sound is so slow that the pressure changes no bit of a velocity.
+fn flight<I: Integrator<Moving<()>>>(skin: f64, share: f64) -> (Vec<Particle>, u64) {
     let h = 0.07;
     let particles = patch(16, 0.2, 3);
-    let scene =
-        Scene::<Flight<I>>::new(h, Domain::torus(1.0, 1.0), particles, (), Continuity, Open);
-    let mut scene = scene;
+    let forces = (Pressure::new(Tait::new(1.0, 1e-30)), Viscosity { mu: 0.0, eta2: 1e-8 });
+    let domain = Domain::torus(1.0, 1.0);
+    let mut scene = Scene::<Moving<I>>::new(h, domain, particles, forces, Continuity, Open);
     (scene.skin, scene.skin_share) = (skin * h, share);
     let mut simulation: Simulation<_> = scene.build().unwrap();
     assert_eq!(simulation.advance(1.0, 1.0 / 64.0, &mut ()), Outcome::Reached);
     (simulation.particles(), simulation.work().list_builds)
 }
 
-fn check_skin<I: Integrator<Flight<()>>>() {
+fn check_skin<I: Integrator<Moving<()>>>() {
     let torus = [Some(1.0), Some(1.0)];
     let (exact, every_time) = flight::<I>(0.0, 0.5);
     assert!(

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 use solver::{
-    ArtificialStress, ArtificialViscosity, Continuity, CubicSpline, DensityDiffusion, Kernel,
-    Particle, Pressure, QuinticSpline, Rate, Smoothing, Tait, Term, Viscosity, WendlandC2, Xsph,
+    ArtificialStress, ArtificialViscosity, Continuity, CubicSpline, DensityDiffusion, Particle,
+    Pressure, QuinticSpline, Rate, Smoothing, Tait, Term, Viscosity, Xsph,
 };
 use touchstone_tests::{Random, assert_small, open_rates, relative_sum};
 
@@ -25,51 +25,46 @@ fn water() -> Tait {
     Tait { background: 50.0, ..Tait::new(1000.0, 12.0) }
 }
 
-fn stressed<K: Kernel>() -> Pressure<Tait, ArtificialStress> {
-    let w = Smoothing::<K>::new(H).w(0.01);
+fn stressed() -> Pressure<Tait, ArtificialStress> {
+    let w = Smoothing::<CubicSpline>::new(H).w(0.01);
     Pressure { eos: water(), tensile: ArtificialStress::new(0.3, 4, w) }
 }
 
 /// What must vanish: both components of Σ m a, and Σ m x × a where the term is central.
-fn check_momentum<K: Kernel>(name: &str, central: bool, forces: impl Term<()>) {
+fn check_momentum(name: &str, central: bool, forces: impl Term<()>) {
     for seed in 0..5 {
         let cloud = cloud(seed);
-        let rates = open_rates::<K, _, _, _>(H, &cloud, forces.clone(), ());
+        let rates = open_rates::<CubicSpline, _, _, _>(H, &cloud, forces.clone(), ());
         for axis in 0..2 {
             let forces = cloud.iter().zip(&rates).map(|(p, r)| p.mass * r.velocity[axis]);
             let sum = relative_sum(forces);
-            assert!(sum.abs() < ROUND_OFF, "{name}, {}: sum m a = {sum:e}", K::NAME);
+            assert!(sum.abs() < ROUND_OFF, "{name}: sum m a = {sum:e}");
         }
         let torques = cloud.iter().zip(&rates).map(|(p, r)| p.mass * p.position.perp(&r.velocity));
         let torque = relative_sum(torques);
         if central {
-            assert!(torque.abs() < ROUND_OFF, "{name}, {}: torque {torque:e}", K::NAME);
+            assert!(torque.abs() < ROUND_OFF, "{name}: torque {torque:e}");
         } else {
             assert!(torque.abs() > 1e-6, "{name} is central after all: torque {torque:e}");
         }
     }
 }
 
-fn check_every_force<K: Kernel>() {
-    let damping = ArtificialViscosity::<_, false>::new(0.3, 0.6, H, water());
-    let always = ArtificialViscosity::<_, true>::new(0.3, 0.6, H, water());
-    check_momentum::<K>("pressure", true, Pressure::new(water()));
-    check_momentum::<K>("artificial stress", true, stressed::<K>());
-    check_momentum::<K>("artificial viscosity", true, damping);
-    check_momentum::<K>("artificial viscosity, always", true, always);
-    check_momentum::<K>("viscosity", false, Viscosity { mu: 0.7, eta2: 0.01 * H * H });
-}
-
+/// With any kernel: it enters a force by F and W alone, which are the same for both particles of a pair.
 #[test]
 fn forces_add_up_to_nothing_and_central_ones_have_no_torque() {
-    check_every_force::<CubicSpline>();
-    check_every_force::<QuinticSpline>();
-    check_every_force::<WendlandC2>();
+    let damping = ArtificialViscosity::<_, false>::new(0.3, 0.6, H, water());
+    let always = ArtificialViscosity::<_, true>::new(0.3, 0.6, H, water());
+    check_momentum("pressure", true, Pressure::new(water()));
+    check_momentum("artificial stress", true, stressed());
+    check_momentum("artificial viscosity", true, damping);
+    check_momentum("artificial viscosity, always", true, always);
+    check_momentum("viscosity", false, Viscosity { mu: 0.7, eta2: 0.01 * H * H });
 }
 
 #[test]
 fn the_artificial_stress_is_not_idle_in_these_clouds() {
-    let (with, without) = (stressed::<CubicSpline>(), Pressure::new(water()));
+    let (with, without) = (stressed(), Pressure::new(water()));
     let a = open_rates::<CubicSpline, _, _, _>(H, &cloud(0), with, ());
     let b = open_rates::<CubicSpline, _, _, _>(H, &cloud(0), without, ());
     let differ = a.iter().zip(&b).filter(|(a, b)| a.velocity != b.velocity).count();
@@ -131,7 +126,7 @@ fn viscous_terms_only_dissipate() {
 fn the_drift_of_xsph_carries_no_mass() {
     for seed in 0..5 {
         let cloud = cloud(seed);
-        let rates = open_rates::<QuinticSpline, _, _, _>(H, &cloud, (), Xsph { epsilon: 0.5 });
+        let rates = open_rates::<CubicSpline, _, _, _>(H, &cloud, (), Xsph { epsilon: 0.5 });
         for axis in 0..2 {
             let moved = cloud.iter().zip(&rates);
             let moved = moved.map(|(p, r)| p.mass * (r.position - p.velocity)[axis]);
@@ -148,7 +143,7 @@ fn density_diffusion_conserves_the_volume_weighted_sum_and_only_that() {
     for seed in 0..5 {
         let cloud = cloud(seed);
         let diffusion = DensityDiffusion::new(0.1 * H * 12.0);
-        let rates = open_rates::<QuinticSpline, _, _, _>(H, &cloud, (), diffusion);
+        let rates = open_rates::<CubicSpline, _, _, _>(H, &cloud, (), diffusion);
         let by_volume = cloud.iter().zip(&rates).map(|(p, r)| p.mass / p.density * r.density);
         let sum = relative_sum(by_volume);
         assert_small("Σ V dρ/dt over its size", sum, ROUND_OFF);
@@ -166,7 +161,7 @@ fn density_diffusion_conserves_the_volume_weighted_sum_and_only_that() {
 #[test]
 fn continuity_is_the_time_derivative_of_the_density_sum() {
     let cloud = cloud(1);
-    let rates = open_rates::<QuinticSpline, _, _, _>(H, &cloud, (), Continuity);
+    let rates = open_rates::<QuinticSpline, _, _, _>(H, &cloud, Pressure::new(water()), Continuity);
     let kernel = Smoothing::<QuinticSpline>::new(H);
     let sum = |i: usize, t: f64| -> f64 {
         let place = |p: &Particle| p.position + p.velocity * t;

@@ -2,14 +2,14 @@
 
 use base::functions::log2;
 use solver::{
-    Compose, Continuity, Domain, Euler, Flow, Integrator, Leapfrog, Observer, Open, Outcome,
-    Particle, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, SingleSweep, Stepper,
-    Tait, Viscosity,
+    Compose, Continuity, CubicSpline, Domain, Euler, Flow, Integrator, Leapfrog, Observer, Open,
+    Outcome, Particle, PredictorCorrector, Pressure, Scene, Simulation, SingleSweep, Stepper, Tait,
+    Viscosity,
 };
 use touchstone_tests::{bits, difference, patch};
 
 type Forces = (Pressure<Tait>, Viscosity);
-type Scheme<I> = Compose<QuinticSpline, Forces, Continuity, Open, I>;
+type Scheme<I> = Compose<CubicSpline, Forces, Continuity, Open, I>;
 
 const H: f64 = 0.1;
 const TORUS: [Option<f64>; 2] = [Some(1.0), Some(1.0)];

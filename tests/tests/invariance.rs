@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, Domain, Ghosts, Integrator, Leapfrog, Open, Outcome,
-    Particle, PlaneWall, PredictorCorrector, Pressure, QuinticSpline, Scene, Simulation, Stepper,
-    Tait, Viscosity, lattice,
+    Particle, PlaneWall, PredictorCorrector, Pressure, Scene, Simulation, Stepper, Tait, Viscosity,
+    lattice,
 };
 use touchstone_tests::{Random, V2, assert_small, bits, difference, patch};
 
 type Forces = (Pressure<Tait>, Viscosity);
-type Scheme<I> = Compose<QuinticSpline, Forces, Continuity, Open, I>;
+type Scheme<I> = Compose<CubicSpline, Forces, Continuity, Open, I>;
 
 const TORUS: [Option<f64>; 2] = [Some(1.0), Some(1.0)];
 const H: f64 = 0.09;

@@ -4,6 +4,9 @@ mod channel_bounds;
 mod consistent;
 mod cost;
 mod damaged;
+/// Here and not in the library of this crate, so that its schemes are compiled once, with those of tests.
+#[path = "../src/new_case.rs"]
+mod decay;
 mod documents;
 mod extremes;
 mod foreign_solver;

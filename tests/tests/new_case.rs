@@ -3,14 +3,13 @@
 use std::fs;
 use std::path::Path;
 
+use crate::decay::DECAY;
 use harness::case::Case;
 use harness::case::Tier;
 use harness::make::Making;
 use harness::suite;
 use solver::{Continuity, CubicSpline};
-use touchstone_tests::{
-    assert_small, new_case::DECAY, new_term::CentralViscosity, open_rates, patch, relative_sum,
-};
+use touchstone_tests::{assert_small, new_term::CentralViscosity, open_rates, patch, relative_sum};
 
 const CASE: &str = include_str!("../src/new_case.rs");
 const TERM: &str = include_str!("../src/new_term.rs");

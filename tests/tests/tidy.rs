@@ -274,20 +274,26 @@ fn the_command_line_does_not_unwrap() {
 /// What is no module of the program is not run, and nothing says so.
 #[test]
 fn every_file_of_tests_is_run() {
-    let all = fs::read_to_string(root().join("tests/tests/main.rs")).unwrap();
-    let is_run = |name: &str| {
-        ["main", "allocation"].contains(&name) || all.contains(&format!("\nmod {name};\n"))
-    };
     let mut found = Vec::new();
-    for entry in fs::read_dir(root().join("tests/tests")).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        let is_source = path.extension().is_some_and(|extension| extension == "rs");
-        if (is_source || path.join("mod.rs").exists()) && !is_run(&name) {
-            found.push(name);
+    // The others are programs of their own.
+    for (folder, others) in [
+        ("tests", &["main", "allocation"][..]),
+        ("solver", &["main", "sharing", "symbols", "couette_only", "rings_only"]),
+        ("solver/lagrangian", &["main"]),
+    ] {
+        let folder = root().join(folder).join("tests");
+        let all = fs::read_to_string(folder.join("main.rs")).unwrap();
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+            let is_source = path.extension().is_some_and(|extension| extension == "rs");
+            let is_run = others.contains(&&*name) || all.contains(&format!("\nmod {name};\n"));
+            if (is_source || path.join("mod.rs").exists()) && !is_run {
+                found.push(path.display().to_string());
+            }
         }
     }
-    assert_none("a file of tests is a module of tests/tests/main.rs", found);
+    assert_none("a file of tests is a module of the main.rs beside it", found);
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! What is exact at every state: gradients of linear fields, forces as derivatives of the energy, momentum.
 
-mod common;
-
-use common::{MODULI, block, build, energy, forces, free, number, put, scene, stored};
+use crate::common::{
+    DENSITY, MODULI, block, build, energy, forces, free, number, put, scene, stored,
+};
 use lagrangian::{
     BetweenFaces, Hencky, Law, Load, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
 };
@@ -37,7 +37,7 @@ fn a_linear_deformation_is_exact_at_every_particle_and_has_no_hourglass_energy()
     );
     // The density of every particle is that of the deformation, and the stress is uniform.
     let ratio = (Matrix2::identity() + gradient).determinant();
-    assert!(solid.fluid().all(|(_, e)| (e.density * ratio / common::DENSITY - 1.0).abs() < 1e-13));
+    assert!(solid.fluid().all(|(_, e)| (e.density * ratio / DENSITY - 1.0).abs() < 1e-13));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Waves on a lattice against their theory, the limit of the time step, and long runs.
 
-mod common;
-
-use common::{DENSITY, MODULI, block, build, energy, forces, free, number, put, scene};
+use crate::common::{
+    Block, DENSITY, MODULI, block, build, energy, forces, free, number, put, scene,
+};
 use lagrangian::{BetweenFaces, Hencky, Law, SaintVenantKirchhoff, SolidScene, contact_stiffness};
 use nalgebra::Vector2;
 use solver::{
@@ -32,7 +32,7 @@ fn symbols(k: Vector2<f64>) -> (f64, f64, f64) {
     (q2, s - 0.5 * factor * q2, factor)
 }
 
-fn torus<L: Law>() -> common::Block<L> {
+fn torus<L: Law>() -> Block<L> {
     let side = SIDE as f64;
     build(SolidScene {
         domain: Domain::torus(side, side),
@@ -136,7 +136,7 @@ fn the_step_limit_is_that_of_theory() {
 
 /// Two layers between planes along which they slip, four columns of particles each, which overlap by 0.6
 /// of a spacing without stress and so press against each other, at rest; and the contact.
-fn pressed() -> (common::Block<Hencky, BetweenFaces>, BetweenFaces) {
+fn pressed() -> (Block<Hencky, BetweenFaces>, BetweenFaces) {
     let mut particles = block(8, 5, 0.0);
     for p in particles.iter_mut().filter(|p| p.position.x > 4.0) {
         // Beside the gaps of the other face: where particles stand opposite each other, faces slip.
@@ -161,7 +161,7 @@ fn pressed() -> (common::Block<Hencky, BetweenFaces>, BetweenFaces) {
 }
 
 /// ω² of the fastest mode, by power iteration on differences of forces.
-fn fastest(solid: &mut common::Block<Hencky, BetweenFaces>) -> f64 {
+fn fastest(solid: &mut Block<Hencky, BetweenFaces>) -> f64 {
     let start = solid.checkpoint();
     let mut mode: Vec<_> = (0..start.particles.len())
         .map(|k| Vector2::new(number(3 * k), number(5 * k + 1)))
@@ -244,7 +244,7 @@ fn energy_stays_bounded_and_momenta_stay_over_many_steps() {
         Vector2::new(0.05 * number(3 * k) + 0.02, 0.05 * number(5 * k + 1) + 0.01 * k as f64 / 24.0)
     };
     put(&mut solid, |_, x| x, velocity);
-    let momenta = |solid: &common::Block| {
+    let momenta = |solid: &Block| {
         forces(solid)
             .iter()
             .fold((Vector2::zeros(), 0.0), |(p, l), (m, x, v, _)| (p + v * *m, l + m * x.perp(v)))

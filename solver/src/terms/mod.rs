@@ -286,23 +286,25 @@ mod tests {
         check_number::<V, K>(DensityDiffusion { diffusivity: 0.1, rest });
     }
 
-    fn check_every_kernel<V: Lane>() {
-        check_every_term::<V, CubicSpline>();
-        check_every_term::<V, QuinticSpline>();
-        check_every_term::<V, WendlandC2>();
+    /// A term that reads both W and F.
+    fn check_kernel<V: Lane, K: Kernel>() {
+        let (eos, tensile) = (Tait::new(1.0, 3.0), ArtificialStress::new(0.3, 4, 2.0));
+        check_vector::<V, K>(Pressure { eos, tensile });
     }
 
-    struct EveryKernel;
+    struct Every;
 
-    impl OnLanes for EveryKernel {
+    impl OnLanes for Every {
         fn run<V: Lane>(self) {
-            check_every_kernel::<V>();
+            check_every_term::<V, CubicSpline>();
+            check_kernel::<V, QuinticSpline>();
+            check_kernel::<V, WendlandC2>();
         }
     }
 
     #[test]
     fn lanes_have_the_bits_of_scalars() {
-        check_every_kernel::<Portable>();
-        on_widest(EveryKernel);
+        Every.run::<Portable>();
+        on_widest(Every);
     }
 }

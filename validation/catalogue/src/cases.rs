@@ -10,7 +10,7 @@ use solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, sp
 use waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};
 
 /// Every case, in the order of the report: the five of the paper, then those that support them.
-pub const CASES: &[&dyn Case] = &[
+pub static CASES: &[&dyn Case] = &[
     &channel::COUETTE,
     &channel::POISEUILLE,
     periodic_hill::PERIODIC_HILL,

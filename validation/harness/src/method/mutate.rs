@@ -101,7 +101,7 @@ mod tests {
     >;
 
     fn parts(mutation: Option<Mutation>) -> Parts {
-        let method = Method::of::<Plain>();
+        let method = <Method>::with::<Plain>(|_| unreachable!("no scene is built"));
         let medium = Medium {
             nu: 0.1,
             shear_modulus: 3.0,
