@@ -108,8 +108,8 @@ fn loads(style: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, GateRow, Page, Plot, Section,
-        Series, Table, VERDICTS,
+        Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, Page, Plot, Section, Series,
+        Table, VERDICTS,
     };
     use base::gate::Verdict;
 
@@ -136,17 +136,11 @@ mod tests {
             counts: Counts::of([Verdict::Limitation]),
             limitations: vec!["It is < 2.".into()],
         };
-        let gate = GateRow {
-            id: "one.a&b".into(),
-            status: Verdict::Limitation,
-            of: "`seed`".into(),
-            value: Cell::num(0.5, 2),
-            bound: "at most 0.4".into(),
-            margin: Cell::text("–"),
-            evidence: "theory".into(),
-            reasons: vec![1],
-        };
-        let explorer = Explorer { gates: vec![gate], reasons: vec!["because".into()] };
+        let columns = ["verdict", "gate", "bound", "reasons"].map(Column::text);
+        let cells = ["one.a&b", "at most 0.4", "1"].map(Cell::text);
+        let gate = [vec![Cell::status(Verdict::Limitation)], cells.into()].concat();
+        let gates = Table::new("", columns.into()).row(gate);
+        let explorer = Explorer { gates, reasons: vec!["because".into()] };
         let three = Section::new("three", "Three").counts(card.counts);
         let verdicts = Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer));
         Page {

@@ -93,9 +93,6 @@ impl Plot {
 pub enum Layer {
     /// A line, markers, or both, with or without error bars.
     Series(Series),
-    /// A triangle that shows a slope d log y / d log x on two logarithmic axes, at a free place near the
-    /// data; left out where there is none.
-    Slope(f64),
     /// The area between two curves.
     Band {
         /// Name in the legend; may be empty.
@@ -248,7 +245,7 @@ impl Series {
 /// Dots coloured by a value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dots {
-    /// (x, y, value). Values that are not finite become black crosses and are counted.
+    /// (x, y, value). Values that are not finite become black crosses.
     pub points: Vec<(f64, f64, f64)>,
     /// Colour map.
     pub map: ColourMap,

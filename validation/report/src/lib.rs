@@ -36,7 +36,7 @@ pub use card::Card;
 pub use check::check_page;
 pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
-pub use explorer::{Explorer, GateRow, VERDICTS, verdicts_where};
+pub use explorer::{Explorer, VERDICTS, verdicts_where};
 pub use figure::{Dash, Dots, Figure, Layer, Plot, Series, Shape};
 pub use film::Film;
 pub use number::{counted, exact, percent, sci, seconds, sig};

@@ -10,9 +10,7 @@ use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
 use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
 use super::legend::{self, Entry, Look, MARKER, Sample};
-use super::number::minus;
 
-const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
 const MARK_HIDES: usize = 2;
@@ -24,8 +22,6 @@ pub(super) struct Prepared<'a> {
     plot: &'a Plot,
     frame: Frame<'a>,
     series: Vec<(&'a Series, Look)>,
-    /// Orders, and the corners of their triangles.
-    slopes: Vec<(f64, [Point; 3])>,
     marks: Vec<Mark<'a>>,
     dots: Option<Scaled<'a>>,
     /// What the legend below the axes names; nothing if there is none.
@@ -69,14 +65,11 @@ impl<'a> Prepared<'a> {
             frame,
             legend: if plot.legend { entries(plot, &series) } else { Vec::new() },
             series,
-            slopes: Vec::new(),
             marks: Vec::new(),
             dots,
         };
         this.frame.note = this.dropped();
-        let mut obstacles = this.obstacles();
-        this.place_slopes(&mut obstacles);
-        this.place_marks(&mut obstacles);
+        this.place_marks();
         this
     }
 
@@ -92,7 +85,7 @@ impl<'a> Prepared<'a> {
 
     /// What could not be drawn, in words.
     fn dropped(&self) -> String {
-        let is_lost = |dot: &&(f64, f64, f64)| !(dot.0 + dot.1 + dot.2).is_finite();
+        let is_lost = |dot: &&(f64, f64, f64)| !(dot.0.is_finite() && dot.1.is_finite());
         let dots = self.plot.dots().into_iter().flat_map(|dots| &dots.points);
         let mut infinite = dots.filter(is_lost).count();
         let (mut nonpositive, mut off) = (0, 0);
@@ -112,19 +105,14 @@ impl<'a> Prepared<'a> {
         if parts.is_empty() { String::new() } else { format!("not drawn: {}", parts.join(", ")) }
     }
 
-    /// Points that a legend or label should not hide.
+    /// Points of lines and bars, a few pixels apart, which a label should not hide.
     fn obstacles(&self) -> Vec<Point> {
         let mut all = Vec::new();
         for (series, _) in &self.series {
             let mut segments = self.bars(series);
-            for run in runs(&series.points, |p| self.frame.place(p)) {
-                all.extend_from_slice(&run);
-                let r = if series.marked { 0.5 * MARKER } else { 0.0 };
-                let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
-                all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
-                if series.line.is_some() {
-                    segments.extend(run.windows(2).map(|pair| (pair[0], pair[1])));
-                }
+            if series.line.is_some() {
+                let runs = runs(&series.points, |p| self.frame.place(p));
+                segments.extend(runs.iter().flat_map(|run| run.windows(2)).map(|p| (p[0], p[1])));
             }
             for (a, b) in segments.into_iter().filter_map(|(a, b)| self.frame.area.clip(a, b)) {
                 sample_segment(&mut all, a, b);
@@ -133,48 +121,9 @@ impl<'a> Prepared<'a> {
         all
     }
 
-    /// Decides where the slope triangles lie, and makes them obstacles.
-    fn place_slopes(&mut self, obstacles: &mut Vec<Point>) {
-        for layer in &self.plot.layers {
-            let Layer::Slope(order) = layer else { continue };
-            let corners = [1.0, 0.7, 0.5, 0.35, 0.25, 0.18]
-                .iter()
-                .find_map(|&part| self.free_triangle(*order, 2_f64.powf(part), obstacles));
-            if let Some(corners) = corners {
-                sample_rect(obstacles, around(&corners, *order));
-                self.slopes.push((*order, corners));
-            }
-        }
-    }
-
-    /// The free place closest to the data.
-    fn free_triangle(&self, order: f64, factor: f64, data: &[Point]) -> Option<[Point; 3]> {
-        let Frame { x, y, area, .. } = &self.frame;
-        let (x, y) = (x.mapping.lo, y.mapping.lo);
-        let a = self.frame.place((x, y)).filter(|_| order.is_finite())?;
-        let b = self.frame.place((x * factor, y))?;
-        let c = self.frame.place((x * factor, y * factor.powf(order)))?;
-        let steps = |length: f64| (0..(length / 6.0) as i32).map(|i| 6.0 * f64::from(i));
-        let moved = |dx: f64, dy: f64| {
-            [a, b, c].map(|p| (p.0 - a.0 + area.left + dx, p.1 - a.1 + area.top + dy))
-        };
-        let mut best = None;
-        for (dx, dy) in steps(area.width).flat_map(|x| steps(area.height).map(move |y| (x, y))) {
-            let corners = moved(dx, dy);
-            let rect = around(&corners, order);
-            if !area.encloses(&rect) {
-                continue;
-            }
-            let gap = data.iter().map(|&p| rect.distance(p)).fold(f64::INFINITY, f64::min);
-            if gap > 5.0 && best.is_none_or(|(least, _)| gap < least) {
-                best = Some((gap, corners));
-            }
-        }
-        best.map(|(_, corners)| corners)
-    }
-
     /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
-    fn place_marks(&mut self, obstacles: &mut Vec<Point>) {
+    fn place_marks(&mut self) {
+        let mut obstacles = self.obstacles();
         let markers: Vec<Point> = (self.series.iter().filter(|(series, _)| series.marked))
             .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.frame.place(*p)))
             .collect();
@@ -201,7 +150,7 @@ impl<'a> Prepared<'a> {
             let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
             if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
-                sample_rect(obstacles, room);
+                sample_rect(&mut obstacles, room);
                 self.marks.push(Mark { point: at, text, room, colour });
             }
         }
@@ -291,9 +240,6 @@ impl<'a> Prepared<'a> {
         for (series, look) in &self.series {
             self.draw_series(canvas, series, *look);
         }
-        for (order, corners) in &self.slopes {
-            draw_slope(canvas, area, *order, *corners);
-        }
         for mark in &self.marks {
             let at = mark.room.at((0.0, 0.5));
             canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
@@ -328,7 +274,7 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                 xs.extend(dots.points.iter().map(|p| p.0));
                 ys.extend(dots.points.iter().map(|p| p.1));
             }
-            Layer::Slope(_) | Layer::Cells { .. } => {}
+            Layer::Cells { .. } => {}
         }
     }
     (xs, ys)
@@ -376,35 +322,6 @@ fn entries(plot: &Plot, series: &[(&Series, Look)]) -> Vec<Entry> {
     });
     let named = lines.chain(areas).filter(|(name, _)| !name.is_empty());
     named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
-}
-
-/// The number of a slope triangle.
-fn slope_number(order: f64) -> String {
-    minus(format!("{}", (order * 100.0).round() / 100.0))
-}
-
-/// The room that a slope triangle takes with its numbers: its own stands beside the rise, outside.
-fn around(corners: &[Point; 3], order: f64) -> Rect {
-    let least = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
-    let most = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    let (left, top) = (least(|p| p.0), least(|p| p.1));
-    let (width, height) = (most(|p| p.0) - left, most(|p| p.1) - top);
-    let number = 5.0 + font::width(&slope_number(order), SLOPE_EM) + 3.0;
-    Rect { left: left - 14.0, top: top - 14.0, width: width + 14.0 + number, height: height + 28.0 }
-}
-
-/// A triangle with its rise beside and a 1 along its run.
-fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) {
-    let [a, b, c] = corners;
-    for (p, q) in [(a, b), (b, c), (c, a)] {
-        if let Some((p, q)) = area.clip(p, q) {
-            canvas.line(p, q, Colour::GREY, 1.0);
-        }
-    }
-    let how = |align| Type::new(SLOPE_EM, align).colour(Colour::GREY);
-    canvas.text(&slope_number(order), (b.0 + 5.0, 0.5 * (b.1 + c.1)), how(Align::Start));
-    let below = if c.1 < b.1 { 8.5 } else { -8.5 };
-    canvas.text("1", (0.5 * (a.0 + b.0), b.1 + below), how(Align::Middle));
 }
 
 /// Places for the label of a point: right, left, above, below, and between.

@@ -207,13 +207,11 @@ mod tests {
         let pairs: Vec<_> =
             values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b))).collect();
         let triples: Vec<_> = pairs.iter().map(|p| (p.0, p.1, p.0)).collect();
-        let any = values.first().copied().unwrap_or(f64::NAN);
         let b = Series::markers("b", pairs.clone());
         Plot::new("Title", x, y)
             .layer(Series::line_markers("a", pairs.clone()))
             .layer(Series { shape: Some(Shape::Cross), x_bars: pairs, ..b })
             .layer(Layer::band("c", triples, Colour::SKY))
-            .layer(Layer::Slope(any))
     }
 
     #[test]
@@ -252,6 +250,19 @@ mod tests {
         assert!(text.contains(">ok</text>") && text.contains(">pass</text>"), "{text}");
         svg(&figure(plot(&[], &[])));
         svg(&Figure::new("none", "").columns(0));
+    }
+
+    /// A dot whose value is not finite was drawn as a cross and counted as not drawn, too.
+    #[test]
+    fn a_dot_without_a_place_is_counted_and_one_without_a_value_is_a_cross() {
+        let with = |dot| {
+            let points = vec![(0.0, 0.0, 1.0), (1.0, 1.0, 2.0), dot];
+            let dots = Dots::new("p [Pa]", ColourMap::Sequential, 0.1, points);
+            let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
+            svg(&figure(plot))
+        };
+        assert!(!with((0.5, 0.5, f64::NAN)).contains("not drawn"));
+        assert!(with((f64::NAN, 0.5, 1.0)).contains("not drawn: 1 not finite"));
     }
 
     #[test]
