@@ -79,7 +79,7 @@ pub fn plot<'a>(
     let series = |(k, (name, levels)): (usize, (&str, &[Level]))| {
         let usable = levels.iter().filter(|level| level.value.is_finite());
         let points = usable.map(|level| (level.spacing, level.value)).collect();
-        Series::line_markers(name, points).cycle(k)
+        Series::line(name, points).cycle(k)
     };
     let plot = Plot::new(title, Axis::log(x), Axis::log(y));
     let plot = lines.clone().enumerate().map(series).fold(plot, Plot::layer);

@@ -119,7 +119,7 @@ mod tests {
 
     fn real_page() -> Page {
         let plot = Plot::new("p < q & r", Axis::linear("x [m]"), Axis::log("y [\"1\"]"))
-            .layer(Series::line_markers("<&>", vec![(0.0, 1.0), (1.0, 2.0)]));
+            .layer(Series::line("<&>", vec![(0.0, 1.0), (1.0, 2.0)]).cycle(2));
         let table = Table::new("Errors", vec![Column::text("a"), Column::num("b", "m/s")])
             .row(vec![Cell::text("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
         let details = vec![table.clone().into()];

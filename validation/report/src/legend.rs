@@ -2,18 +2,8 @@
 
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
-use super::figure::{Dash, Shape};
+use super::figure::Look;
 use super::font;
-
-/// How a series is drawn, after the palette was consulted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Look {
-    pub colour: Colour,
-    pub line: Option<Dash>,
-    pub width: f64,
-    pub marker: Option<Shape>,
-    pub open: bool,
-}
 
 /// The sample beside a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,15 +17,6 @@ pub(super) enum Sample {
 pub(super) struct Entry {
     pub name: String,
     pub sample: Sample,
-}
-
-impl Entry {
-    pub fn colour(&self) -> Colour {
-        match self.sample {
-            Sample::Series(look) => look.colour,
-            Sample::Patch(colour) => colour,
-        }
-    }
 }
 
 /// Diameter of a marker in CSS pixels.

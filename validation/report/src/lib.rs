@@ -37,7 +37,7 @@ pub use check::check_page;
 pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, VERDICTS, verdicts_where};
-pub use figure::{Dash, Dots, Figure, Layer, Plot, Series, Shape};
+pub use figure::{Dash, Dots, Figure, Layer, Look, Plot, Series, Shape};
 pub use film::Film;
 pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use page::{Block, Page, Section};

@@ -5,11 +5,11 @@ use super::bar::Bar;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::dots::{Scaled, draw_cell};
-use super::figure::{Layer, Plot, Series, Shape};
+use super::figure::{Layer, Plot, Series};
 use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
 use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
-use super::legend::{self, Entry, Look, MARKER, Sample};
+use super::legend::{Entry, MARKER, Sample};
 
 const MARK_EM: f64 = 9.0;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
@@ -21,11 +21,9 @@ const BAND: f64 = 0.22;
 pub(super) struct Prepared<'a> {
     plot: &'a Plot,
     frame: Frame<'a>,
-    series: Vec<(&'a Series, Look)>,
+    series: Vec<&'a Series>,
     marks: Vec<Mark<'a>>,
     dots: Option<Scaled<'a>>,
-    /// What the legend below the axes names; nothing if there is none.
-    pub legend: Vec<Entry>,
 }
 
 /// The label of a point, which starts in the middle of the left side of its room.
@@ -52,7 +50,11 @@ impl<'a> Prepared<'a> {
             area = Rect::of((pixels * width, pixels * height));
             Scaled::new(dots, area.height, pixels)
         });
-        let series = with_looks(&plot.layers);
+        let series = plot.layers.iter().filter_map(|layer| match layer {
+            Layer::Series(series) => Some(series),
+            _ => None,
+        });
+        let series: Vec<&Series> = series.collect();
         let frame = Frame {
             area,
             x: x_ruler(&plot.x, x, area.width),
@@ -60,14 +62,7 @@ impl<'a> Prepared<'a> {
             title: &plot.title,
             note: String::new(),
         };
-        let mut this = Self {
-            plot,
-            frame,
-            legend: if plot.legend { entries(plot, &series) } else { Vec::new() },
-            series,
-            marks: Vec::new(),
-            dots,
-        };
+        let mut this = Self { plot, frame, series, marks: Vec::new(), dots };
         this.frame.note = this.dropped();
         this.place_marks();
         this
@@ -89,12 +84,17 @@ impl<'a> Prepared<'a> {
         let dots = self.plot.dots().into_iter().flat_map(|dots| &dots.points);
         let mut infinite = dots.filter(is_lost).count();
         let (mut nonpositive, mut off) = (0, 0);
-        for (series, _) in &self.series {
+        for series in &self.series {
             for &(x, y) in &series.points {
                 match self.frame.place((x, y)) {
                     _ if !(x.is_finite() && y.is_finite()) => infinite += 1,
                     None => nonpositive += 1,
-                    Some(p) if series.marked && !self.frame.area.grown(0.5).contains(p) => off += 1,
+                    Some(p)
+                        if series.look.marker.is_some()
+                            && !self.frame.area.grown(0.5).contains(p) =>
+                    {
+                        off += 1
+                    }
                     Some(_) => {}
                 }
             }
@@ -108,9 +108,9 @@ impl<'a> Prepared<'a> {
     /// Points of lines and bars, a few pixels apart, which a label should not hide.
     fn obstacles(&self) -> Vec<Point> {
         let mut all = Vec::new();
-        for (series, _) in &self.series {
+        for series in &self.series {
             let mut segments = self.bars(series);
-            if series.line.is_some() {
+            if series.look.line.is_some() {
                 let runs = runs(&series.points, |p| self.frame.place(p));
                 segments.extend(runs.iter().flat_map(|run| run.windows(2)).map(|p| (p[0], p[1])));
             }
@@ -124,13 +124,14 @@ impl<'a> Prepared<'a> {
     /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
     fn place_marks(&mut self) {
         let mut obstacles = self.obstacles();
-        let markers: Vec<Point> = (self.series.iter().filter(|(series, _)| series.marked))
-            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.frame.place(*p)))
-            .collect();
-        let points = self.series.iter().flat_map(|(series, look)| {
+        let markers: Vec<Point> =
+            (self.series.iter().filter(|series| series.look.marker.is_some()))
+                .flat_map(|series| series.points.iter().filter_map(|p| self.frame.place(*p)))
+                .collect();
+        let points = self.series.iter().flat_map(|series| {
             let last = series.labels.len().saturating_sub(1);
             let all = series.points.iter().zip(&series.labels).enumerate();
-            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, look.colour))
+            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, series.look.colour))
         });
         let mut points: Vec<_> = points.collect();
         points.sort_by_key(|(is_between, ..)| *is_between);
@@ -182,7 +183,8 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn draw_series(&self, canvas: &mut Canvas, series: &Series, look: Look) {
+    fn draw_series(&self, canvas: &mut Canvas, series: &Series) {
+        let look = series.look;
         for (a, b) in self.bars(series) {
             if let Some((p, q)) = self.frame.area.clip(a, b) {
                 canvas.line(p, q, look.colour, 1.0);
@@ -206,17 +208,28 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// The room that it takes with its colour bar and its legend.
+    /// What the legend names, if there is one: series, then areas. A series without a point would have a
+    /// symbol there and none in the plot.
+    pub fn legend(&self) -> Vec<Entry> {
+        if !self.plot.legend {
+            return Vec::new();
+        }
+        let drawn = self.series.iter().filter(|series| !series.points.is_empty());
+        let lines = drawn.map(|series| (&series.name, Sample::Series(series.look)));
+        let areas = self.plot.layers.iter().filter_map(|layer| match layer {
+            Layer::Cells { name, colour, .. } => Some((name, Sample::Patch(*colour))),
+            _ => None,
+        });
+        let named = lines.chain(areas).filter(|(name, _)| !name.is_empty());
+        named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
+    }
+
+    /// The room that it takes with its colour bar.
     pub fn room(&self) -> Room {
         let last = self.frame.x.major.last();
         let overhang = last.map_or(0.0, |(_, label)| font::width(label, TICK_EM) / 2.0);
         let bar = self.own_bar().map_or(0.0, Bar::width);
-        let mut room = self.frame.room((overhang + 2.0).max(10.0).max(bar));
-        if !self.legend.is_empty() {
-            room.right = room.right.max(legend::column(&self.legend) - room.width);
-            room.bottom += legend::height(&self.legend, room.width);
-        }
-        room
+        self.frame.room((overhang + 2.0).max(10.0).max(bar))
     }
 
     /// Draws the plot; the upper left corner of its axes is the canvas's.
@@ -224,7 +237,7 @@ impl<'a> Prepared<'a> {
         let area = self.frame.area;
         // Bands lie below the grid.
         for layer in &self.plot.layers {
-            if let Layer::Band { points, colour, .. } = layer {
+            if let Layer::Band { points, colour } = layer {
                 self.draw_band(canvas, points, *colour);
             }
         }
@@ -237,8 +250,8 @@ impl<'a> Prepared<'a> {
         if let Some(dots) = &self.dots {
             dots.draw(canvas, &self.frame);
         }
-        for (series, look) in &self.series {
-            self.draw_series(canvas, series, *look);
+        for series in &self.series {
+            self.draw_series(canvas, series);
         }
         for mark in &self.marks {
             let at = mark.room.at((0.0, 0.5));
@@ -248,8 +261,6 @@ impl<'a> Prepared<'a> {
         if let Some(bar) = self.own_bar() {
             bar.draw(canvas, area);
         }
-        let below = area.bottom() + self.frame.room(0.0).bottom;
-        legend::draw(canvas, &self.legend, (area.left, below), area.width);
     }
 }
 
@@ -291,37 +302,6 @@ fn x_ruler(axis: &Axis, mapping: Mapping, width: f64) -> Ruler {
     let most = ((width / 52.0) as usize).max(3);
     let found = (2..=most).rev().map(|count| axis.ruler(mapping, count)).find(|r| !overlap(r));
     found.unwrap_or_else(|| axis.ruler(mapping, 2))
-}
-
-/// The series with their colours and shapes, the next of the palette where they name none.
-fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
-    let series = layers.iter().filter_map(|layer| match layer {
-        Layer::Series(series) => Some(series),
-        _ => None,
-    });
-    let (mut colours, mut shapes) = ((0..).map(Colour::cycle), (0..).map(Shape::cycle));
-    let look = |s: &Series| {
-        let colour = s.colour.or_else(|| colours.next()).unwrap_or(Colour::BLACK);
-        let mut shape = || s.shape.or_else(|| shapes.next());
-        let marker = if s.marked { shape() } else { None };
-        Look { colour, line: s.line, width: s.width, marker, open: s.open }
-    };
-    let looks: Vec<Look> = series.clone().map(look).collect();
-    series.zip(looks).collect()
-}
-
-/// What the legend names: series, then areas. A series without a point would have a symbol there and none
-/// in the plot.
-fn entries(plot: &Plot, series: &[(&Series, Look)]) -> Vec<Entry> {
-    let drawn = series.iter().filter(|(series, _)| !series.points.is_empty());
-    let lines = drawn.map(|(series, look)| (&series.name, Sample::Series(*look)));
-    let areas = plot.layers.iter().filter_map(|layer| match layer {
-        Layer::Band { name, colour, .. } => Some((name, Sample::Patch(colour.tint(BAND)))),
-        Layer::Cells { name, colour, .. } => Some((name, Sample::Patch(*colour))),
-        _ => None,
-    });
-    let named = lines.chain(areas).filter(|(name, _)| !name.is_empty());
-    named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
 }
 
 /// Places for the label of a point: right, left, above, below, and between.

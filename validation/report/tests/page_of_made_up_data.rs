@@ -30,8 +30,8 @@ fn a_page_of_made_up_data_is_whole() {
 fn figure() -> Figure {
     let error = |c: f64| [0.1, 0.05, 0.025].map(|h: f64| (h, c * h.powf(1.5))).to_vec();
     let plot = Plot::new("Error", Axis::log("Δx [1]"), Axis::log("relative error [1]"))
-        .layer(Series::line_markers("cubic spline", error(0.3)))
-        .layer(Series::line_markers("quintic spline", error(0.5)).labels(["10".into()]));
+        .layer(Series::line("cubic spline", error(0.3)).cycle(0))
+        .layer(Series::line("quintic spline", error(0.5)).cycle(1).labels(["10".into()]));
     let at = |k: i32| 0.05 * f64::from(k);
     let points = (0..400).map(|k| (at(k % 20), at(k / 20), at(k % 7))).collect();
     let dots = Dots::new("|u| [m/s]", ColourMap::Sequential, 0.05, points);

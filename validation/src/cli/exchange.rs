@@ -35,13 +35,14 @@ use super::{Exit, Failure, Outcome, World, arguments, judged, output, summary::o
 /// More than this is no description of a method \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
-pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Result<(), Failure> {
-    let case = cases::find_in(world.cases, &arguments.case)?;
-    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
+pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
+    let of = &arguments.of;
+    let case = cases::find_in(world.cases, &of.case)?;
+    let variant = of.variant.as_deref().unwrap_or(case.best().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
     let problem = Problem::seen(case, spec, arguments.relation)?;
-    let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = write::write(&problem, arguments.format, &folder)?;
+    let folder = OutputFolder::create(&of.out)?;
+    let mut names = write::write(&problem, of.format, &folder)?;
     if arguments.solve {
         names.extend(solve(case, &problem, &folder, world)?);
     }
@@ -124,8 +125,9 @@ fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
 }
 
 pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
-    let case = cases::find_in(world.cases, &arguments.case)?;
-    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
+    let of = &arguments.of;
+    let case = cases::find_in(world.cases, &of.case)?;
+    let variant = of.variant.as_deref().unwrap_or(case.best().variant);
     let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
         Failure::usage(format!("cannot read {}: {reason}", arguments.method.display()))
     })?;
@@ -133,8 +135,8 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), 
     let set = challenge::draw(case, variant, &sealed)?;
     let mut problem = Problem::of(case, case::spec(case, variant, &set)?)?;
     problem.sealed = Some(sealed);
-    let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = write::write(&problem, arguments.format, &folder)?;
+    let folder = OutputFolder::create(&of.out)?;
+    let mut names = write::write(&problem, of.format, &folder)?;
     folder.write(METHOD, text.as_bytes())?;
     names.push(METHOD.into());
     output::print(&format!("{}\n", set.join(" ")))?;

@@ -151,7 +151,7 @@ fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
     for (k, row) in rows.iter().enumerate() {
         let own: Vec<&Point> = row.points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = Series::line_markers(row.of.variant, line).cycle(k);
+        let mut series = Series::line(row.of.variant, line).cycle(k);
         if title.contains("time") {
             series = series.labels(own.iter().map(|p| short(&p.label)));
             series.x_bars = own.iter().map(|p| p.spread()).collect();
