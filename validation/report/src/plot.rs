@@ -5,11 +5,11 @@ use super::bar::Bar;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::dots::{Scaled, draw_cell};
-use super::figure::{Layer, Plot, Series};
+use super::figure::{Layer, Look, Plot, Series, Shape};
 use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
 use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
-use super::legend::{Entry, MARKER, Sample};
+use super::legend::{Entry, MARKER};
 
 const MARK_EM: f64 = 9.0;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
@@ -208,20 +208,23 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// What the legend names, if there is one: series, then areas. A series without a point would have a
-    /// symbol there and none in the plot.
+    /// What the legend names, if there is one: series, and cells as squares. A series without a point would
+    /// have a symbol there and none in the plot.
     pub fn legend(&self) -> Vec<Entry> {
-        if !self.plot.legend {
-            return Vec::new();
-        }
-        let drawn = self.series.iter().filter(|series| !series.points.is_empty());
-        let lines = drawn.map(|series| (&series.name, Sample::Series(series.look)));
-        let areas = self.plot.layers.iter().filter_map(|layer| match layer {
-            Layer::Cells { name, colour, .. } => Some((name, Sample::Patch(*colour))),
+        let entry = |layer: &Layer| match layer {
+            Layer::Series(series) if series.points.is_empty() => None,
+            Layer::Series(Series { name, look, .. }) => {
+                Some(Entry { name: name.clone(), look: *look })
+            }
+            Layer::Cells { name, colour, .. } => {
+                let (colour, marker) = (*colour, Some(Shape::Square));
+                let look = Look { colour, line: None, width: 0.0, marker, open: false };
+                Some(Entry { name: name.clone(), look })
+            }
             _ => None,
-        });
-        let named = lines.chain(areas).filter(|(name, _)| !name.is_empty());
-        named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
+        };
+        let layers = self.plot.layers.iter().filter(|_| self.plot.legend);
+        layers.filter_map(entry).filter(|entry| !entry.name.is_empty()).collect()
     }
 
     /// The room that it takes with its colour bar.

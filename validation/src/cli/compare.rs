@@ -15,7 +15,8 @@ use harness::{
     runs::Judged,
     store::Store,
 };
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
@@ -58,7 +59,8 @@ impl Side {
 }
 
 /// What changed, the worst first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
 enum Kind {
     /// A gate that did not fail.
     Failing,
@@ -76,10 +78,6 @@ enum Kind {
 }
 
 impl Kind {
-    fn name(self) -> String {
-        format!("{self:?}").to_lowercase()
-    }
-
     /// Does something fail that did not, or is something not known any more that was?
     fn is_loss(self) -> bool {
         self <= Self::Gone
@@ -87,9 +85,11 @@ impl Kind {
 }
 
 /// A change of one gate or run, in words and as data.
+#[derive(Serialize)]
 struct Change {
     kind: Kind,
     name: String,
+    #[serde(rename = "change")]
     words: String,
 }
 
@@ -125,11 +125,7 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
     changes.sort_by_key(|change| change.kind);
     let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
     let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::Failing));
-    let json = || {
-        let change = |c: &Change| json!({"kind": c.kind.name(), "name": c.name, "change": c.words});
-        let all: Value = changes.iter().map(change).collect();
-        json!({"new_failures": failures, "losses": losses, "changes": all})
-    };
+    let json = || json!({"new_failures": failures, "losses": losses, "changes": changes});
     output::answer(arguments.json, json, || in_words(&changes, &before, &after))?;
     Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
 }
@@ -158,7 +154,8 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
         text += &format!("{before} before, {} after, {shared} in both\n", new.len());
     }
     for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {
-        text += &format!("\n{}: {}\n", of_kind[0].kind.name(), of_kind.len());
+        let kind = format!("{:?}", of_kind[0].kind).to_lowercase();
+        text += &format!("\n{kind}: {}\n", of_kind.len());
         of_kind.iter().for_each(|change| text += &format!("  {}: {}\n", change.name, change.words));
     }
     if changes.is_empty() { text + "nothing changed\n" } else { text }

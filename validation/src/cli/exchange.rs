@@ -151,10 +151,10 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let problem = problem(case, &entry, arguments)?;
     let coarse = entry.scene(case, &problem)?;
     let scene = coarse.as_ref().unwrap_or(&problem);
-    entry.stand_for(case, scene).map_err(|flaws| refused(&flaws))?;
-    check(&entry, scene)?;
+    entry.stand_for(case, scene).map_err(refused)?;
+    entry.check(scene).map_err(refused)?;
     let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
-        refused(&[Flaw::of(arguments.folder.display().to_string(), error.to_string())])
+        refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
     })?;
     record.manifest.sources = (world.sources)(case.name());
     record.manifest.cpu = entry.system.machine.clone();
@@ -180,13 +180,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
 /// The submission in a folder, with columns of other names.
 fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
     let renamed = map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
-    submission::read(folder, &renamed).map_err(|flaws| refused(&flaws))
-}
-
-/// Refuses a submission that does not fit its problem.
-fn check(entry: &Entry, problem: &Problem) -> Result<(), Failure> {
-    let flaws = entry.check(problem);
-    if flaws.is_empty() { Ok(()) } else { Err(refused(&flaws)) }
+    submission::read(folder, &renamed).map_err(refused)
 }
 
 /// The run that a document asks for.
@@ -215,7 +209,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
         let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
         let problem = Problem::seen(case, spec_of(case, asked)?, Some(by))?;
-        check(&entry, &problem)?;
+        entry.check(&problem).map_err(refused)?;
         Ok((entry, problem, by))
     };
     let ((ours, same, first), (theirs, other, by)) =
@@ -274,7 +268,7 @@ fn problem(
 }
 
 /// All flaws as the reason why nothing is judged.
-fn refused(flaws: &[Flaw]) -> Failure {
+fn refused(flaws: Vec<Flaw>) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",
