@@ -486,7 +486,8 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_run() {
 
 #[test]
 fn rows_that_are_given_twice_are_refused() {
-    refused(&short("couette", &["--set", "rows=10"]), &["--rows 8", "--set rows=10"]);
+    let words = "setting rows is given twice, as \"10\" and as \"8\"; give one of them";
+    refused(&short("couette", &["--set", "rows=10"]), &[words]);
 }
 
 /// Plain runs computed an energy ledger that nobody had asked for, and judged it.
