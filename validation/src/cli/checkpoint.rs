@@ -1,6 +1,6 @@
 //! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of all
-//! that follows; the second line is what was asked for, and the lengths of the simulations in bytes, as JSON; then come
-//! these, as bytes.
+//! that follows; the second line is what was asked for, and the lengths of the simulations in bytes, as JSON;
+//! then come these, as bytes.
 
 use std::path::Path;
 
