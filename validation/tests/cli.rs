@@ -83,7 +83,7 @@ fn help_version_and_lists_are_results() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
     }
     let text = stdout(&touchstone(&["list", "couette"]));
-    for word in ["(runs by default, best)", "h_over_dx", "0.8 to 5.0 [-]", "Reynolds number"] {
+    for word in ["`modern` runs by default", "h_over_dx", "0.8 to 5.0 [-]", "Reynolds number"] {
         assert!(text.contains(word), "{word}: {text}");
     }
     let json = |arguments: &[&str]| -> Value {
@@ -143,7 +143,7 @@ fn senseless_settings_are_refused_with_their_range() {
         ("re=", "setting re is \"\"; allowed is a number"),
         ("wall_curvature=1", "true or false"),
         ("dt=1e-15", "--allow-long"),
-        ("columns=2", "impossible scene"),
+        ("columns=2", "setting columns is 2, which is allowed only with a narrower kernel"),
     ] {
         refused(&["run", "couette", "--set", set], &[says]);
     }
@@ -486,7 +486,8 @@ fn a_folder_that_cannot_be_written_is_refused_before_the_run() {
 
 #[test]
 fn rows_that_are_given_twice_are_refused() {
-    refused(&short("couette", &["--set", "rows=10"]), &["--rows 8", "--set rows=10"]);
+    let words = "setting rows is given twice, as \"10\" and as \"8\"; give one of them";
+    refused(&short("couette", &["--set", "rows=10"]), &[words]);
 }
 
 /// Plain runs computed an energy ledger that nobody had asked for, and judged it.
@@ -514,7 +515,11 @@ fn a_folder_with_the_record_of_another_case_is_not_mixed_with() {
         let all = short(case, &[&["--out", "here"][..], rest].concat());
         touchstone_in(folder.path(), &all)
     };
-    assert_eq!(into("couette", &[]).status.code(), Some(0));
+    let longer = ["--out", "here", "--set", "end=1", "--vtk", "2"];
+    let arguments = [&["run", "elastic_bar"][..], &longer].concat();
+    assert_eq!(touchstone_in(folder.path(), &arguments).status.code(), Some(0));
+    assert!(files(&folder.path().join("here")).len() > 5, "tables and frames");
+    assert_eq!(into("couette", &["--overwrite"]).status.code(), Some(0));
     assert_eq!(into("couette", &[]).status.code(), Some(0), "its own record is replaced");
     let output = into("poiseuille", &[]);
     let message = stderr(&output);
@@ -523,6 +528,7 @@ fn a_folder_with_the_record_of_another_case_is_not_mixed_with() {
         assert!(message.contains(word), "{word}: {message}");
     }
     assert_eq!(into("poiseuille", &["--overwrite"]).status.code(), Some(0));
+    assert_eq!(files(&folder.path().join("here")), ["profile.csv", "record.json"], "of this run");
     let text = fs::read_to_string(folder.path().join("here/record.json")).unwrap();
     assert_eq!(Record::from_json(&text).unwrap().case, "poiseuille");
 }
@@ -679,7 +685,8 @@ fn checkpoints_are_refused_where_they_make_no_sense() {
     refused(&[&every[..], &["10"]].concat(), &["--checkpoint-every needs --out DIR"]);
     refused(&[&every[..], &["0", "--out", "o"]].concat(), &["0 is not in 1.."]);
     refused(&["run", "--resume", "nowhere"], &["\"nowhere\" has no checkpoint"]);
-    refused(&["run", "couette", "--resume", "o"], &["cannot be used with"]);
+    let alone = "run --resume DIR, whose checkpoint holds case, variant and settings";
+    refused(&["run", "couette", "--resume", "o"], &["cannot be used with", alone]);
     let with_specs = ["run", "--specs", "-", "--store", "s", "--checkpoint-every", "9"];
     refused(&with_specs, &["cannot be used with"]);
 }

@@ -98,8 +98,11 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     fs::read_to_string(path)
 }
 
-/// Refuses what is no regular file, or is larger.
-fn check_regular(path: &Path, most: u64) -> io::Result<()> {
+/// Refuses what is no regular file, or has more than so many bytes.
+///
+/// # Errors
+/// Those of the system, and this one.
+pub fn check_regular(path: &Path, most: u64) -> io::Result<()> {
     let refused = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
     let file = fs::metadata(path)?;
     if !file.is_file() {

@@ -16,7 +16,7 @@ use harness::{
     suite::{CaseResults, Of, Suite},
 };
 use report::{
-    Block, Card, Cell, Column, Counts, Explorer, GateRow, Page, Section, Table, VERDICTS, counted,
+    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, counted,
 };
 
 use crate::{cases, limitations, stiffness, time};
@@ -114,16 +114,37 @@ fn provenance(made_by: &Manifest) -> String {
     )
 }
 
+/// A gate, its verdict, and the numbers of the reasons.
+struct Row<'a> {
+    case: &'a dyn Case,
+    of: Of<'a>,
+    judged: &'a Judged,
+    reasons: String,
+}
+
 /// All verdicts, the worst first, and below each other the reasons, each once.
 fn verdicts(suite: &Suite) -> Section {
     let mut notes = Notes::default();
-    let mut gates: Vec<GateRow> = suite
-        .cases
-        .iter()
-        .flat_map(|results| results.judged().map(move |(of, judged)| (results, of, judged)))
-        .map(|(results, of, judged)| gate_row(results.case, of, judged, &mut notes))
-        .collect();
-    gates.sort_by_key(|gate| std::cmp::Reverse(gate.status));
+    let mut rows = Vec::new();
+    for results in &suite.cases {
+        for (of, judged) in results.judged() {
+            let reasons = reasons(judged, &mut notes).join(" ");
+            rows.push(Row { case: results.case, of, judged, reasons });
+        }
+    }
+    rows.sort_by_key(|row| std::cmp::Reverse(row.judged.judgement.verdict));
+    let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
+    let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
+    let gates = Columns::<Row>::default()
+        .with(Column::text("verdict"), |row| Cell::status(row.judged.judgement.verdict))
+        .text("gate", |row| row.judged.gate.id.clone())
+        .text("run or study", judged_on)
+        .num(["value", ""], move |row| value(row.judged.judgement.value))
+        .text("bound", |row| row.judged.gate.bounds())
+        .num(["margin", ""], move |row| margin(row.judged.judgement.margin))
+        .text("evidence", |row| format!("{:?}", row.judged.gate.evidence).to_lowercase())
+        .text("reasons", |row| row.reasons.clone())
+        .table("", &rows);
     let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
     Section::new(VERDICTS, "All verdicts")
         .prose(
@@ -143,34 +164,27 @@ const READING: [&str; 2] = [
      processor time of the time stepping on one core, the median of repeated runs with no other run at work; \
      bars reach from the fastest to the slowest. The pale band joins the points that no other beats in both \
      error and cost.",
-    "A convergence diagram shows the error over the spacing of particles. The triangle has the slope of the \
+    "A convergence diagram shows the error over the spacing of particles. The grey line has the \
      order that theory expects. The order in the table below it is a least-squares fit over all levels, with \
      the 95 % interval of Student's t distribution.",
 ];
 
-fn gate_row<'a>(case: &dyn Case, of: Of<'a>, judged: &'a Judged, notes: &mut Notes<'a>) -> GateRow {
-    let Judged { gate, judgement, .. } = judged;
-    let mut reasons = vec![notes.number(&gate.because)];
-    if let Some(reason) = judged.limitation() {
-        let cause = gate.cause.as_ref().map(|cause| &*cause.what);
-        reasons.extend(cause.into_iter().chain([reason]).map(|text| notes.number(text)));
-    }
-    let of = match of {
+/// Numbers of the reasons for a bound, and for a limitation.
+fn reasons<'a>(judged: &'a Judged, notes: &mut Notes<'a>) -> Vec<String> {
+    let limitation = judged.limitation();
+    let cause = judged.gate.cause.as_ref().filter(|_| limitation.is_some());
+    let texts = [Some(&*judged.gate.because), cause.map(|cause| &*cause.what), limitation];
+    texts.into_iter().flatten().map(|text| notes.number(text).to_string()).collect()
+}
+
+/// The run or the study that is judged.
+fn judged_on(row: &Row) -> String {
+    match row.of {
         Of::Run(run) => {
             let spec = &run.planned.spec;
-            format!("`{}` {}", spec.variant, what(case, spec)).trim_end().to_string()
+            format!("`{}` {}", spec.variant, what(row.case, spec)).trim_end().to_string()
         }
         Of::Study(study) => format!("[{}](#{})", study.title, anchor(study)),
-    };
-    GateRow {
-        id: gate.id.clone(),
-        status: judgement.verdict,
-        of,
-        value: judgement.value.map_or(Cell::text("not measured"), measured),
-        bound: gate.bounds(),
-        margin: judgement.margin.map_or(Cell::text("–"), |margin| Cell::percent(margin, 2)),
-        evidence: format!("{:?}", gate.evidence).to_lowercase(),
-        reasons,
     }
 }
 

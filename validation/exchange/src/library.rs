@@ -36,9 +36,9 @@ pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Re
     let method = solver.method();
     let digest = sha256(format!("{method:?}").as_bytes());
     let entry = Entry { method, digest, system, asked: None, results, curve: None };
-    let flaws: Vec<String> = entry.check(&problem).iter().map(Flaw::to_string).collect();
-    match flaws.is_empty() {
-        true => entry.measure(case, spec, &problem),
-        false => Err(RunError::Playback(flaws.join("\n"))),
-    }
+    entry.check(&problem).map_err(|flaws| {
+        let lines: Vec<String> = flaws.iter().map(Flaw::to_string).collect();
+        RunError::Playback(lines.join("\n"))
+    })?;
+    entry.measure(case, spec, &problem)
 }

@@ -276,8 +276,11 @@ impl Entry {
         };
     }
 
-    /// Everything that does not fit the problem.
-    pub fn check(&self, problem: &Problem) -> Vec<Flaw> {
+    /// Does it fit the problem?
+    ///
+    /// # Errors
+    /// Everything that does not.
+    pub fn check(&self, problem: &Problem) -> Result<(), Vec<Flaw>> {
         let mut flaws = Vec::new();
         let Results { frames, places, .. } = &self.results;
         let file = places.first().map_or("results", |(file, _)| file.as_str());
@@ -343,7 +346,7 @@ impl Entry {
             );
             flaws.push(Flaw::of(METHOD, what));
         }
-        flaws
+        if flaws.is_empty() { Ok(()) } else { Err(flaws) }
     }
 
     /// The numbers of the particles of a code that chose them itself, and what is wrong with its start.

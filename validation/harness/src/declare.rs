@@ -203,7 +203,7 @@ pub struct Accuracy {
     pub about: String,
     /// Name of the spacing with its unit, for axes.
     pub spacing: &'static str,
-    /// The order that the method should have, drawn as a slope; none if nothing is known.
+    /// The order that the method should have, drawn as a grey line; none if nothing is known.
     pub slope: Option<f64>,
     /// One ladder of resolutions per variant, coarse to fine.
     pub ladders: Vec<Ladder>,

@@ -1,8 +1,10 @@
 //! The order at which an error falls as something is refined: columns of a table and a panel of a figure for
 //! any study, and a whole study for those of one case alone.
 
-use base::gate::Gate;
-use report::{Axis, Cell, Figure, Layer, Plot, Series, sig};
+use std::cmp::Ordering;
+
+use base::{functions::powf, gate::Gate};
+use report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
@@ -19,7 +21,7 @@ pub struct Refinement {
     pub title: &'static str,
     /// What is refined and the error, with their units.
     pub axes: [&'static str; 2],
-    /// Orders that are drawn as slopes.
+    /// Orders that are drawn as grey lines.
     pub slopes: &'static [f64],
     /// Errors, a line each.
     pub lines: Vec<Line>,
@@ -67,22 +69,39 @@ pub fn study(
     })
 }
 
-/// Errors over what is refined, by the name of each line, and orders as slopes.
+/// Errors over what is refined, by the name of each line, and orders as grey lines.
 pub fn plot<'a>(
     title: &str,
     [x, y]: [&str; 2],
-    lines: impl Iterator<Item = (&'a str, &'a [Level])>,
+    lines: impl Iterator<Item = (&'a str, &'a [Level])> + Clone,
     slopes: &[f64],
 ) -> Plot {
     let series = |(k, (name, levels)): (usize, (&str, &[Level]))| {
         let usable = levels.iter().filter(|level| level.value.is_finite());
         let points = usable.map(|level| (level.spacing, level.value)).collect();
-        Series::line_markers(name, points).cycle(k)
+        Series::line(name, points).cycle(k)
     };
     let plot = Plot::new(title, Axis::log(x), Axis::log(y));
-    let plot = lines.enumerate().map(series).fold(plot, Plot::layer);
-    slopes.iter().fold(plot, |plot, order| plot.layer(Layer::Slope(*order)))
+    let plot = lines.clone().enumerate().map(series).fold(plot, Plot::layer);
+    let levels = || lines.clone().flat_map(|(_, levels)| levels).filter(|l| l.value.is_finite());
+    let size = |level: &&Level| (level.spacing, level.value);
+    let by_spacing =
+        |a: &&Level, b: &&Level| size(a).partial_cmp(&size(b)).unwrap_or(Ordering::Equal);
+    let (Some(coarsest), Some(finest)) = (levels().max_by(by_spacing), levels().min_by(by_spacing))
+    else {
+        return plot;
+    };
+    let start = ABOVE * coarsest.value;
+    slopes.iter().fold(plot, |plot, order| {
+        let end = start * powf(finest.spacing / coarsest.spacing, *order);
+        let ends = vec![(finest.spacing, end), (coarsest.spacing, start)];
+        let line = Series::line("", ends).colour(Colour::GREY).width(1.0);
+        plot.layer(line.labels([format!("order {order}")]))
+    })
 }
+
+/// A line of an order begins above the largest error of the coarsest level by this factor.
+const ABOVE: f64 = 1.5;
 
 /// Numbers with so many digits, one after the other.
 fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {

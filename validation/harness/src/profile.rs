@@ -37,9 +37,6 @@ const PHASES: [(Phase, &str); 8] = [
     (Phase::Rest, REST),
 ];
 
-/// The pair sweeps of a step.
-pub const SWEEPS: [&str; 4] = [FORCES, DRIFT, BOTH, WALLS];
-
 /// Frames for ParaView.
 pub const FRAMES: &str = "frames";
 /// Checkpoints.

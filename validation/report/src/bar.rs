@@ -16,8 +16,6 @@ pub(super) const STEPS: usize = 32;
 pub(super) struct Bar {
     map: ColourMap,
     values: Ruler,
-    /// Whether the ends were given, not taken from the data.
-    pub is_fixed: bool,
     /// Whether the figure draws it for all panels.
     pub is_shared: bool,
 }
@@ -42,7 +40,7 @@ impl Bar {
         let axis = if lo < hi { axis.range(lo, hi) } else { axis };
         let mapping = axis.mapping([lo, hi].into_iter());
         let values = axis.ruler(mapping, (height / 36.0) as usize);
-        Self { map, values, is_fixed: given.is_some(), is_shared: false }
+        Self { map, values, is_shared: false }
     }
 
     /// Which of the colours a value has.

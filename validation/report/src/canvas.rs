@@ -65,13 +65,6 @@ impl Rect {
         }
     }
 
-    /// Distance of a point, 0 inside.
-    pub fn distance(&self, (x, y): Point) -> f64 {
-        let dx = (self.left - x).max(x - self.right()).max(0.0);
-        let dy = (self.top - y).max(y - self.bottom()).max(0.0);
-        dx.hypot(dy)
-    }
-
     /// The part of the segment that lies inside (Liang and Barsky).
     pub fn clip(&self, a: Point, b: Point) -> Option<(Point, Point)> {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);

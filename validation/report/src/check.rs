@@ -108,8 +108,8 @@ fn loads(style: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, GateRow, Page, Plot, Section,
-        Series, Table, VERDICTS,
+        Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, Page, Plot, Section, Series,
+        Table, VERDICTS,
     };
     use base::gate::Verdict;
 
@@ -119,7 +119,7 @@ mod tests {
 
     fn real_page() -> Page {
         let plot = Plot::new("p < q & r", Axis::linear("x [m]"), Axis::log("y [\"1\"]"))
-            .layer(Series::line_markers("<&>", vec![(0.0, 1.0), (1.0, 2.0)]));
+            .layer(Series::line("<&>", vec![(0.0, 1.0), (1.0, 2.0)]).cycle(2));
         let table = Table::new("Errors", vec![Column::text("a"), Column::num("b", "m/s")])
             .row(vec![Cell::text("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
         let details = vec![table.clone().into()];
@@ -136,17 +136,11 @@ mod tests {
             counts: Counts::of([Verdict::Limitation]),
             limitations: vec!["It is < 2.".into()],
         };
-        let gate = GateRow {
-            id: "one.a&b".into(),
-            status: Verdict::Limitation,
-            of: "`seed`".into(),
-            value: Cell::num(0.5, 2),
-            bound: "at most 0.4".into(),
-            margin: Cell::text("–"),
-            evidence: "theory".into(),
-            reasons: vec![1],
-        };
-        let explorer = Explorer { gates: vec![gate], reasons: vec!["because".into()] };
+        let columns = ["verdict", "gate", "bound", "reasons"].map(Column::text);
+        let cells = ["one.a&b", "at most 0.4", "1"].map(Cell::text);
+        let gate = [vec![Cell::status(Verdict::Limitation)], cells.into()].concat();
+        let gates = Table::new("", columns.into()).row(gate);
+        let explorer = Explorer { gates, reasons: vec!["because".into()] };
         let three = Section::new("three", "Three").counts(card.counts);
         let verdicts = Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer));
         Page {

@@ -29,7 +29,7 @@ impl Colour {
     /// A dark brown, beside the Okabe–Ito colours: darker than vermillion to every eye.
     pub const BROWN: Self = Self(112, 66, 20);
 
-    /// The colour of the `i`th series that names none; none is black, which stands for references and for
+    /// The colour of the `i`th of many series; none is black, which stands for references and for
     /// our runs beside others.
     pub fn cycle(i: usize) -> Self {
         const CYCLE: [Colour; 7] = [

@@ -93,13 +93,8 @@ impl Plot {
 pub enum Layer {
     /// A line, markers, or both, with or without error bars.
     Series(Series),
-    /// A triangle that shows a slope d log y / d log x on two logarithmic axes, at a free place near the
-    /// data; left out where there is none.
-    Slope(f64),
     /// The area between two curves.
     Band {
-        /// Name in the legend; may be empty.
-        name: String,
         /// (x, lower, upper).
         points: Vec<(f64, f64, f64)>,
         /// Drawn as a pale tint of this colour.
@@ -116,13 +111,6 @@ pub enum Layer {
         /// Column, row and a short text of each, counted from the lower left corner.
         cells: Vec<(usize, usize, String)>,
     },
-}
-
-impl Layer {
-    /// A shaded area between two curves, points (x, lower, upper).
-    pub fn band(name: impl Into<String>, points: Vec<(f64, f64, f64)>, colour: Colour) -> Self {
-        Self::Band { name: name.into(), points, colour }
-    }
 }
 
 impl From<Series> for Layer {
@@ -166,7 +154,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The shape of the `i`th series that names none.
+    /// The shape of the `i`th of many series.
     pub fn cycle(i: usize) -> Self {
         const CYCLE: [Shape; 5] =
             [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Down];
@@ -174,26 +162,31 @@ impl Shape {
     }
 }
 
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Look {
+    /// Of line and markers.
+    pub colour: Colour,
+    /// The line, if any.
+    pub line: Option<Dash>,
+    /// Width of the line in CSS pixels.
+    pub width: f64,
+    /// The shape of markers, if points are marked.
+    pub marker: Option<Shape>,
+    /// Open markers: reference data.
+    pub open: bool,
+}
+
 /// A line, markers, or both, with or without error bars. Points that are not finite, or not
 /// positive on a logarithmic axis, break the line and are counted above the plot.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     /// Name in the legend; empty leaves it out.
     pub name: String,
     /// (x, y).
     pub points: Vec<(f64, f64)>,
-    /// `None` takes the next of the palette.
-    pub colour: Option<Colour>,
-    /// The line, if any.
-    pub line: Option<Dash>,
-    /// Width of the line in CSS pixels.
-    pub width: f64,
-    /// Whether points are marked.
-    pub marked: bool,
-    /// `None` takes the next shape.
-    pub shape: Option<Shape>,
-    /// Open markers: reference data.
-    pub open: bool,
+    /// How it is drawn.
+    pub look: Look,
     /// (lower, upper) end of the bar in x for each point; empty for none.
     pub x_bars: Vec<(f64, f64)>,
     /// A short text beside each point, left out where there is no room; empty for none.
@@ -201,42 +194,41 @@ pub struct Series {
 }
 
 impl Series {
-    /// A solid line.
+    /// A solid black line.
     pub fn line(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { name: name.into(), points, line: Some(Dash::Solid), width: 1.6, ..Self::default() }
+        let line = Some(Dash::Solid);
+        let look = Look { colour: Colour::BLACK, line, width: 1.6, marker: None, open: false };
+        Self { name: name.into(), points, look, x_bars: Vec::new(), labels: Vec::new() }
     }
 
-    /// Filled markers without a line.
-    pub fn markers(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { line: None, marked: true, ..Self::line(name, points) }
-    }
-
-    /// Filled markers joined by a solid line.
-    pub fn line_markers(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
-        Self { marked: true, ..Self::line(name, points) }
+    /// Open markers in place of the line.
+    pub fn open_markers(self, shape: Shape) -> Self {
+        let look = Look { line: None, marker: Some(shape), open: true, ..self.look };
+        Self { look, ..self }
     }
 
     /// Sets the colour.
     pub fn colour(self, colour: Colour) -> Self {
-        Self { colour: Some(colour), ..self }
+        Self { look: Look { colour, ..self.look }, ..self }
     }
 
-    /// Sets the dash pattern; adds a line where there is none.
+    /// Sets the dash pattern.
     pub fn dash(self, dash: Dash) -> Self {
-        Self { line: Some(dash), ..self }
+        Self { look: Look { line: Some(dash), ..self.look }, ..self }
     }
 
     /// Sets the width of the line.
     pub fn width(self, width: f64) -> Self {
-        Self { width, ..self }
+        Self { look: Look { width, ..self.look }, ..self }
     }
 
     /// Colour, marker and line of the `i`th of many curves that may lie on each other: of any three in a
     /// row, one is solid with full markers, and the next two lie dashed and dotted with open ones on top.
     pub fn cycle(self, i: usize) -> Self {
         let dash = [Dash::Solid, Dash::Dashed, Dash::Dotted][(i + 1) % 3];
-        let series = self.colour(Colour::cycle(i)).dash(dash);
-        Self { open: dash != Dash::Solid, shape: Some(Shape::cycle(i)), marked: true, ..series }
+        let (colour, marker) = (Colour::cycle(i), Some(Shape::cycle(i)));
+        let open = dash != Dash::Solid;
+        Self { look: Look { colour, line: Some(dash), marker, open, ..self.look }, ..self }
     }
 
     /// A short text beside each point.
@@ -248,7 +240,7 @@ impl Series {
 /// Dots coloured by a value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dots {
-    /// (x, y, value). Values that are not finite become black crosses and are counted.
+    /// (x, y, value). Values that are not finite become black crosses.
     pub points: Vec<(f64, f64, f64)>,
     /// Colour map.
     pub map: ColourMap,

@@ -1,41 +1,14 @@
 //! Legends: what stands for what, below what they explain.
 
-use super::canvas::{Align, Canvas, Point, Rect, Type};
-use super::colour::Colour;
-use super::figure::{Dash, Shape};
+use super::canvas::{Align, Canvas, Point, Type};
+use super::figure::Look;
 use super::font;
-
-/// How a series is drawn, after the palette was consulted.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Look {
-    pub colour: Colour,
-    pub line: Option<Dash>,
-    pub width: f64,
-    pub marker: Option<Shape>,
-    pub open: bool,
-}
-
-/// The sample beside a name.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Sample {
-    Series(Look),
-    Patch(Colour),
-}
 
 /// One line of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Entry {
     pub name: String,
-    pub sample: Sample,
-}
-
-impl Entry {
-    pub fn colour(&self) -> Colour {
-        match self.sample {
-            Sample::Series(look) => look.colour,
-            Sample::Patch(colour) => colour,
-        }
-    }
+    pub look: Look,
 }
 
 /// Diameter of a marker in CSS pixels.
@@ -67,26 +40,15 @@ pub(super) fn height(entries: &[Entry], width: f64) -> f64 {
 /// Draws the entries side by side within this width, each column from top to bottom.
 pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], (left, top): Point, width: f64) {
     let rows = rows(entries, width);
-    for (i, entry) in entries.iter().enumerate() {
+    for (i, Entry { name, look }) in entries.iter().enumerate() {
         let x = left + PADDING + (i / rows) as f64 * column(entries);
         let y = top + PADDING + ((i % rows) as f64 + 0.5) * ROW - 2.5;
-        match entry.sample {
-            Sample::Series(look) => sample(canvas, look, (x, y)),
-            Sample::Patch(colour) => {
-                let patch = Rect { left: x + 4.0, top: y - 5.5, width: SAMPLE - 8.0, height: 11.0 };
-                canvas.fill(patch, colour);
-                canvas.frame(patch, Colour(150, 150, 150), 0.6);
-            }
+        if let Some(dash) = look.line {
+            canvas.dashed(&[(x, y), (x + SAMPLE, y)], look.colour, look.width, dash);
         }
-        canvas.text(&entry.name, (x + SAMPLE + 7.0, y), Type::new(EM, Align::Start));
-    }
-}
-
-fn sample(canvas: &mut Canvas, look: Look, (x, y): Point) {
-    if let Some(dash) = look.line {
-        canvas.dashed(&[(x, y), (x + SAMPLE, y)], look.colour, look.width, dash);
-    }
-    if let Some(shape) = look.marker {
-        canvas.markers(&[(x + 0.5 * SAMPLE, y)], shape, MARKER, look.colour, look.open);
+        if let Some(shape) = look.marker {
+            canvas.markers(&[(x + 0.5 * SAMPLE, y)], shape, MARKER, look.colour, look.open);
+        }
+        canvas.text(name, (x + SAMPLE + 7.0, y), Type::new(EM, Align::Start));
     }
 }

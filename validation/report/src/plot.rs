@@ -5,14 +5,12 @@ use super::bar::Bar;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::dots::{Scaled, draw_cell};
-use super::figure::{Layer, Plot, Series, Shape};
+use super::figure::{Layer, Look, Plot, Series, Shape};
 use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
 use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
-use super::legend::{self, Entry, Look, MARKER, Sample};
-use super::number::minus;
+use super::legend::{Entry, MARKER};
 
-const SLOPE_EM: f64 = 10.5;
 const MARK_EM: f64 = 9.0;
 /// How many points of lines, which lie a few pixels apart, the label of a point may hide.
 const MARK_HIDES: usize = 2;
@@ -23,13 +21,9 @@ const BAND: f64 = 0.22;
 pub(super) struct Prepared<'a> {
     plot: &'a Plot,
     frame: Frame<'a>,
-    series: Vec<(&'a Series, Look)>,
-    /// Orders, and the corners of their triangles.
-    slopes: Vec<(f64, [Point; 3])>,
+    series: Vec<&'a Series>,
     marks: Vec<Mark<'a>>,
     dots: Option<Scaled<'a>>,
-    /// What the legend below the axes names; nothing if there is none.
-    pub legend: Vec<Entry>,
 }
 
 /// The label of a point, which starts in the middle of the left side of its room.
@@ -56,7 +50,11 @@ impl<'a> Prepared<'a> {
             area = Rect::of((pixels * width, pixels * height));
             Scaled::new(dots, area.height, pixels)
         });
-        let series = with_looks(&plot.layers);
+        let series = plot.layers.iter().filter_map(|layer| match layer {
+            Layer::Series(series) => Some(series),
+            _ => None,
+        });
+        let series: Vec<&Series> = series.collect();
         let frame = Frame {
             area,
             x: x_ruler(&plot.x, x, area.width),
@@ -64,19 +62,9 @@ impl<'a> Prepared<'a> {
             title: &plot.title,
             note: String::new(),
         };
-        let mut this = Self {
-            plot,
-            frame,
-            legend: if plot.legend { entries(plot, &series) } else { Vec::new() },
-            series,
-            slopes: Vec::new(),
-            marks: Vec::new(),
-            dots,
-        };
+        let mut this = Self { plot, frame, series, marks: Vec::new(), dots };
         this.frame.note = this.dropped();
-        let mut obstacles = this.obstacles();
-        this.place_slopes(&mut obstacles);
-        this.place_marks(&mut obstacles);
+        this.place_marks();
         this
     }
 
@@ -92,16 +80,21 @@ impl<'a> Prepared<'a> {
 
     /// What could not be drawn, in words.
     fn dropped(&self) -> String {
-        let is_lost = |dot: &&(f64, f64, f64)| !(dot.0 + dot.1 + dot.2).is_finite();
+        let is_lost = |dot: &&(f64, f64, f64)| !(dot.0.is_finite() && dot.1.is_finite());
         let dots = self.plot.dots().into_iter().flat_map(|dots| &dots.points);
         let mut infinite = dots.filter(is_lost).count();
         let (mut nonpositive, mut off) = (0, 0);
-        for (series, _) in &self.series {
+        for series in &self.series {
             for &(x, y) in &series.points {
                 match self.frame.place((x, y)) {
                     _ if !(x.is_finite() && y.is_finite()) => infinite += 1,
                     None => nonpositive += 1,
-                    Some(p) if series.marked && !self.frame.area.grown(0.5).contains(p) => off += 1,
+                    Some(p)
+                        if series.look.marker.is_some()
+                            && !self.frame.area.grown(0.5).contains(p) =>
+                    {
+                        off += 1
+                    }
                     Some(_) => {}
                 }
             }
@@ -112,19 +105,14 @@ impl<'a> Prepared<'a> {
         if parts.is_empty() { String::new() } else { format!("not drawn: {}", parts.join(", ")) }
     }
 
-    /// Points that a legend or label should not hide.
+    /// Points of lines and bars, a few pixels apart, which a label should not hide.
     fn obstacles(&self) -> Vec<Point> {
         let mut all = Vec::new();
-        for (series, _) in &self.series {
+        for series in &self.series {
             let mut segments = self.bars(series);
-            for run in runs(&series.points, |p| self.frame.place(p)) {
-                all.extend_from_slice(&run);
-                let r = if series.marked { 0.5 * MARKER } else { 0.0 };
-                let around = [(r, 0.0), (-r, 0.0), (0.0, r), (0.0, -r)];
-                all.extend(run.iter().flat_map(|p| around.map(|d| (p.0 + d.0, p.1 + d.1))));
-                if series.line.is_some() {
-                    segments.extend(run.windows(2).map(|pair| (pair[0], pair[1])));
-                }
+            if series.look.line.is_some() {
+                let runs = runs(&series.points, |p| self.frame.place(p));
+                segments.extend(runs.iter().flat_map(|run| run.windows(2)).map(|p| (p[0], p[1])));
             }
             for (a, b) in segments.into_iter().filter_map(|(a, b)| self.frame.area.clip(a, b)) {
                 sample_segment(&mut all, a, b);
@@ -133,55 +121,17 @@ impl<'a> Prepared<'a> {
         all
     }
 
-    /// Decides where the slope triangles lie, and makes them obstacles.
-    fn place_slopes(&mut self, obstacles: &mut Vec<Point>) {
-        for layer in &self.plot.layers {
-            let Layer::Slope(order) = layer else { continue };
-            let corners = [1.0, 0.7, 0.5, 0.35, 0.25, 0.18]
-                .iter()
-                .find_map(|&part| self.free_triangle(*order, 2_f64.powf(part), obstacles));
-            if let Some(corners) = corners {
-                sample_rect(obstacles, around(&corners, *order));
-                self.slopes.push((*order, corners));
-            }
-        }
-    }
-
-    /// The free place closest to the data.
-    fn free_triangle(&self, order: f64, factor: f64, data: &[Point]) -> Option<[Point; 3]> {
-        let Frame { x, y, area, .. } = &self.frame;
-        let (x, y) = (x.mapping.lo, y.mapping.lo);
-        let a = self.frame.place((x, y)).filter(|_| order.is_finite())?;
-        let b = self.frame.place((x * factor, y))?;
-        let c = self.frame.place((x * factor, y * factor.powf(order)))?;
-        let steps = |length: f64| (0..(length / 6.0) as i32).map(|i| 6.0 * f64::from(i));
-        let moved = |dx: f64, dy: f64| {
-            [a, b, c].map(|p| (p.0 - a.0 + area.left + dx, p.1 - a.1 + area.top + dy))
-        };
-        let mut best = None;
-        for (dx, dy) in steps(area.width).flat_map(|x| steps(area.height).map(move |y| (x, y))) {
-            let corners = moved(dx, dy);
-            let rect = around(&corners, order);
-            if !area.encloses(&rect) {
-                continue;
-            }
-            let gap = data.iter().map(|&p| rect.distance(p)).fold(f64::INFINITY, f64::min);
-            if gap > 5.0 && best.is_none_or(|(least, _)| gap < least) {
-                best = Some((gap, corners));
-            }
-        }
-        best.map(|(_, corners)| corners)
-    }
-
     /// Finds room for the labels of points, the ends of a series first, and makes them obstacles too.
-    fn place_marks(&mut self, obstacles: &mut Vec<Point>) {
-        let markers: Vec<Point> = (self.series.iter().filter(|(series, _)| series.marked))
-            .flat_map(|(series, _)| series.points.iter().filter_map(|p| self.frame.place(*p)))
-            .collect();
-        let points = self.series.iter().flat_map(|(series, look)| {
+    fn place_marks(&mut self) {
+        let mut obstacles = self.obstacles();
+        let markers: Vec<Point> =
+            (self.series.iter().filter(|series| series.look.marker.is_some()))
+                .flat_map(|series| series.points.iter().filter_map(|p| self.frame.place(*p)))
+                .collect();
+        let points = self.series.iter().flat_map(|series| {
             let last = series.labels.len().saturating_sub(1);
             let all = series.points.iter().zip(&series.labels).enumerate();
-            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, look.colour))
+            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, series.look.colour))
         });
         let mut points: Vec<_> = points.collect();
         points.sort_by_key(|(is_between, ..)| *is_between);
@@ -201,7 +151,7 @@ impl<'a> Prepared<'a> {
             let rooms = mark_rooms(at, font::width(text, MARK_EM)).into_iter();
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
             if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
-                sample_rect(obstacles, room);
+                sample_rect(&mut obstacles, room);
                 self.marks.push(Mark { point: at, text, room, colour });
             }
         }
@@ -233,7 +183,8 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    fn draw_series(&self, canvas: &mut Canvas, series: &Series, look: Look) {
+    fn draw_series(&self, canvas: &mut Canvas, series: &Series) {
+        let look = series.look;
         for (a, b) in self.bars(series) {
             if let Some((p, q)) = self.frame.area.clip(a, b) {
                 canvas.line(p, q, look.colour, 1.0);
@@ -257,17 +208,31 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// The room that it takes with its colour bar and its legend.
+    /// What the legend names, if there is one: series, and cells as squares. A series without a point would
+    /// have a symbol there and none in the plot.
+    pub fn legend(&self) -> Vec<Entry> {
+        let entry = |layer: &Layer| match layer {
+            Layer::Series(series) if series.points.is_empty() => None,
+            Layer::Series(Series { name, look, .. }) => {
+                Some(Entry { name: name.clone(), look: *look })
+            }
+            Layer::Cells { name, colour, .. } => {
+                let (colour, marker) = (*colour, Some(Shape::Square));
+                let look = Look { colour, line: None, width: 0.0, marker, open: false };
+                Some(Entry { name: name.clone(), look })
+            }
+            _ => None,
+        };
+        let layers = self.plot.layers.iter().filter(|_| self.plot.legend);
+        layers.filter_map(entry).filter(|entry| !entry.name.is_empty()).collect()
+    }
+
+    /// The room that it takes with its colour bar.
     pub fn room(&self) -> Room {
         let last = self.frame.x.major.last();
         let overhang = last.map_or(0.0, |(_, label)| font::width(label, TICK_EM) / 2.0);
         let bar = self.own_bar().map_or(0.0, Bar::width);
-        let mut room = self.frame.room((overhang + 2.0).max(10.0).max(bar));
-        if !self.legend.is_empty() {
-            room.right = room.right.max(legend::column(&self.legend) - room.width);
-            room.bottom += legend::height(&self.legend, room.width);
-        }
-        room
+        self.frame.room((overhang + 2.0).max(10.0).max(bar))
     }
 
     /// Draws the plot; the upper left corner of its axes is the canvas's.
@@ -275,7 +240,7 @@ impl<'a> Prepared<'a> {
         let area = self.frame.area;
         // Bands lie below the grid.
         for layer in &self.plot.layers {
-            if let Layer::Band { points, colour, .. } = layer {
+            if let Layer::Band { points, colour } = layer {
                 self.draw_band(canvas, points, *colour);
             }
         }
@@ -288,11 +253,8 @@ impl<'a> Prepared<'a> {
         if let Some(dots) = &self.dots {
             dots.draw(canvas, &self.frame);
         }
-        for (series, look) in &self.series {
-            self.draw_series(canvas, series, *look);
-        }
-        for (order, corners) in &self.slopes {
-            draw_slope(canvas, area, *order, *corners);
+        for series in &self.series {
+            self.draw_series(canvas, series);
         }
         for mark in &self.marks {
             let at = mark.room.at((0.0, 0.5));
@@ -302,8 +264,6 @@ impl<'a> Prepared<'a> {
         if let Some(bar) = self.own_bar() {
             bar.draw(canvas, area);
         }
-        let below = area.bottom() + self.frame.room(0.0).bottom;
-        legend::draw(canvas, &self.legend, (area.left, below), area.width);
     }
 }
 
@@ -328,7 +288,7 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
                 xs.extend(dots.points.iter().map(|p| p.0));
                 ys.extend(dots.points.iter().map(|p| p.1));
             }
-            Layer::Slope(_) | Layer::Cells { .. } => {}
+            Layer::Cells { .. } => {}
         }
     }
     (xs, ys)
@@ -345,66 +305,6 @@ fn x_ruler(axis: &Axis, mapping: Mapping, width: f64) -> Ruler {
     let most = ((width / 52.0) as usize).max(3);
     let found = (2..=most).rev().map(|count| axis.ruler(mapping, count)).find(|r| !overlap(r));
     found.unwrap_or_else(|| axis.ruler(mapping, 2))
-}
-
-/// The series with their colours and shapes, the next of the palette where they name none.
-fn with_looks(layers: &[Layer]) -> Vec<(&Series, Look)> {
-    let series = layers.iter().filter_map(|layer| match layer {
-        Layer::Series(series) => Some(series),
-        _ => None,
-    });
-    let (mut colours, mut shapes) = ((0..).map(Colour::cycle), (0..).map(Shape::cycle));
-    let look = |s: &Series| {
-        let colour = s.colour.or_else(|| colours.next()).unwrap_or(Colour::BLACK);
-        let mut shape = || s.shape.or_else(|| shapes.next());
-        let marker = if s.marked { shape() } else { None };
-        Look { colour, line: s.line, width: s.width, marker, open: s.open }
-    };
-    let looks: Vec<Look> = series.clone().map(look).collect();
-    series.zip(looks).collect()
-}
-
-/// What the legend names: series, then areas. A series without a point would have a symbol there and none
-/// in the plot.
-fn entries(plot: &Plot, series: &[(&Series, Look)]) -> Vec<Entry> {
-    let drawn = series.iter().filter(|(series, _)| !series.points.is_empty());
-    let lines = drawn.map(|(series, look)| (&series.name, Sample::Series(*look)));
-    let areas = plot.layers.iter().filter_map(|layer| match layer {
-        Layer::Band { name, colour, .. } => Some((name, Sample::Patch(colour.tint(BAND)))),
-        Layer::Cells { name, colour, .. } => Some((name, Sample::Patch(*colour))),
-        _ => None,
-    });
-    let named = lines.chain(areas).filter(|(name, _)| !name.is_empty());
-    named.map(|(name, sample)| Entry { name: name.clone(), sample }).collect()
-}
-
-/// The number of a slope triangle.
-fn slope_number(order: f64) -> String {
-    minus(format!("{}", (order * 100.0).round() / 100.0))
-}
-
-/// The room that a slope triangle takes with its numbers: its own stands beside the rise, outside.
-fn around(corners: &[Point; 3], order: f64) -> Rect {
-    let least = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::INFINITY, f64::min);
-    let most = |of: fn(&Point) -> f64| corners.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    let (left, top) = (least(|p| p.0), least(|p| p.1));
-    let (width, height) = (most(|p| p.0) - left, most(|p| p.1) - top);
-    let number = 5.0 + font::width(&slope_number(order), SLOPE_EM) + 3.0;
-    Rect { left: left - 14.0, top: top - 14.0, width: width + 14.0 + number, height: height + 28.0 }
-}
-
-/// A triangle with its rise beside and a 1 along its run.
-fn draw_slope(canvas: &mut Canvas, area: Rect, order: f64, corners: [Point; 3]) {
-    let [a, b, c] = corners;
-    for (p, q) in [(a, b), (b, c), (c, a)] {
-        if let Some((p, q)) = area.clip(p, q) {
-            canvas.line(p, q, Colour::GREY, 1.0);
-        }
-    }
-    let how = |align| Type::new(SLOPE_EM, align).colour(Colour::GREY);
-    canvas.text(&slope_number(order), (b.0 + 5.0, 0.5 * (b.1 + c.1)), how(Align::Start));
-    let below = if c.1 < b.1 { 8.5 } else { -8.5 };
-    canvas.text("1", (0.5 * (a.0 + b.0), b.1 + below), how(Align::Middle));
 }
 
 /// Places for the label of a point: right, left, above, below, and between.

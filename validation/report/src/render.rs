@@ -22,33 +22,28 @@ const EDGE: f64 = 5.0;
 /// Panels with their places, and the size of the whole.
 struct Layout<'a> {
     panels: Vec<(Prepared<'a>, Rect)>,
-    /// The legend below all panels; empty if each has its own.
+    /// The legend below all panels.
     legend: Vec<Entry>,
     /// The colour bar of all panels, if they have one for all, and what it stands beside.
     bar: Option<(Bar, Rect)>,
     size: (f64, f64),
 }
 
-/// The one legend of all panels, in which a name has one colour and a look one name. Empty if theirs do not
-/// agree.
-fn shared_legend(panels: &[Prepared]) -> Vec<Entry> {
+/// What the panels name, each once.
+fn legend(panels: &[Prepared]) -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
-    for entry in panels.iter().flat_map(|panel| &panel.legend) {
-        match all.iter().find(|other| other.name == entry.name) {
-            Some(other) if other.colour() != entry.colour() => return Vec::new(),
-            Some(_) => {}
-            None if all.iter().any(|other| other.sample == entry.sample) => return Vec::new(),
-            None => all.push(entry.clone()),
+    for entry in panels.iter().flat_map(Prepared::legend) {
+        if !all.contains(&entry) {
+            all.push(entry);
         }
     }
     all
 }
 
-/// The colour bar of several panels that all have the same one with given ends, which they then leave to the
-/// figure.
+/// The colour bar of several panels that all have the same one, which they then leave to the figure.
 fn shared_bar(panels: &mut [Prepared]) -> Option<Bar> {
     let bars: Option<Vec<&mut Bar>> = panels.iter_mut().map(|panel| panel.bar()).collect();
-    let is_one = |bars: &Vec<&mut Bar>| bars.iter().all(|bar| bar.is_fixed && *bar == bars[0]);
+    let is_one = |bars: &Vec<&mut Bar>| bars.iter().all(|bar| *bar == bars[0]);
     let bars = bars.filter(|bars| bars.len() > 1 && is_one(bars))?;
     let bar = bars[0].clone();
     bars.into_iter().for_each(|bar| bar.is_shared = true);
@@ -60,10 +55,7 @@ fn layout(figure: &Figure) -> Layout<'_> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
     let mut panels: Vec<_> = figure.panels.iter().map(|plot| Prepared::new(plot, room)).collect();
-    let legend = shared_legend(&panels);
-    if !legend.is_empty() {
-        panels.iter_mut().for_each(|panel| panel.legend.clear());
-    }
+    let legend = legend(&panels);
     let bar = shared_bar(&mut panels);
     let rooms: Vec<Room> = panels.iter().map(|panel| panel.room()).collect();
     // Left margin, inner width and right margin of each column; the same downwards for each row.
@@ -207,13 +199,11 @@ mod tests {
         let pairs: Vec<_> =
             values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b))).collect();
         let triples: Vec<_> = pairs.iter().map(|p| (p.0, p.1, p.0)).collect();
-        let any = values.first().copied().unwrap_or(f64::NAN);
-        let b = Series::markers("b", pairs.clone());
+        let b = Series::line("b", pairs.clone()).open_markers(Shape::Cross);
         Plot::new("Title", x, y)
-            .layer(Series::line_markers("a", pairs.clone()))
-            .layer(Series { shape: Some(Shape::Cross), x_bars: pairs, ..b })
-            .layer(Layer::band("c", triples, Colour::SKY))
-            .layer(Layer::Slope(any))
+            .layer(Series::line("a", pairs.clone()).cycle(0))
+            .layer(Series { x_bars: pairs, ..b })
+            .layer(Layer::Band { points: triples, colour: Colour::SKY })
     }
 
     #[test]
@@ -254,6 +244,19 @@ mod tests {
         svg(&Figure::new("none", "").columns(0));
     }
 
+    /// A dot whose value is not finite was drawn as a cross and counted as not drawn, too.
+    #[test]
+    fn a_dot_without_a_place_is_counted_and_one_without_a_value_is_a_cross() {
+        let with = |dot| {
+            let points = vec![(0.0, 0.0, 1.0), (1.0, 1.0, 2.0), dot];
+            let dots = Dots::new("p [Pa]", ColourMap::Sequential, 0.1, points);
+            let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
+            svg(&figure(plot))
+        };
+        assert!(!with((0.5, 0.5, f64::NAN)).contains("not drawn"));
+        assert!(with((f64::NAN, 0.5, 1.0)).contains("not drawn: 1 not finite"));
+    }
+
     #[test]
     fn two_thousand_dots_stay_small() {
         let points = (0..2000).map(|i| (f64::from(i % 50), f64::from(i / 50), f64::from(i)));
@@ -262,8 +265,7 @@ mod tests {
         assert!(svg(&figure(plot)).len() < 30_000);
     }
 
-    /// Panels with one legend in all of them have it once, and panels that contradict each other each its
-    /// own.
+    /// Panels that show the same have one legend, in which a name with two looks stands twice.
     #[test]
     fn a_legend_stands_below_what_it_explains() {
         let plot = |name: &str, colour| {

@@ -141,7 +141,7 @@ impl Column {
         Self { head: head.into(), unit: unit.into(), numeric: true }
     }
 
-    pub(super) fn markup(&self) -> Markup {
+    fn markup(&self) -> Markup {
         html! {
             th class=[self.numeric.then_some("number")] scope="col" {
                 (inline(&self.head))
@@ -182,8 +182,7 @@ impl Table {
             div.scroll tabindex="0" role="region" aria-label=(name) {
                 table {
                     @if cells <= SHORT { caption { b { (name) ". " } (inline(&self.caption)) } }
-                    thead { tr { @for column in &self.columns { (column.markup()) } } }
-                    tbody { @for row in &self.rows { (self.row_markup(row)) } }
+                    (self.body(None))
                 }
             }
         };
@@ -199,10 +198,19 @@ impl Table {
         }
     }
 
-    fn row_markup(&self, row: &[Cell]) -> Markup {
+    /// Heads and rows; the text in the column of this number is the anchor of its row.
+    pub(super) fn body(&self, anchor: Option<usize>) -> Markup {
+        html! {
+            thead { tr { @for column in &self.columns { (column.markup()) } } }
+            tbody { @for row in &self.rows { (self.row_markup(row, anchor)) } }
+        }
+    }
+
+    fn row_markup(&self, row: &[Cell], anchor: Option<usize>) -> Markup {
+        let id = anchor.and_then(|k| row.get(k)).map(|cell| &cell.text);
         let worst = row.iter().filter_map(|c| c.status).max();
         html! {
-            tr data-status=[worst.map(class)] {
+            tr id=[id] data-status=[worst.map(class)] {
                 @for (i, column) in self.columns.iter().enumerate() {
                     @match row.get(i) {
                         Some(cell) => (cell.html(column.numeric)),

@@ -5,8 +5,8 @@
 
 use base::gate::Verdict;
 use report::{
-    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Film, GateRow,
-    Layer, Page, Plot, Section, Series, Table, VERDICTS, check_page,
+    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Film, Page, Plot,
+    Section, Series, Table, VERDICTS, check_page,
 };
 use std::io;
 use std::path::PathBuf;
@@ -30,9 +30,8 @@ fn a_page_of_made_up_data_is_whole() {
 fn figure() -> Figure {
     let error = |c: f64| [0.1, 0.05, 0.025].map(|h: f64| (h, c * h.powf(1.5))).to_vec();
     let plot = Plot::new("Error", Axis::log("Δx [1]"), Axis::log("relative error [1]"))
-        .layer(Series::line_markers("cubic spline", error(0.3)))
-        .layer(Series::line_markers("quintic spline", error(0.5)).labels(["10".into()]))
-        .layer(Layer::Slope(1.5));
+        .layer(Series::line("cubic spline", error(0.3)).cycle(0))
+        .layer(Series::line("quintic spline", error(0.5)).cycle(1).labels(["10".into()]));
     let at = |k: i32| 0.05 * f64::from(k);
     let points = (0..400).map(|k| (at(k % 20), at(k / 20), at(k % 7))).collect();
     let dots = Dots::new("|u| [m/s]", ColourMap::Sequential, 0.05, points);
@@ -57,21 +56,30 @@ fn table() -> Table {
 
 /// Forty verdicts, each fifth outside of its bound.
 fn explorer() -> Explorer {
+    let heads =
+        ["verdict", "gate", "run or study", "value", "bound", "margin", "evidence", "reasons"];
+    let numbers = ["value", "margin"];
+    let column = |head| match numbers.contains(&head) {
+        true => Column::num(head, ""),
+        false => Column::text(head),
+    };
     let gate = |k: usize| {
         let case = ["curves", "maps"][k % 2];
-        GateRow {
-            id: format!("{case}.gate{k}"),
-            status: if k.is_multiple_of(5) { Verdict::Limitation } else { Verdict::Pass },
-            of: format!("`seed` n={k}"),
-            value: Cell::num(k as f64, 2),
-            bound: "at most 30".into(),
-            margin: Cell::percent(1.0 - k as f64 / 40.0, 2),
-            evidence: if k.is_multiple_of(3) { "theory" } else { "analytic" }.into(),
-            reasons: vec![1 + k % 2],
-        }
+        let status = if k.is_multiple_of(5) { Verdict::Limitation } else { Verdict::Pass };
+        vec![
+            Cell::status(status),
+            Cell::text(format!("{case}.gate{k}")),
+            Cell::text(format!("`seed` n={k}")),
+            Cell::num(k as f64, 2),
+            Cell::text("at most 30"),
+            Cell::percent(1.0 - k as f64 / 40.0, 2),
+            Cell::text(if k.is_multiple_of(3) { "theory" } else { "analytic" }),
+            Cell::text((1 + k % 2).to_string()),
+        ]
     };
+    let gates = (0..40).map(gate).fold(Table::new("", heads.map(column).into()), Table::row);
     let reasons = ["An even number.", "An odd number of *some* size."].map(String::from);
-    Explorer { gates: (0..40).map(gate).collect(), reasons: reasons.into() }
+    Explorer { gates, reasons: reasons.into() }
 }
 
 fn film() -> io::Result<Film> {

@@ -40,7 +40,7 @@ pub enum Command {
     /// Do what `verify` does and write the report; with --store, write it without making any run
     Report(Report),
     /// Write a problem into a folder for another code: particles, walls, material, times
-    Export(WriteProblem),
+    Export(Export),
     /// Write a problem whose settings are drawn from a seed and from the description of a method
     Challenge(Challenge),
     /// Measure and judge particles that another code wrote, and keep their record in a store
@@ -94,11 +94,7 @@ fn one_of<T: Copy + Send + Sync>(all: &'static [Named<T>]) -> impl TypedValuePar
 /// How much is measured of a run.
 const METRICS: [Named<Measure>; 2] = [
     ("headline", Measure::Headline, "What costs little beside the time steps"),
-    (
-        "all",
-        Measure::All,
-        "Also what takes pair sweeps of its own, such as the energy that each term of the equations adds",
-    ),
+    ("all", Measure::All, "Also what takes pair sweeps of its own, as the energy of each term"),
 ];
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
@@ -108,7 +104,14 @@ const OF_ONE_RUN: &str = "case variant set rows out overwrite vtk json all profi
 const OF_A_CHECKPOINT: &str =
     "case variant set rows metrics out overwrite vtk allow_unstable allow_long";
 
+/// The three forms of `run`.
+const USAGE: &str = "\
+touchstone run [OPTIONS] CASE
+       touchstone run --resume DIR, whose checkpoint holds case, variant and settings
+       touchstone run --specs FILE --store DIR";
+
 #[derive(Debug, Args)]
+#[command(override_usage = USAGE)]
 pub struct Run {
     /// Name of the case, as `touchstone list` shows it
     #[arg(required_unless_present_any = ["specs", "resume"])]
@@ -130,7 +133,7 @@ pub struct Run {
     /// --out and --vtk no file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Write into the folder even if it holds the record of another case; files of both are then mixed
+    /// Write into the folder even if it holds the record of another case, whose files then go
     #[arg(long)]
     pub overwrite: bool,
     /// Also write N frames for ParaView (folder without --out: reports/run-CASE-VARIANT)
@@ -197,7 +200,7 @@ const TIERS: [Named<Tier>; 3] = [
     (
         "deep",
         Tier::Deep,
-        "About fifteen hours on one core, for clusters: finer ladders, more starts, all that gates detect",
+        "About fifteen hours on one core, for clusters: finer ladders, more starts",
     ),
 ];
 
@@ -229,22 +232,29 @@ const FORMATS: [Named<Format>; 4] = [
     ("pysph", Format::Pysph, "Also a Python script that runs PySPH"),
 ];
 
+/// Which problem is written, and where.
 #[derive(Debug, Args)]
-pub struct WriteProblem {
+pub struct Written {
     /// Name of the case
     pub case: String,
     /// Name of the variant whose particles and walls are written; by default that of `touchstone run`
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
-    /// Change a setting (repeatable)
-    #[arg(long, value_name = "KEY=VALUE")]
-    pub set: Vec<String>,
     /// What is written beside problem.json, README.md and particles.csv
     #[arg(long, value_parser = one_of(&FORMATS), default_value = "csv")]
     pub format: Format,
     /// The folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct Export {
+    #[command(flatten)]
+    pub of: Written,
+    /// Change a setting (repeatable)
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     /// Also make the run and write its results as a submission of this program
     #[arg(long)]
     pub solve: bool,
@@ -278,23 +288,14 @@ pub struct Relate {
 
 #[derive(Debug, Args)]
 pub struct Challenge {
-    /// Name of the case
-    pub case: String,
-    /// Name of the variant whose particles and walls are written; by default that of `touchstone run`
-    #[arg(long, value_name = "NAME")]
-    pub variant: Option<String>,
+    #[command(flatten)]
+    pub of: Written,
     /// The number from which settings are drawn, chosen by somebody else than who wrote the method
     #[arg(long, value_name = "N")]
     pub seed: u64,
     /// The method.json that the submission will have; if it is changed afterwards, the submission is refused
     #[arg(long, value_name = "FILE")]
     pub method: PathBuf,
-    /// What is written beside problem.json, README.md, particles.csv and method.json
-    #[arg(long, value_parser = one_of(&FORMATS), default_value = "csv")]
-    pub format: Format,
-    /// The folder
-    #[arg(long, value_name = "DIR")]
-    pub out: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -334,15 +335,18 @@ fn pair(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// Which records may be reused.
+/// How the runs of a plan are made.
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub struct Reuse {
+pub struct Making {
     /// Also reuse records made by a build of other sources; the report then says so
     #[arg(long)]
     pub any_build: bool,
     /// Reuse no record: make every run again
     #[arg(long, conflicts_with = "any_build")]
     pub fresh: bool,
+    /// Number of runs made in parallel, 1 to 1024; the default is one per core
+    #[arg(long, value_name = "N", value_parser = threads())]
+    pub threads: Option<u16>,
 }
 
 /// What is judged, and how the verdicts are told.
@@ -372,10 +376,7 @@ pub struct Verify {
     #[arg(long, value_name = "DIR", default_value = "reports/records")]
     pub store: PathBuf,
     #[command(flatten)]
-    pub reuse: Reuse,
-    /// Number of runs made in parallel, 1 to 1024; the default is one per core
-    #[arg(long, value_name = "N", value_parser = threads())]
-    pub threads: Option<u16>,
+    pub making: Making,
 }
 
 #[derive(Debug, Args)]
@@ -407,13 +408,10 @@ pub struct Report {
     #[arg(long, requires = "store")]
     pub partial: bool,
     #[command(flatten)]
-    pub reuse: Reuse,
+    pub making: Making,
     /// Write the verdicts as JUnit XML, one test case per gate
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,
-    /// Number of runs made in parallel, 1 to 1024; the default is one per core
-    #[arg(long, value_name = "N", value_parser = threads())]
-    pub threads: Option<u16>,
 }
 
 #[derive(Debug, Args)]
@@ -461,21 +459,9 @@ pub struct Explain {
 /// A verdict by name.
 const VERDICTS: [Named<Verdict>; 4] = [
     ("pass", Verdict::Pass, "Inside its bound"),
-    (
-        "fail",
-        Verdict::Fail,
-        "Outside its bounds, not finite, missing, or of a run that ended early",
-    ),
-    (
-        "limitation",
-        Verdict::Limitation,
-        "Outside its bound and inside that of its known limitation",
-    ),
-    (
-        "expected-failure",
-        Verdict::ExpectedFailure,
-        "A control that lies outside its bound, as it must",
-    ),
+    ("fail", Verdict::Fail, "Outside its bounds, no number, or of a run that ended early"),
+    ("limitation", Verdict::Limitation, "Outside its bound for a known reason"),
+    ("expected-failure", Verdict::ExpectedFailure, "A control outside its bound, as it must be"),
 ];
 
 #[derive(Debug, Args)]

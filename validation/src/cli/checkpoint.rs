@@ -1,5 +1,6 @@
 //! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of all
-//! that follows; the second line is what was asked for, as JSON; then come the simulations, as bytes.
+//! that follows; the second line is what was asked for, and the lengths of the simulations in bytes, as JSON;
+//! then come these, as bytes.
 
 use std::path::Path;
 
@@ -17,7 +18,7 @@ pub const CHECKPOINT: &str = "checkpoint";
 /// Begins the first line; the version of the format follows.
 const MAGIC: &str = "touchstone checkpoint";
 /// Version of the format.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// What was asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,22 +36,14 @@ pub struct Asked {
     pub allow_long: bool,
 }
 
-/// The second line.
-#[derive(Serialize, Deserialize)]
-struct Head {
-    asked: Asked,
-    /// Lengths of the simulations [bytes].
-    lengths: Vec<usize>,
-}
-
 /// Writes a checkpoint of these simulations, in place of an earlier one.
 pub fn write(folder: &OutputFolder, asked: &Asked, of: &[Vec<u8>]) -> Result<(), FileError> {
     folder.write(CHECKPOINT, &bytes(asked, of)).map(|_| ())
 }
 
 fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
-    let head = Head { asked: asked.clone(), lengths: simulations.iter().map(Vec::len).collect() };
-    let head = serde_json::to_value(head).unwrap_or_default();
+    let lengths: Vec<usize> = simulations.iter().map(Vec::len).collect();
+    let head = serde_json::to_value((asked, lengths)).unwrap_or_default();
     let rest = [format!("{head}\n").into_bytes(), simulations.concat()].concat();
     [format!("{MAGIC} {FORMAT} {}\n", sha256(&rest)).into_bytes(), rest].concat()
 }
@@ -93,7 +86,8 @@ fn parse(
         return Err(damaged());
     }
     let (head, mut rest) = split_line(rest);
-    let Head { asked, lengths } = serde_json::from_slice(head).map_err(|reason| {
+    let head: Result<(Asked, Vec<usize>), _> = serde_json::from_slice(head);
+    let (asked, lengths) = head.map_err(|reason| {
         format!("what was asked for cannot be read from the checkpoint {path:?}: {reason}")
     })?;
     let ours = sources(&asked.spec.case);
@@ -154,8 +148,8 @@ mod tests {
         let file = bytes(&asked(), &[]);
         let refused = parse(&file, "f".as_ref(), |_| "xyz".into()).unwrap_err();
         assert!(refused.contains("another build, of the sources abc; this one is of xyz"));
-        let refused = parsed(b"touchstone checkpoint 2 abc\n").unwrap_err();
-        assert!(refused.contains("not a checkpoint of format 1"), "{refused}");
+        let refused = parsed(b"touchstone checkpoint 1 abc\n").unwrap_err();
+        assert!(refused.contains("not a checkpoint of format 2"), "{refused}");
         let refused = parsed(&file[..file.len() - 1]).unwrap_err();
         assert!(refused.contains("damaged or truncated"), "{refused}");
     }

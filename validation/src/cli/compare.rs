@@ -1,6 +1,6 @@
 //! `compare`: what changed between two reports or two stores.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use base::{
@@ -15,7 +15,8 @@ use harness::{
     runs::Judged,
     store::Store,
 };
-use serde_json::{Value, json};
+use serde::Serialize;
+use serde_json::json;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
@@ -58,56 +59,37 @@ impl Side {
 }
 
 /// What changed, the worst first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
 enum Kind {
-    NewFailure,
-    EndedEarly,
-    RunGone,
-    GateGone,
-    MetricsGone,
+    /// A gate that did not fail.
+    Failing,
+    /// A run that was completed.
+    Stopped,
+    /// A gate, a run or metrics of one.
+    Gone,
     Verdict,
     Status,
-    RunNew,
-    GateNew,
-    MetricsNew,
+    New,
     Value,
-    Metrics,
     State,
     Work,
     Seconds,
 }
 
 impl Kind {
-    fn name(self) -> &'static str {
-        match self {
-            Self::NewFailure => "new failure",
-            Self::EndedEarly => "run ended early",
-            Self::RunGone => "run gone",
-            Self::GateGone => "gate gone",
-            Self::MetricsGone => "metrics gone",
-            Self::Verdict => "verdict",
-            Self::Status => "status",
-            Self::RunNew => "run new",
-            Self::GateNew => "gate new",
-            Self::MetricsNew => "metrics new",
-            Self::Value => "value",
-            Self::Metrics => "metrics",
-            Self::State => "state",
-            Self::Work => "work",
-            Self::Seconds => "seconds",
-        }
-    }
-
     /// Does something fail that did not, or is something not known any more that was?
     fn is_loss(self) -> bool {
-        self <= Self::MetricsGone
+        self <= Self::Gone
     }
 }
 
 /// A change of one gate or run, in words and as data.
+#[derive(Serialize)]
 struct Change {
     kind: Kind,
     name: String,
+    #[serde(rename = "change")]
     words: String,
 }
 
@@ -125,7 +107,7 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
     let (before, after) = (Side::read(&arguments.before)?, Side::read(&arguments.after)?);
     let mut changes = Vec::new();
     match (&before.verdicts, &after.verdicts) {
-        (Some(old), Some(new)) => changes.extend(of_verdicts(old, new)),
+        (Some(old), Some(new)) => changes.extend(paired(old, new, |_, was, is| of_gate(was, is))),
         (None, None) => {}
         _ => {
             let words = "one has verdicts, the other only records; touchstone judge makes verdicts";
@@ -133,18 +115,17 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
         }
     }
     match (&before.records, &after.records) {
-        (Some(old), Some(new)) => changes.extend(of_records(old, new, &bounds(world, new))),
+        (Some(old), Some(new)) => {
+            let bounds = bounds(world, new);
+            changes.extend(paired(old, new, |name, was, is| of_run(name, was, is, &bounds)));
+        }
         (None, None) => {}
         _ => output::say("note: no runs are compared: only one of the reports holds its records"),
     }
     changes.sort_by_key(|change| change.kind);
     let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
-    let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::NewFailure));
-    let json = || {
-        let change = |c: &Change| json!({"kind": c.kind.name(), "name": c.name, "change": c.words});
-        let all: Value = changes.iter().map(change).collect();
-        json!({"new_failures": failures, "losses": losses, "changes": all})
-    };
+    let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::Failing));
+    let json = || json!({"new_failures": failures, "losses": losses, "changes": changes});
     output::answer(arguments.json, json, || in_words(&changes, &before, &after))?;
     Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
 }
@@ -173,44 +154,50 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
         text += &format!("{before} before, {} after, {shared} in both\n", new.len());
     }
     for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {
-        text += &format!("\n{}: {}\n", of_kind[0].kind.name(), of_kind.len());
+        let kind = format!("{:?}", of_kind[0].kind).to_lowercase();
+        text += &format!("\n{kind}: {}\n", of_kind.len());
         of_kind.iter().for_each(|change| text += &format!("  {}: {}\n", change.name, change.words));
     }
     if changes.is_empty() { text + "nothing changed\n" } else { text }
 }
 
-fn of_verdicts(old: &BTreeMap<String, Judged>, new: &BTreeMap<String, Judged>) -> Vec<Change> {
+/// The changes of what has a name in one of the two, or in both.
+fn paired<T>(
+    old: &BTreeMap<String, T>,
+    new: &BTreeMap<String, T>,
+    of: impl Fn(&str, Option<&T>, Option<&T>) -> Vec<(Kind, String)>,
+) -> Vec<Change> {
     let mut changes = Vec::new();
-    let mut add = |kind, name: &str, words: String| {
-        changes.push(Change { kind, name: name.to_string(), words });
-    };
-    let number =
-        |value: Option<f64>| value.map_or("not measured".to_string(), |v| format!("{v:?}"));
-    for (id, was) in old {
-        let Some(is) = new.get(id) else {
-            add(Kind::GateGone, id, was.words());
-            continue;
-        };
-        let [from, to] = [&was.judgement, &is.judgement];
-        let values = format!("{} to {}", number(from.value), number(to.value));
-        if to.verdict == Verdict::Fail && from.verdict != Verdict::Fail {
-            add(
-                Kind::NewFailure,
-                id,
-                format!("{}; {values}; bound {}", was.words(), is.gate.bounds()),
-            );
-        } else if from.verdict != to.verdict {
-            add(Kind::Verdict, id, format!("{} to {}; {values}", was.words(), is.words()));
-        } else if has_moved(is.gate.bound.scale(), from.value, to.value) {
-            add(Kind::Value, id, values);
-        }
-    }
-    for (id, is) in new.iter().filter(|(id, _)| !old.contains_key(*id)) {
-        let kind =
-            if is.judgement.verdict == Verdict::Fail { Kind::NewFailure } else { Kind::GateNew };
-        add(kind, id, format!("{}; {}", is.words(), number(is.judgement.value)));
+    for name in old.keys().chain(new.keys()).collect::<BTreeSet<_>>() {
+        let found = of(name, old.get(name), new.get(name)).into_iter();
+        changes.extend(found.map(|(kind, words)| Change { kind, name: name.clone(), words }));
     }
     changes
+}
+
+fn of_gate(was: Option<&Judged>, is: Option<&Judged>) -> Vec<(Kind, String)> {
+    let number =
+        |value: Option<f64>| value.map_or("not measured".to_string(), |v| format!("{v:?}"));
+    let fails = |judged: &Judged| judged.judgement.verdict == Verdict::Fail;
+    let (was, is) = match (was, is) {
+        (Some(was), Some(is)) => (was, is),
+        (was, None) => return was.map(|was| (Kind::Gone, was.words())).into_iter().collect(),
+        (None, Some(is)) => {
+            let kind = if fails(is) { Kind::Failing } else { Kind::New };
+            return vec![(kind, format!("{}; {}", is.words(), number(is.judgement.value)))];
+        }
+    };
+    let [from, to] = [&was.judgement, &is.judgement];
+    let values = format!("{} to {}", number(from.value), number(to.value));
+    if fails(is) && !fails(was) {
+        vec![(Kind::Failing, format!("{}; {values}; bound {}", was.words(), is.gate.bounds()))]
+    } else if from.verdict != to.verdict {
+        vec![(Kind::Verdict, format!("{} to {}; {values}", was.words(), is.words()))]
+    } else if has_moved(is.gate.bound.scale(), from.value, to.value) {
+        vec![(Kind::Value, values)]
+    } else {
+        Vec::new()
+    }
 }
 
 /// Is the difference more than the resolution of a value of this scale? What is not a number is equal to
@@ -226,61 +213,48 @@ fn has_moved(scale: f64, from: Option<f64>, to: Option<f64>) -> bool {
     }
 }
 
-fn of_records(
-    old: &BTreeMap<String, Record>,
-    new: &BTreeMap<String, Record>,
+fn of_run(
+    name: &str,
+    was: Option<&Record>,
+    is: Option<&Record>,
     bounds: &Bounds,
-) -> Vec<Change> {
-    let mut changes = Vec::new();
-    let mut add = |kind, name: &str, words: String| {
-        changes.push(Change { kind, name: name.to_string(), words });
+) -> Vec<(Kind, String)> {
+    let status = |kind, record: &Record| vec![(kind, format!("the run, {}", record.status))];
+    let (was, is) = match (was, is) {
+        (Some(was), Some(is)) => (was, is),
+        (was, None) => return was.map_or(Vec::new(), |was| status(Kind::Gone, was)),
+        (None, Some(is)) => return status(Kind::New, is),
     };
-    for (name, was) in old.iter().filter(|(name, _)| !new.contains_key(*name)) {
-        add(Kind::RunGone, name, was.status.to_string());
+    let mut changes = Vec::new();
+    let statuses = format!("{} to {}", was.status, is.status);
+    if was.status != is.status {
+        let is_worse = was.status == Status::Completed;
+        changes.push((if is_worse { Kind::Stopped } else { Kind::Status }, statuses.clone()));
     }
-    for (name, is) in new {
-        let Some(was) = old.get(name) else {
-            add(Kind::RunNew, name, is.status.to_string());
-            continue;
-        };
-        if was.status != is.status {
-            let is_worse = was.status == Status::Completed;
-            let kind = if is_worse { Kind::EndedEarly } else { Kind::Status };
-            add(kind, name, format!("{} to {}", was.status, is.status));
-        }
-        of_metrics(name, was, is, bounds, &mut add);
-        if was.state != is.state {
-            let words = format!("other bits at the end ({} to {})", was.status, is.status);
-            add(Kind::State, name, words);
-        }
-        let (from, to) = (&was.cost, &is.cost);
-        if (from.steps, from.pair_interactions) != (to.steps, to.pair_interactions) {
-            let words = format!(
-                "{} to {} steps, {} to {} pair interactions",
-                from.steps, to.steps, from.pair_interactions, to.pair_interactions
-            );
-            add(Kind::Work, name, words);
-        }
-        let (Some(before), Some(after)) = (from.alone_median(), to.alone_median()) else {
-            continue;
-        };
-        let is_other = ln(after / before).abs() > ln(NOTABLE);
-        if is_other && was.manifest.is_same_machine(&is.manifest) {
-            let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
-            add(Kind::Seconds, name, words);
-        }
+    changes.extend(of_metrics(name, was, is, bounds));
+    if was.state != is.state {
+        changes.push((Kind::State, format!("other bits at the end ({statuses})")));
+    }
+    let (from, to) = (&was.cost, &is.cost);
+    if (from.steps, from.pair_interactions) != (to.steps, to.pair_interactions) {
+        let words = format!(
+            "{} to {} steps, {} to {} pair interactions",
+            from.steps, to.steps, from.pair_interactions, to.pair_interactions
+        );
+        changes.push((Kind::Work, words));
+    }
+    if let Some((before, after)) = from.alone_median().zip(to.alone_median())
+        && ln(after / before).abs() > ln(NOTABLE)
+        && was.manifest.is_same_machine(&is.manifest)
+    {
+        let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
+        changes.push((Kind::Seconds, words));
     }
     changes
 }
 
 /// Metrics of one run that went, came or moved, in one change each.
-fn of_metrics(
-    name: &str,
-    was: &Record,
-    is: &Record,
-    bounds: &Bounds,
-    add: &mut impl FnMut(Kind, &str, String),
-) {
+fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(Kind, String)> {
     let value = |record: &Record, metric: &str| record.metrics.get(metric).map(|m| m.value);
     let lacking = |of: &Record, other: &Record| -> Vec<String> {
         let reason = |metric: &String| match other.absent.get(metric) {
@@ -296,19 +270,20 @@ fn of_metrics(
         let scale = bound.map_or(from.abs().max(to.abs()), |bound| bound.scale());
         has_moved(scale, Some(from), Some(to)).then(|| format!("{metric} {from:?} to {to:?}"))
     });
-    for (kind, metrics) in [
-        (Kind::MetricsGone, lacking(was, is)),
-        (Kind::MetricsNew, lacking(is, was)),
-        (Kind::Metrics, moved.collect()),
-    ] {
-        let (count, told) = (metrics.len(), metrics.iter().take(TOLD).cloned());
-        let told = told.collect::<Vec<_>>().join(", ");
-        match count {
-            0 => {}
-            1..=TOLD => add(kind, name, told),
-            _ => add(kind, name, format!("{told} and {} more", count - TOLD)),
+    let all = [
+        (Kind::Gone, lacking(was, is)),
+        (Kind::New, lacking(is, was)),
+        (Kind::Value, moved.collect()),
+    ];
+    let told = |(kind, metrics): (Kind, Vec<String>)| {
+        let told = metrics.iter().take(TOLD).cloned().collect::<Vec<_>>().join(", ");
+        match metrics.len() {
+            0 => None,
+            1..=TOLD => Some((kind, told)),
+            count => Some((kind, format!("{told} and {} more", count - TOLD))),
         }
-    }
+    };
+    all.into_iter().filter_map(told).collect()
 }
 
 #[cfg(test)]
@@ -341,7 +316,8 @@ mod tests {
         let (old, bounds) = records();
         let mut new = old.clone();
         change(new.get_mut("1").expect("run 1"));
-        let changes = of_records(&old, &new, &bounds).into_iter();
+        let changes =
+            paired(&old, &new, |name, was, is| of_run(name, was, is, &bounds)).into_iter();
         changes.map(|change| (change.kind, format!("{}: {}", change.name, change.words))).collect()
     }
 
@@ -355,15 +331,15 @@ mod tests {
     fn a_metric_that_moved_by_more_than_the_resolution_of_its_gate_is_told() {
         assert_eq!(changes(|_| ()), []);
         assert_eq!(changes(|record| record.put(L2, 0.1049)), [], "0.98 % of the bound 0.5");
-        one(|record| record.put(L2, 0.1051), Kind::Metrics, "l2 0.1 to 0.1051");
-        one(|record| record.put(L2, 123.0), Kind::Metrics, "l2 0.1 to 123.0");
-        one(|record| record.put(L2, f64::NAN), Kind::Metrics, "l2 0.1 to NaN");
+        one(|record| record.put(L2, 0.1051), Kind::Value, "l2 0.1 to 0.1051");
+        one(|record| record.put(L2, 123.0), Kind::Value, "l2 0.1 to 123.0");
+        one(|record| record.put(L2, f64::NAN), Kind::Value, "l2 0.1 to NaN");
         assert_eq!(changes(|record| record.put(DRIFT, 1.009e-9)), [], "0.9 % of itself");
-        one(|record| record.put(DRIFT, 1.02e-9), Kind::Metrics, "drift 1e-9 to 1.02e-9");
+        one(|record| record.put(DRIFT, 1.02e-9), Kind::Value, "drift 1e-9 to 1.02e-9");
         let all = |record: &mut Record| {
             record.metrics.values_mut().for_each(|metric| metric.value = 123.0);
         };
-        one(all, Kind::Metrics, "drift 1e-9 to 123.0, l2 0.1 to 123.0");
+        one(all, Kind::Value, "drift 1e-9 to 123.0, l2 0.1 to 123.0");
     }
 
     #[test]
@@ -372,11 +348,11 @@ mod tests {
             record.metrics.remove("l2");
             record.absent.insert("l2".into(), "no reference".into());
         };
-        one(gone, Kind::MetricsGone, "l2 (no reference)");
-        one(|record| record.metrics.clear(), Kind::MetricsGone, "drift, l2");
+        one(gone, Kind::Gone, "l2 (no reference)");
+        one(|record| record.metrics.clear(), Kind::Gone, "drift, l2");
         let new = |record: &mut Record| record.put(MetricKey::new("new", "-", "staged"), 1.0);
-        one(new, Kind::MetricsNew, "new");
-        assert!(Kind::MetricsGone.is_loss() && !Kind::MetricsNew.is_loss());
+        one(new, Kind::New, "new");
+        assert!(Kind::Gone.is_loss() && !Kind::New.is_loss());
     }
 
     #[test]
@@ -384,14 +360,14 @@ mod tests {
         let (old, bounds) = records();
         let mut new = old.clone();
         new.remove("1");
-        for (from, to, kind) in [(&old, &new, Kind::RunGone), (&new, &old, Kind::RunNew)] {
-            let found = of_records(from, to, &bounds);
+        for (from, to, kind) in [(&old, &new, Kind::Gone), (&new, &old, Kind::New)] {
+            let found = paired(from, to, |name, was, is| of_run(name, was, is, &bounds));
             let found: Vec<_> = found.iter().map(|c| (c.kind, c.name.as_str())).collect();
             assert_eq!(found, [(kind, "1")]);
         }
         let refused = |record: &mut Record| record.status = Status::Refused { reason: "x".into() };
-        one(refused, Kind::EndedEarly, "completed to refused: x");
-        assert!(Kind::RunGone.is_loss() && Kind::EndedEarly.is_loss() && !Kind::RunNew.is_loss());
+        one(refused, Kind::Stopped, "completed to refused: x");
+        assert!(Kind::Gone.is_loss() && Kind::Stopped.is_loss() && !Kind::New.is_loss());
     }
 
     /// Slower runs were told, and faster ones were not.
@@ -419,15 +395,18 @@ mod tests {
             BTreeMap::from([("c.l2".to_string(), judged)])
         };
         let kinds = |old: &BTreeMap<_, _>, new: &BTreeMap<_, _>| -> Vec<Kind> {
-            of_verdicts(old, new).iter().map(|change| change.kind).collect()
+            paired(old, new, |_, was, is| of_gate(was, is))
+                .iter()
+                .map(|change| change.kind)
+                .collect()
         };
-        assert_eq!(kinds(&judged(0.1), &BTreeMap::new()), [Kind::GateGone]);
-        assert_eq!(kinds(&BTreeMap::new(), &judged(0.1)), [Kind::GateNew]);
-        assert_eq!(kinds(&BTreeMap::new(), &judged(0.6)), [Kind::NewFailure]);
-        assert_eq!(kinds(&judged(0.1), &judged(0.6)), [Kind::NewFailure]);
+        assert_eq!(kinds(&judged(0.1), &BTreeMap::new()), [Kind::Gone]);
+        assert_eq!(kinds(&BTreeMap::new(), &judged(0.1)), [Kind::New]);
+        assert_eq!(kinds(&BTreeMap::new(), &judged(0.6)), [Kind::Failing]);
+        assert_eq!(kinds(&judged(0.1), &judged(0.6)), [Kind::Failing]);
         assert_eq!(kinds(&judged(0.6), &judged(0.1)), [Kind::Verdict]);
         assert_eq!(kinds(&judged(0.1), &judged(0.1049)), [], "0.98 % of the bound");
         assert_eq!(kinds(&judged(0.1), &judged(0.1051)), [Kind::Value]);
-        assert!(Kind::GateGone.is_loss() && Kind::NewFailure.is_loss() && !Kind::Value.is_loss());
+        assert!(Kind::Gone.is_loss() && Kind::Failing.is_loss() && !Kind::Value.is_loss());
     }
 }

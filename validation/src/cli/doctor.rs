@@ -4,9 +4,8 @@ use std::time::Instant;
 
 use base::files::OutputFolder;
 use base::manifest::{Known, Manifest};
-use base::record::Cost;
 use base::reference::Reference;
-use harness::{case, context::Context, profile};
+use harness::{case, context::Context};
 use schemes::bench;
 use validation::cases;
 
@@ -104,9 +103,6 @@ fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
     }
 }
 
-/// What is told of an interrupt.
-const NOT_MEASURED: &str = "the measurements are not complete; the same command begins again";
-
 /// Seconds that one measurement may take.
 const BUDGET: f64 = 2.0;
 
@@ -130,55 +126,12 @@ fn bench(world: &World) -> Result<(), Failure> {
                 row.extend([particles, report::sig(speed.neighbours, 3), bytes]);
             }
             row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
-            world.go_on(NOT_MEASURED)?;
+            world.go_on("the measurements are not complete; the same command begins again")?;
         }
         rows.push(row);
     }
     let on_all = format!("{all} threads: M rhs/s");
     let heads =
         ["particles", "in list", "B each", "1 thread: M rhs/s", "M lists/s", &on_all, "M lists/s"];
-    output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], rows))?;
-    on_threads(Some(1), || whole_runs(world))
-}
-
-/// The runs that are timed as a whole, at sizes that take about a second each on a machine of 2023.
-const WHOLE: [(&str, &str, &str); 5] = [
-    ("couette", "modern", "rows=50"),
-    ("poiseuille", "curved", "rows=50"),
-    ("periodic_hill", "carried", "end=5"),
-    ("dam_break", "modern", "n=24"),
-    ("rubber_rings", "leapfrog", "spacing=0.2"),
-];
-
-/// Times runs of the five cases as `touchstone run` makes them.
-fn whole_runs(world: &World) -> Result<(), Failure> {
-    let mut rows = Vec::new();
-    for (name, variant, set) in WHOLE {
-        let case = cases::find(name)?;
-        let spec = case::spec(case, variant, &[set.to_string()])?;
-        let (interrupt, profile) = (Some(world.interrupt), true);
-        let context = Context { interrupt, profile, ..Context::default() };
-        let Cost { particles, steps, particle_rhs, wall_s, observing_s, breakdown, .. } =
-            case.run(&spec, &context)?.cost;
-        world.go_on(NOT_MEASURED)?;
-        let each = |seconds: f64| 1e9 * seconds / (particles as f64 * steps as f64);
-        let sweeps = breakdown.map_or(f64::NAN, |breakdown| breakdown.share(&profile::SWEEPS));
-        rows.push(vec![
-            format!("{name} {variant} {set}"),
-            particles.to_string(),
-            steps.to_string(),
-            report::sig(each(wall_s), 3),
-            report::percent(sweeps, 3),
-            report::sig(each(observing_s), 3),
-            report::sig(1e-6 * particle_rhs as f64 / wall_s, 3),
-        ]);
-    }
-    let heads = ["run", "particles", "steps", "stepping", "pair sweeps", "observing", "M rhs/s"];
-    output::print(&format!(
-        "\nWhole runs of the five cases, on one thread, with default settings but for the size. Stepping \
-         and\nobserving: nanoseconds of wall time a fluid particle and time step; pair sweeps: their share \
-         of the\nstepping; M rhs/s: million particle right-hand sides a second of stepping. `touchstone run \
-         CASE --profile`\nshows all parts.\n\n{}",
-        output::table(&heads, rows)
-    ))
+    output::print(&output::table(&heads[..if all > 1 { 7 } else { 5 }], rows))
 }

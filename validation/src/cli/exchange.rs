@@ -35,13 +35,14 @@ use super::{Exit, Failure, Outcome, World, arguments, judged, output, summary::o
 /// More than this is no description of a method \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
-pub fn export(arguments: &arguments::WriteProblem, world: &World) -> Result<(), Failure> {
-    let case = cases::find_in(world.cases, &arguments.case)?;
-    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
+pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
+    let of = &arguments.of;
+    let case = cases::find_in(world.cases, &of.case)?;
+    let variant = of.variant.as_deref().unwrap_or(case.best().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
     let problem = Problem::seen(case, spec, arguments.relation)?;
-    let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = write::write(&problem, arguments.format, &folder)?;
+    let folder = OutputFolder::create(&of.out)?;
+    let mut names = write::write(&problem, of.format, &folder)?;
     if arguments.solve {
         names.extend(solve(case, &problem, &folder, world)?);
     }
@@ -124,8 +125,9 @@ fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
 }
 
 pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
-    let case = cases::find_in(world.cases, &arguments.case)?;
-    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
+    let of = &arguments.of;
+    let case = cases::find_in(world.cases, &of.case)?;
+    let variant = of.variant.as_deref().unwrap_or(case.best().variant);
     let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
         Failure::usage(format!("cannot read {}: {reason}", arguments.method.display()))
     })?;
@@ -133,8 +135,8 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), 
     let set = challenge::draw(case, variant, &sealed)?;
     let mut problem = Problem::of(case, case::spec(case, variant, &set)?)?;
     problem.sealed = Some(sealed);
-    let folder = OutputFolder::create(&arguments.out)?;
-    let mut names = write::write(&problem, arguments.format, &folder)?;
+    let folder = OutputFolder::create(&of.out)?;
+    let mut names = write::write(&problem, of.format, &folder)?;
     folder.write(METHOD, text.as_bytes())?;
     names.push(METHOD.into());
     output::print(&format!("{}\n", set.join(" ")))?;
@@ -149,10 +151,10 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let problem = problem(case, &entry, arguments)?;
     let coarse = entry.scene(case, &problem)?;
     let scene = coarse.as_ref().unwrap_or(&problem);
-    entry.stand_for(case, scene).map_err(|flaws| refused(&flaws))?;
-    check(&entry, scene)?;
+    entry.stand_for(case, scene).map_err(refused)?;
+    entry.check(scene).map_err(refused)?;
     let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
-        refused(&[Flaw::of(arguments.folder.display().to_string(), error.to_string())])
+        refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
     })?;
     record.manifest.sources = (world.sources)(case.name());
     record.manifest.cpu = entry.system.machine.clone();
@@ -178,13 +180,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
 /// The submission in a folder, with columns of other names.
 fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
     let renamed = map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
-    submission::read(folder, &renamed).map_err(|flaws| refused(&flaws))
-}
-
-/// Refuses a submission that does not fit its problem.
-fn check(entry: &Entry, problem: &Problem) -> Result<(), Failure> {
-    let flaws = entry.check(problem);
-    if flaws.is_empty() { Ok(()) } else { Err(refused(&flaws)) }
+    submission::read(folder, &renamed).map_err(refused)
 }
 
 /// The run that a document asks for.
@@ -213,7 +209,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
         let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
         let problem = Problem::seen(case, spec_of(case, asked)?, Some(by))?;
-        check(&entry, &problem)?;
+        entry.check(&problem).map_err(refused)?;
         Ok((entry, problem, by))
     };
     let ((ours, same, first), (theirs, other, by)) =
@@ -272,7 +268,7 @@ fn problem(
 }
 
 /// All flaws as the reason why nothing is judged.
-fn refused(flaws: &[Flaw]) -> Failure {
+fn refused(flaws: Vec<Flaw>) -> Failure {
     let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",

@@ -37,28 +37,20 @@ fn overview(world: &World) -> String {
            runs it.\n"
 }
 
-/// What a variant is, in words.
-fn marks(case: &dyn Case, variant: &str) -> &'static str {
-    match case.best() {
-        best if best.variant == variant => " (runs by default, best)",
-        best if best.papers == Some(variant) => " (the paper's)",
-        _ => "",
-    }
-}
-
 fn details(case: &dyn Case) -> String {
     let mut text = format!("{}\n{}\n", case.name(), output::wrap(case.about(), "    "));
     text += "variants\n";
     for variant in case.variants() {
-        let marks = marks(case, variant.name);
-        text += &format!("  {:<18} {}{marks}\n", variant.name, variant.about);
+        text += &format!("  {:<18} {}\n", variant.name, variant.about);
         let differs = differences(case, variant.name).join(" ");
         if !differs.is_empty() {
             text += &output::wrap(&differs, &" ".repeat(21));
         }
     }
-    let Best { variant, because, .. } = case.best();
-    text += &output::wrap(&format!("`{variant}` is the best: {because}"), "  ");
+    let Best { variant, because, papers } = case.best();
+    let papers = papers.map(|name| format!("; `{name}` is the paper's")).unwrap_or_default();
+    let best = format!("`{variant}` runs by default{papers}. `{variant}` is the best: {because}");
+    text += &output::wrap(&best, "  ");
     let row = |field: &Field| {
         vec![field.name.into(), (field.default)().to_string(), field.range.into(), field.doc.into()]
     };

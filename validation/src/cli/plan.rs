@@ -81,16 +81,14 @@ fn sweep(
     }
     let mut combinations: Vec<Vec<String>> = vec![Vec::new()];
     for assignment in set {
-        let texts: Vec<String> = match assignment.split_once('=') {
-            Some((key, all)) => all.split(',').map(|value| format!("{key}={value}")).collect(),
-            None => vec![assignment.clone()],
+        // Without a value, the assignment as it is, which is then refused.
+        let end = assignment.find('=').map_or(assignment.len(), |at| at + 1);
+        let (key, values) = assignment.split_at(end);
+        let with = |before: &Vec<String>| -> Vec<Vec<String>> {
+            let texts = values.split(',').map(|value| format!("{key}{value}"));
+            texts.map(|text| [&before[..], &[text]].concat()).collect()
         };
-        let with = |before: &Vec<String>, text: &String| {
-            [&before[..], std::slice::from_ref(text)].concat()
-        };
-        let all =
-            combinations.iter().flat_map(|before| texts.iter().map(move |text| with(before, text)));
-        combinations = all.collect();
+        combinations = combinations.iter().flat_map(with).collect();
     }
     let mut jobs = Vec::new();
     for variant in variants {

@@ -29,7 +29,7 @@ use super::{
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
     let folder = OutputFolder::create(&arguments.out)?;
-    let (tier, any_build) = (arguments.tier, arguments.reuse.any_build);
+    let (tier, any_build) = (arguments.tier, arguments.making.any_build);
     let (suite, listed, lacking) = match &arguments.store {
         Some(store) if arguments.partial => {
             let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
@@ -47,9 +47,8 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             let plans = verify::plans(world.cases, tier, world)?;
             let last = Mutex::new(None);
             let early = |made| early(plans.clone(), tier, &store, made, &folder, &last);
-            let (reuse, threads) = (arguments.reuse, arguments.threads);
-            let early = Some(&early as _);
-            let suite = verify::run(plans.clone(), tier, &store, reuse, threads, early, world)?;
+            let (making, early) = (arguments.making, Some(&early as _));
+            let suite = verify::run(plans.clone(), tier, &store, making, early, world)?;
             (suite, String::new(), None)
         }
     };

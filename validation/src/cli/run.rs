@@ -50,7 +50,9 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     world.check_references(&[case])?;
     let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
-    let mut spec = case::spec(case, variant, &set(arguments)?)?;
+    let rows = arguments.rows.iter().map(|rows| format!("rows={rows}"));
+    let set: Vec<String> = arguments.set.iter().cloned().chain(rows).collect();
+    let mut spec = case::spec(case, variant, &set)?;
     spec.allow_unstable = arguments.allow_unstable;
     spec.measure = arguments.metrics;
     if arguments.checkpoint_every.is_some() && arguments.out.is_none() {
@@ -89,6 +91,7 @@ fn carry_out(
     if let Status::Interrupted { step, time } = record.status {
         return Err(interrupted(folder.as_ref(), asked.vtk.is_some(), step, time));
     }
+    folder.iter().for_each(|folder| remove_earlier(folder, asked.vtk.unwrap_or_default()));
     let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
     let is_asked = |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| why != NOT_ASKED);
     let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
@@ -175,21 +178,6 @@ impl Lost {
     }
 }
 
-/// The settings that were given, `--rows` among them.
-fn set(arguments: &arguments::Run) -> Result<Vec<String>, Failure> {
-    let mut set = arguments.set.clone();
-    if let Some(rows) = &arguments.rows {
-        let is_rows = |text: &&String| text.split('=').next().map(str::trim) == Some("rows");
-        if let Some(other) = set.iter().find(is_rows) {
-            let words =
-                format!("--rows {rows} and --set {other} set the same setting; give one of them");
-            return Err(Failure::usage(words));
-        }
-        set.push(format!("rows={rows}"));
-    }
-    Ok(set)
-}
-
 /// The record, and all fields of the particles at the end if there is a folder for them.
 fn compute(
     case: &dyn Case,
@@ -252,7 +240,9 @@ impl Folder {
             (None, Some(_)) => Path::new("reports").join(format!("run-{case}-{variant}")),
             (None, None) => return Ok(None),
         };
-        if let Some(other) = case_in(&path).filter(|other| other != case && !arguments.overwrite) {
+        let earlier = record_in(&path);
+        let other = earlier["case"].as_str().unwrap_or(case);
+        if other != case && !arguments.overwrite {
             return Err(Failure::usage(format!(
                 "the folder {path:?} holds a record of the case {other}, and files of {case} would mix with \
                  it; name another folder by --out, or give --overwrite"
@@ -303,17 +293,39 @@ impl Folder {
     }
 }
 
-/// The case of the record that an earlier run left in a folder, of whatever version.
-fn case_in(folder: &Path) -> Option<String> {
-    let text = files::read_text(&folder.join(RECORD), MOST_BYTES).ok()?;
-    let record: Value = serde_json::from_str(&text).ok()?;
-    record["case"].as_str().map(String::from)
+/// The record that an earlier run left in a folder, of whatever version; null if there is none.
+fn record_in(folder: &Path) -> Value {
+    let text = files::read_text(&folder.join(RECORD), MOST_BYTES).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
 }
 
 /// Name of the file of the record.
 const RECORD: &str = "record.json";
 
-/// Writes the record, what can be drawn from it, and the particles at the end; returns the names.
+/// Name of the table of a curve.
+fn table_of(curve: &str) -> String {
+    format!("{}.csv", curve.replace([' ', '/', '\\'], "-"))
+}
+
+/// Removes what an earlier run left beside its record, but for so many frames, which are of this run.
+fn remove_earlier(folder: &Folder, mut frames: u16) {
+    let (path, record) = (folder.output.path(), record_in(folder.output.path()));
+    if record.is_null() {
+        return;
+    }
+    let curves = record["profiles"].as_object().into_iter().flat_map(|of| of.keys());
+    let index = (frames == 0).then_some("vtk/particles.pvd");
+    let others = ["profile.csv", "profile.png"].into_iter().chain(index).map(String::from);
+    let all = curves.map(|curve| table_of(curve)).chain(others);
+    all.for_each(|name| drop(fs::remove_file(path.join(name))));
+    while fs::remove_file(folder.vtk().join(format!("particles_{frames:04}.vtu"))).is_ok() {
+        frames += 1;
+    }
+    let _ = fs::remove_dir(folder.vtk()); // refused by the system unless empty
+}
+
+/// Writes the record, what can be drawn from it, and the particles at the end, in place of those of an
+/// earlier run; returns the names.
 fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<String>, Failure> {
     let Folder { output, .. } = folder;
     output.write(RECORD, record.to_json().map_err(Failure::bug)?.as_bytes())?;
@@ -325,7 +337,7 @@ fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<
     for (name, profile) in &record.profiles {
         // Curves at one time are in profile.csv, particles in the frames.
         if !name.contains('@') && name != "particles" {
-            let file = format!("{}.csv", name.replace(' ', "-"));
+            let file = table_of(name);
             output.write(&file, profile.to_csv().as_bytes())?;
             names.push(file);
         }

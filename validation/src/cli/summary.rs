@@ -109,10 +109,11 @@ fn failures(suite: &Suite) -> String {
 pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Judged]) -> String {
     let declared = case.declaration(Tier::Quick);
     let (error, metric) = error_of(&declared, record, verdicts);
+    let counts = Counts::of(verdicts.iter().map(|judged| judged.judgement.verdict));
     let lines = [
         ("error", error),
         ("bound", bound(verdicts, &metric)),
-        ("gates", gates(verdicts)),
+        ("gates", counts.headline()),
         ("cost", cost_in_words(record)),
         ("next", next(case, &declared, spec, record, verdicts)),
     ];
@@ -147,13 +148,6 @@ fn bound(verdicts: &[Judged], metric: &str) -> String {
     let margin = judgement.margin.map(|m| format!(", {} of it left", report::percent(m, 2)));
     let (verdict, margin) = (judgement.verdict, margin.unwrap_or_default());
     format!("{}: {verdict}{margin} ({})", gate.bounds(), gate.id)
-}
-
-fn gates(verdicts: &[Judged]) -> String {
-    match verdicts.is_empty() {
-        true => String::new(),
-        false => Counts::of(verdicts.iter().map(|judged| judged.judgement.verdict)).headline(),
-    }
 }
 
 /// The command to try next.

@@ -19,10 +19,10 @@ use super::{
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
-    let arguments::Verify { of, store, reuse, threads } = arguments;
+    let arguments::Verify { of, store, making } = arguments;
     show(of, world, |cases| {
         let plans = plans(cases, of.tier, world)?;
-        run(plans, of.tier, &Store::open(store)?, *reuse, *threads, None, world)
+        run(plans, of.tier, &Store::open(store)?, *making, None, world)
     })
 }
 
@@ -86,13 +86,12 @@ pub fn run(
     plans: Plans,
     tier: Tier,
     store: &Store,
-    reuse: arguments::Reuse,
-    threads: Option<u16>,
+    asked: arguments::Making,
     early: Option<&Early>,
     world: &World,
 ) -> Result<Suite, Failure> {
     let jobs = make::jobs(plans.clone());
-    let arguments::Reuse { any_build: reuse_other, fresh } = reuse;
+    let arguments::Making { any_build: reuse_other, fresh, threads } = asked;
     let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
     let mut made = world.make(&jobs, making, threads, early)?;
     if made.interrupted {

@@ -229,12 +229,8 @@ fn of_arrays(
 /// A regular file that is not too long.
 #[cfg(any(feature = "hdf5", feature = "npz"))]
 fn open(file: &str, path: &Path) -> Result<std::fs::File, Vec<Flaw>> {
-    let flaw = |what: String| vec![Flaw::of(file, what)];
-    let size = std::fs::metadata(path).map_err(|reason| flaw(reason.to_string()))?;
-    if !size.is_file() || size.len() > MOST_BYTES {
-        return Err(flaw(format!("it is no regular file of at most {MOST_BYTES} bytes")));
-    }
-    std::fs::File::open(path).map_err(|reason| flaw(reason.to_string()))
+    let opened = files::check_regular(path, MOST_BYTES).and_then(|()| std::fs::File::open(path));
+    opened.map_err(|reason| vec![Flaw::of(file, reason.to_string())])
 }
 
 impl Rows {

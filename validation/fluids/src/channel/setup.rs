@@ -170,6 +170,11 @@ impl Setup {
         // A period of at least two supports.
         let fewest = (2.0 * method.support * s.h_over_dx - 1e-9).floor() as usize + 1;
         let columns = if s.columns == 0 { fewest } else { s.columns };
+        if columns < fewest {
+            let allowed = format!("a narrower kernel; with this one it is 0 or {fewest} to 100000");
+            let (key, value) = ("columns", columns.to_string());
+            return Err(RunError::Combination { key, value, allowed });
+        }
         let sound_speed = s.c0.unwrap_or_else(|| sound_speed(s, v, force, h));
         if sound_speed > MOST_SOUND {
             let (what, setting) = ("the sound speed", "c0, re, nu or width");

@@ -119,7 +119,7 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
 
 /// Error over spacing, over run time and over work.
 fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
-    let slope = accuracy.slope.map(|order| format!(" The triangle shows order {}.", exact(order)));
+    let slope = accuracy.slope.map(|order| format!(" The grey line has order {}.", exact(order)));
     let caption = format!(
         "{} Over spacing (left), run time on one core (middle) and work (right): {}.{}",
         first_sentence(&accuracy.about).0,
@@ -151,7 +151,7 @@ fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
     for (k, row) in rows.iter().enumerate() {
         let own: Vec<&Point> = row.points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = Series::line_markers(row.of.variant, line).cycle(k);
+        let mut series = Series::line(row.of.variant, line).cycle(k);
         if title.contains("time") {
             series = series.labels(own.iter().map(|p| short(&p.label)));
             series.x_bars = own.iter().map(|p| p.spread()).collect();
@@ -311,7 +311,7 @@ mod tests {
         let order = judged.judgement.value.expect("an order");
         assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
         let Block::Figure(figure) = &study.blocks[0] else { panic!("a figure") };
-        assert!(figure.caption.ends_with(" The triangle shows order 2."), "{}", figure.caption);
+        assert!(figure.caption.ends_with(" The grey line has order 2."), "{}", figure.caption);
     }
 
     #[test]

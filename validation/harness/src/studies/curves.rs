@@ -37,14 +37,8 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
         let points = (line.points)(record);
         let named = names.iter().position(|name| !name.is_empty() && *name == line.name);
         let k = named.unwrap_or(k);
-        let (colour, shape) = (Colour::cycle(k), Shape::cycle(k));
-        plot = plot.layer(match of.symbols {
-            true => {
-                let markers = Series::markers(&line.name, points).colour(colour);
-                Series { open: true, shape: Some(shape), ..markers }
-            }
-            false => Series::line(&line.name, points).colour(colour),
-        });
+        let line = Series::line(&line.name, points).colour(Colour::cycle(k));
+        plot = plot.layer(if of.symbols { line.open_markers(Shape::cycle(k)) } else { line });
     }
     plot
 }
@@ -73,7 +67,7 @@ mod tests {
     }
 
     /// Name, first point, colour, and whether symbols are drawn in place of a line.
-    type Drawn = (String, (f64, f64), Option<Colour>, bool);
+    type Drawn = (String, (f64, f64), Colour, bool);
 
     fn drawn(panels: Vec<CurvePanel>) -> Vec<Vec<Drawn>> {
         let curves = Curves {
@@ -87,7 +81,9 @@ mod tests {
         let [Block::Figure(figure)] = study.blocks.as_slice() else { panic!("one figure") };
         let of = |plot: &Plot| -> Vec<Drawn> {
             let series = plot.layers.iter().map(|layer| match layer {
-                Layer::Series(s) => (s.name.clone(), s.points[0], s.colour, s.line.is_none()),
+                Layer::Series(s) => {
+                    (s.name.clone(), s.points[0], s.look.colour, s.look.line.is_none())
+                }
                 _ => panic!("series alone"),
             });
             series.collect()
@@ -102,9 +98,8 @@ mod tests {
             // The run of `c` was not made.
             panel_of(vec![line("b", "best", 1), line("c", "seed", 2)], &[], false),
         ]);
-        let reference = |name: &str, colour| (name.to_string(), (0.0, 7.0), Some(colour), false);
-        let run =
-            |name: &str, y: f64, k| (name.to_string(), (1.0, y), Some(Colour::cycle(k)), false);
+        let reference = |name: &str, colour| (name.to_string(), (0.0, 7.0), colour, false);
+        let run = |name: &str, y: f64, k| (name.to_string(), (1.0, y), Colour::cycle(k), false);
         assert_eq!(
             panels[0],
             [
@@ -128,6 +123,6 @@ mod tests {
             (Colour::cycle(0), true),
             (Colour::cycle(1), true),
         ];
-        assert!(shown.eq(expected.map(|(colour, is_marks)| (Some(colour), is_marks))));
+        assert!(shown.eq(expected));
     }
 }

@@ -205,8 +205,8 @@ fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
     let most = quantiles.iter().map(|(_, all)| all[4]).fold(f64::NAN, f64::max);
     let (x, y) = (Axis::linear(format!("{time} [{unit}]")), Axis::linear(&followed.of.name));
     let mut plot = Plot::new(title, x, y)
-        .layer(Layer::band("", band([0, 4]), Colour::GREY))
-        .layer(Layer::band("", band([1, 3]), Colour::BLUE))
+        .layer(Layer::Band { points: band([0, 4]), colour: Colour::GREY })
+        .layer(Layer::Band { points: band([1, 3]), colour: Colour::BLUE })
         .layer(Series::line("", median).colour(Colour::BLUE));
     plot = measured.fold(plot, Plot::layer);
     if let Ok(Horizon { time, .. }) = &followed.horizon

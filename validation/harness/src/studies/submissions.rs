@@ -96,21 +96,21 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
         let is_of = |mark: &&Mark| mark.of.division == division || mark.of.code == OURS;
-        let shown: Vec<&Mark> =
-            marks.iter().filter(|mark| mark.seconds.is_finite()).filter(is_of).collect();
-        let has_others = shown.iter().any(|mark| mark.of.code != OURS);
+        let is_shown = |mark: &&Mark| mark.seconds.is_finite() && is_of(mark);
+        let has_others = marks.iter().filter(is_shown).any(|mark| mark.of.code != OURS);
         let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
         let plot = Plot::new(format!("{division} division"), x, y);
-        let series = |(k, all): (usize, &[&Mark])| {
-            let points = all.iter().map(|mark| (mark.seconds, mark.error)).collect();
-            let labels = all.iter().map(|mark| match mark.particles {
+        let series = |(k, all): (usize, &[Mark])| {
+            let shown = all.iter().filter(is_shown);
+            let points = shown.clone().map(|mark| (mark.seconds, mark.error)).collect();
+            let labels = shown.map(|mark| match mark.particles {
                 0 => String::new(),
                 particles => particles.to_string(),
             });
-            let series = Series::line_markers(&all[0].name, points).cycle(k).labels(labels);
+            let series = Series::line(&all[0].name, points).cycle(k).labels(labels);
             if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
         };
-        let layers = shown.chunk_by(|a, b| a.name == b.name).enumerate().map(series);
+        let layers = marks.chunk_by(|a, b| a.name == b.name).enumerate().map(series);
         has_others.then(|| layers.fold(plot, Plot::layer))
     };
     let panels = [Division::Closed, Division::Open].into_iter().filter_map(panel);
