@@ -365,16 +365,6 @@ impl Verdict {
     pub fn is_failure(self) -> bool {
         self == Verdict::Fail
     }
-
-    /// In words, for tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Limitation => "limitation",
-            Self::ExpectedFailure => "expected failure",
-            Self::Fail => "fail",
-        }
-    }
 }
 
 impl fmt::Display for Verdict {

@@ -94,8 +94,8 @@ impl<X: Numbers> Parts<X> {
 
 /// The scene of a scheme with these parts.
 pub fn scene<S: Standard>(parts: Parts<S::Extra>) -> Scene<S> {
-    let Changed { medium, domain, particles, mirrors, feet, skin, skin_share, limits, threads } =
-        changed(parts);
+    let (parts, feet, skin_share) = changed(parts);
+    let Parts { medium, domain, particles, mirrors, skin, limits, threads, .. } = parts;
     let (forces, drift) = (S::Forces::new(&medium), S::Drift::new(&medium));
     let walls = S::Walls::new(&medium, mirrors);
     let mut scene = Scene::new(medium.h, domain, particles, forces, drift, walls);
@@ -109,28 +109,14 @@ pub fn scene<S: Standard>(parts: Parts<S::Extra>) -> Scene<S> {
     scene
 }
 
-/// Parts with their errors and their disorder, of which no scheme needs to know.
-struct Changed<X> {
-    medium: Medium,
-    domain: Domain,
-    particles: Vec<Particle<X>>,
-    mirrors: Vec<PlaneWall>,
-    /// From each wall particle to the point of the surface that is nearest to it \[m\], if walls read that.
-    feet: Vec<Vector2<f64>>,
-    skin: Option<f64>,
-    /// The factor of [`Scene::skin_share`].
-    skin_share: f64,
-    limits: solver::Limits,
-    threads: usize,
-}
-
-fn changed<X: Numbers>(mut parts: Parts<X>) -> Changed<X> {
+/// Parts with their errors and their disorder, of which no scheme needs to know; from each wall particle to the
+/// point of the surface that is nearest to it \[m\], if walls read that; and the factor of [`Scene::skin_share`].
+fn changed<X: Numbers>(mut parts: Parts<X>) -> (Parts<X>, Vec<Vector2<f64>>, f64) {
     mutate(&mut parts);
     let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
     let feet = pairs.map(|(p, point)| point - p.position).collect();
-    let Parts { medium, domain, particles, mirrors, skin, limits, threads, mutation, .. } = parts;
-    let skin_share = mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime));
-    Changed { medium, domain, particles, mirrors, feet, skin, skin_share, limits, threads }
+    let skin_share = parts.mutation.map_or(1.0, |m| m.factor_of(Constant::ListLifetime));
+    (parts, feet, skin_share)
 }
 
 /// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
