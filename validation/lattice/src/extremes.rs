@@ -245,14 +245,16 @@ fn gates(Row { variant, settings: s, .. }: &Row<ExtremeSettings, ()>) -> Vec<Gat
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
     use crate::tests::judged;
 
     #[test]
     fn the_quick_tier_survives_its_extremes() {
         let judged = judged(&[&EXTREMES]);
-        let gates: Vec<Gate> = judged.iter().map(|judged| judged.gate.clone()).collect();
-        assert_eq!(base::gate::check_all(&gates), Ok(()));
+        let names: BTreeSet<&str> = judged.iter().map(|judged| &*judged.gate.id).collect();
+        assert_eq!(names.len(), judged.len(), "gates have names of their own");
         for judged in &judged {
             let (id, value) = (&judged.gate.id, judged.judgement.value);
             assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");

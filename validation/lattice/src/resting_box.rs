@@ -318,8 +318,8 @@ fn plan(_: Tier) -> Vec<Planned> {
 mod tests {
     use super::*;
     use crate::tests::judged;
-    use base::gate::check_all;
     use harness::case::Case;
+    use std::collections::BTreeSet;
 
     #[test]
     fn boxes_have_the_limits_of_theory() {
@@ -352,8 +352,9 @@ mod tests {
 
     #[test]
     fn every_gate_has_a_name_of_its_own() {
-        let gates: Vec<Gate> =
-            table(Tier::Full).rows.into_iter().flat_map(|row| row.run.gates).collect();
-        assert_eq!(check_all(&gates), Ok(()));
+        let mut names = BTreeSet::new();
+        for gate in table(Tier::Full).rows.into_iter().flat_map(|row| row.run.gates) {
+            assert!(names.insert(gate.id.clone()), "two gates are called {}", gate.id);
+        }
     }
 }
