@@ -30,7 +30,7 @@ pub fn run(
     bisect: &Bisect,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
+    let mut record = Record::of(spec, 1);
     let is_stable = |x: f64| {
         let one = simulate(case, &at(spec, bisect, x), context, &mut record.cost)?;
         Ok(case.is_stable(&one))
@@ -283,7 +283,7 @@ mod tests {
             assert_eq!(spec.task, Task::Simulate, "one simulation at a time");
             let mut asked = self.0.lock().expect("no panic before");
             asked.push((dt, end));
-            let mut record = Record::new("spring", "only", spec.settings.clone(), 1).of(spec);
+            let mut record = Record::of(spec, 1);
             record.put(GREW, f64::from(dt > 3e-3));
             let more = asked.len() as u64;
             record.cost = Cost {

@@ -82,7 +82,7 @@ pub trait Case: Sync {
 pub fn record_of(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
     match case.run(spec, context) {
         Err(refusal) if refusal.is_refusal() => Ok(Record::refused(spec, refusal.to_string())),
-        made => Ok(made?.of(spec)),
+        made => made,
     }
 }
 

@@ -22,8 +22,8 @@ use crate::{
     study::Study,
 };
 
-/// What runs a variant: its name, settings.
-pub type Run<T> = dyn Fn(&str, &T, &Context) -> Result<Record, RunError>;
+/// What runs a variant with these settings.
+pub type Run<T> = dyn Fn(&T, &Context) -> Result<Record, RunError>;
 
 /// What states the rules of a variant.
 pub type Ruled<T> = dyn Fn(&T) -> Result<Rules, RunError>;
@@ -44,8 +44,8 @@ pub struct Composition<T> {
 
 /// What a case does with any of its methods.
 pub struct Program<T, M> {
-    /// Runs it: method, name of the variant, settings.
-    pub run: fn(&M, &str, &T, &Context) -> Result<Record, RunError>,
+    /// Runs it.
+    pub run: fn(&M, &T, &Context) -> Result<Record, RunError>,
     /// What the rules choose from the settings.
     pub rules: fn(&M, &T) -> Result<Rules, RunError>,
 }
@@ -79,9 +79,7 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
         self.all.push(Composition {
             variant: Variant { name, about },
             adjust,
-            run: Box::new(move |variant, settings, context| {
-                run(&method, variant, settings, context)
-            }),
+            run: Box::new(move |settings, context| run(&method, settings, context)),
             rules: Box::new(move |settings| rules(&ruled, settings)),
             lacks,
         });
@@ -223,8 +221,10 @@ impl<T: Settings + 'static> Case for Composed<T> {
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         let (chosen, settings) = self.resolve(spec)?;
-        let run = (chosen.run)(&spec.variant, &settings, &context.of(spec));
-        let mut record = run?.of(spec);
+        // All settings in their usual form, those that the spec leaves out included.
+        let json = serde_json::to_value(&settings).unwrap_or_default();
+        let spec = RunSpec { settings: json, ..spec.clone() };
+        let mut record = (chosen.run)(&settings, &Context { spec, ..context.clone() })?;
         state_steps(&mut record);
         Ok(record)
     }

@@ -529,7 +529,7 @@ mod tests {
             Ok(json!({ "set": set }))
         }
         fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-            let mut record = Record::new(self.name(), &spec.variant, spec.settings.clone(), 1);
+            let mut record = Record::of(spec, 1);
             record.put(ERROR, 1.0);
             (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
             match spec.settings["set"][0].as_str() {

@@ -81,9 +81,7 @@ fn variant(
     let rules = |_: &ExtremeSettings| Err(RunError::NoRules { case: EXTREMES.name.into() });
     let fields = ExtremeSettings::FIELDS.iter().map(|field| field.name);
     let lacks = fields.filter(|name| !uses.contains(name)).collect();
-    let run = move |variant: &str, s: &ExtremeSettings, context: &Context| {
-        run((&method, scene), variant, s, context)
-    };
+    let run = move |s: &ExtremeSettings, context: &Context| run((&method, scene), s, context);
     let (run, rules, variant) = (Box::new(run), Box::new(rules), Variant { name, about });
     Composition { variant, adjust, run, rules, lacks }
 }
@@ -127,19 +125,18 @@ fn variants() -> Vec<Composition<ExtremeSettings>> {
 /// One run of any variant.
 fn run(
     (method, scene): (&Method, Scene),
-    variant: &str,
     s: &ExtremeSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let is_resting = [REST, PRESSED].contains(&variant);
+    let is_resting = [REST, PRESSED].contains(&&*context.spec.variant);
     let (parts, looks) = (scene(method, s), if is_resting { 10 } else { 1 });
     let (start, eos) = (parts.particles.clone(), parts.medium.eos);
     let mut simulation = (method.build)(parts)?;
     let done = |look: usize| (look + 1) * s.steps / looks;
     let times: Vec<f64> = (0..looks).map(|look| done(look) as f64 * s.dt).collect();
     let mut late = 0.0f64;
-    let (name, serial) = ((EXTREMES.name, variant), Context::default());
-    let mut record = simulate::begin(name, s, method, &[(PLANNED_DT, s.dt)], &serial);
+    let serial = Context { spec: context.spec.clone(), ..Context::default() };
+    let mut record = simulate::begin(method, &[(PLANNED_DT, s.dt)], &serial);
     (record.status, record.cost) = Drive::new(&mut *simulation, s.dt, &times, eos, &mut late)
         .at("samples", &|late, simulation, look| {
             let is_on_time = simulation.work().steps == done(look) as u64;

@@ -184,12 +184,7 @@ fn watch(growth: &mut Growth, simulation: &dyn Stepper<()>) -> Flow {
 }
 
 /// One run of the case.
-fn run(
-    method: &Method,
-    variant: &str,
-    s: &BoxSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(method: &Method, s: &BoxSettings, context: &Context) -> Result<Record, RunError> {
     let rules = rules(method, s)?;
     simulate::check_step(method.integrator, &rules, context)?;
     let (dt, end) = (rules.dt(), [rules.end]);
@@ -206,8 +201,8 @@ fn run(
         (PLANNED_DT, dt),
         (PLANNED_DT_OVER_LIMIT, dt / rules.dt_limit()),
     ];
-    let (name, serial) = ((RESTING_BOX.name, variant), Context::default());
-    let mut record = simulate::begin(name, s, method, &numbers, &serial);
+    let serial = Context { spec: context.spec.clone(), ..Context::default() };
+    let mut record = simulate::begin(method, &numbers, &serial);
     let grew = matches!(status, Status::Diverged { .. }) || growth.grew();
     record.put(GREW, f64::from(u8::from(grew)));
     record.put(ENERGY, energy(&*simulation) / start);

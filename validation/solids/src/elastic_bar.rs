@@ -34,7 +34,7 @@ crate::solid_settings! {
 
 /// Elastic bars.
 pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
-    name: BarSettings::NAME,
+    name: "elastic_bar",
     problem: "A pulse in an elastic bar; two bars collide",
     best: Best {
         variant: LAGRANGIAN,
@@ -98,7 +98,6 @@ impl BarSettings {
 }
 
 impl Problem for BarSettings {
-    const NAME: &'static str = "elastic_bar";
     type Watch = Motion;
 
     fn dx(&self) -> f64 {

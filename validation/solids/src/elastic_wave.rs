@@ -117,7 +117,6 @@ fn phase(k: usize) -> f64 {
 
 fn run(
     method: &Method<Symmetric>,
-    variant: &str,
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -126,7 +125,7 @@ fn run(
     let rules = settings.rules(method);
     let dt = rules.dt();
     let numbers = [("h/dx", h_over_dx), (PLANNED_DT, dt)];
-    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
     let (times, eos) = ([rules.end], RUBBER.eos());
     (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, eos, &mut watch)

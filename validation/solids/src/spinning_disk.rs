@@ -27,7 +27,7 @@ crate::solid_settings! {
 
 /// A spinning disk.
 pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
-    name: DiskSettings::NAME,
+    name: "spinning_disk",
     problem: "A free elastic disk spins",
     best: Best {
         variant: LAGRANGIAN,
@@ -64,7 +64,6 @@ const SAMPLES: f64 = 200.0;
 const TENTH: f64 = 0.1;
 
 impl Problem for DiskSettings {
-    const NAME: &'static str = "spinning_disk";
     type Watch = History;
 
     fn dx(&self) -> f64 {

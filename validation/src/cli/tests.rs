@@ -90,7 +90,7 @@ impl Case for Staged {
         if spec.variant == "stopping" && !context.only_estimate {
             STOP.store(STOPS.swap(false, Ordering::Relaxed), Ordering::Relaxed);
         }
-        let mut record = Record::new(self.name, &spec.variant, spec.settings.clone(), 1);
+        let mut record = Record::of(spec, 1);
         if context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             record.status = Status::Interrupted { step: 64, time: 0.1 };
             return Ok(record);

@@ -196,17 +196,12 @@ impl Column {
     }
 }
 
-fn run(
-    m: &WaterMethod,
-    variant: &str,
-    s: &HydrostaticSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Record, RunError> {
     let column = Column::new(s, m, context)?;
     let Column { medium, rules, period, .. } = &column;
     let mut simulation = (m.build)(column.parts(m, context))?;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
+    let mut record = simulate::begin(m, &numbers, context);
     let mut history = History::new(&column, &*simulation);
     history.sample(&*simulation);
     // Once a period and at the end.

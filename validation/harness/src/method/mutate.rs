@@ -83,7 +83,7 @@ fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetr
 
 #[cfg(test)]
 mod tests {
-    use base::mutation::Mutation;
+    use base::{mutation::Mutation, spec::RunSpec};
     use solver::{Domain, PlaneWall, Tait};
 
     use super::*;
@@ -117,7 +117,8 @@ mod tests {
         };
         let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
         let wall = fluid.with_role(Role::Wall);
-        let context = Context { mutation, ..Context::default() };
+        let spec = RunSpec { mutation, ..RunSpec::default() };
+        let context = Context { spec, ..Context::default() };
         let wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
         Parts {
             mirrors: vec![wall_at],

@@ -142,7 +142,7 @@ fn variants() -> Vec<Composition<OperatorSettings>> {
         Composition {
             variant: Variant { name: of.name, about: of.about() },
             adjust: of.adjust,
-            run: Box::new(move |_, s, context| run::run(of, &method, s, context)),
+            run: Box::new(move |s, context| run::run(of, &method, s, context)),
             rules: Box::new(move |s| run::rules(&ruled, s, &Context::of_rules())),
             lacks: Vec::new(),
         }

@@ -85,9 +85,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             whatever the kernel.",
     variants: || {
         variants(&Program {
-            run: |method, variant, s, context| {
-                run::run((ACOUSTIC_WAVE.name, Polarisation::Sound), method, variant, s, context)
-            },
+            run: |method, s, context| run::run(Polarisation::Sound, method, s, context),
             rules: |method, s| run::rules(Polarisation::Sound, method, s),
         })
     },
@@ -107,9 +105,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
             exactly zero to first order.",
     variants: || {
         variants(&Program {
-            run: |method, variant, s, context| {
-                run::run((SHEAR_WAVE.name, Polarisation::Shear), method, variant, s, context)
-            },
+            run: |method, s, context| run::run(Polarisation::Shear, method, s, context),
             rules: |method, s| run::rules(Polarisation::Shear, method, s),
         })
     },

@@ -37,7 +37,7 @@ crate::solid_settings! {
 
 /// A bar under its own weight.
 pub static CANTILEVER: Composed<CantileverSettings> = Composed {
-    name: CantileverSettings::NAME,
+    name: "cantilever",
     problem: "A clamped elastic bar swings under its own weight",
     best: Best {
         variant: LAGRANGIAN,
@@ -153,7 +153,6 @@ impl CantileverSettings {
 }
 
 impl Problem for CantileverSettings {
-    const NAME: &'static str = "cantilever";
     type Watch = End;
 
     fn dx(&self) -> f64 {

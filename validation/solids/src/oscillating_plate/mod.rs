@@ -32,7 +32,7 @@ crate::solid_settings! {
 
 /// An oscillating plate.
 pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
-    name: PlateSettings::NAME,
+    name: "oscillating_plate",
     problem: "An elastic cantilever swings",
     best: Best {
         variant: LAGRANGIAN,
@@ -116,7 +116,6 @@ impl PlateSettings {
 }
 
 impl Problem for PlateSettings {
-    const NAME: &'static str = "oscillating_plate";
     type Watch = Tip;
 
     fn dx(&self) -> f64 {

@@ -131,7 +131,7 @@ fn variants() -> Vec<Composition<RingSettings>> {
 
 /// Colliding rubber rings.
 pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
-    name: RingSettings::NAME,
+    name: "rubber_rings",
     problem: "Two rubber rings collide and bounce",
     best: Best {
         variant: LAGRANGIAN,
