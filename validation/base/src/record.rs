@@ -27,7 +27,7 @@ use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::reference::sha256;
 use crate::settings::Settings;
-use crate::spec::{Measure, RunKey, RunSpec, is_default};
+use crate::spec::{Measure, RunSpec, is_default};
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
@@ -529,11 +529,6 @@ impl Record {
             return Err(RecordError::Null { path });
         }
         Ok(serde_json::from_str(&document)?) // from the text again: errors then name line and column
-    }
-
-    /// Names the run, see [`RunSpec::key`].
-    pub fn key(&self) -> RunKey {
-        self.run.key()
     }
 }
 
