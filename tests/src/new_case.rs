@@ -73,8 +73,6 @@ pub const DECAY: Composed<Decay> = Composed {
             .with("quintic", "quintic spline", Method::of::<Flow<QuinticSpline>>(), |_| {})
             .all
     },
-    is_stable: completed,
     declaration,
     plan: |_| Vec::new(),
-    studies: |_, _| Vec::new(),
 };

@@ -189,10 +189,8 @@ const FLAWED: Composed<Decay> = Composed {
             .with("border", "", misread::<BORDER>(), |_| {})
             .all
     },
-    is_stable: completed,
     declaration: |_| Declaration::default(),
     plan: |_| Vec::new(),
-    studies: |_, _| Vec::new(),
 };
 
 #[test]

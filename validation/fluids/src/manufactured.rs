@@ -75,10 +75,11 @@ static CASE: Composed<ManufacturedSettings> = Composed {
             less than 0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 \
             it is mixed.",
     variants,
-    is_stable: completed,
-    declaration: |_| Declaration::default(),
+    declaration: |tier| Declaration {
+        studies: Some(Box::new(move |runs| studies(tier, runs))),
+        ..Declaration::default()
+    },
     plan: |tier| table(tier).plan(),
-    studies,
 };
 
 /// A manufactured flow.

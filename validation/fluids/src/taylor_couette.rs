@@ -178,10 +178,8 @@ static CASE: Composed<CylinderSettings> = Composed {
             and the outer one concave, and made of rows of particles that are spaced by their own arc \
             length.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |_| Vec::new(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Flow between two cylinders.

@@ -5,7 +5,7 @@ use std::{fmt::Display, rc::Rc};
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricName, Record, Status},
+    record::{MetricName, Record},
     settings::{self, Field, Settings},
     spec::RunSpec,
 };
@@ -18,8 +18,6 @@ use crate::{
     deep::deepened,
     method::{Knob, Method},
     rules::state_steps,
-    runs::Runs,
-    study::Study,
 };
 
 /// What runs a variant with these settings.
@@ -87,11 +85,6 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
     }
 }
 
-/// A run is stable if it reached its end: the criterion of a case that needs no stricter one.
-pub fn completed(record: &Record) -> bool {
-    record.status == Status::Completed
-}
-
 /// A table of compositions as a [`Case`].
 pub struct Composed<T> {
     /// Name on the command line.
@@ -104,14 +97,10 @@ pub struct Composed<T> {
     pub about: &'static str,
     /// The variants.
     pub variants: fn() -> Vec<Composition<T>>,
-    /// The criterion of bisections.
-    pub is_stable: fn(&Record) -> bool,
     /// The declaration from which the studies common to all cases are made.
     pub declaration: fn(Tier) -> Declaration,
     /// The judged runs beside those of the declaration.
     pub plan: fn(Tier) -> Vec<Planned>,
-    /// Studies of this case alone.
-    pub studies: fn(Tier, &Runs) -> Vec<Study>,
 }
 
 impl<T: Settings + 'static> Composed<T> {
@@ -234,10 +223,6 @@ impl<T: Settings + 'static> Case for Composed<T> {
         (chosen.rules)(&settings)
     }
 
-    fn is_stable(&self, record: &Record) -> bool {
-        (self.is_stable)(record)
-    }
-
     fn declaration(&self, tier: Tier) -> Declaration {
         let declared = (self.declaration)(tier.declared());
         if tier == Tier::Deep { deepened(declared, self) } else { declared }
@@ -245,9 +230,5 @@ impl<T: Settings + 'static> Case for Composed<T> {
 
     fn plan(&self, tier: Tier) -> Vec<Planned> {
         (self.plan)(tier.declared())
-    }
-
-    fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study> {
-        (self.studies)(tier.declared(), runs)
     }
 }

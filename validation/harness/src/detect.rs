@@ -133,8 +133,6 @@ mod tests {
     use crate::{
         case::{Best, Planned, Variant},
         declare::Declaration,
-        runs::Runs,
-        study::Study,
     };
 
     base::metrics! {
@@ -194,9 +192,6 @@ mod tests {
             ];
             gates.retain(|gate| tier == Tier::Full || gate.id != "balance.exact");
             vec![Planned::new(spec()).judged(gates)]
-        }
-        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
-            Vec::new()
         }
     }
 

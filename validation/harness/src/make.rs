@@ -493,8 +493,6 @@ mod tests {
     use super::*;
     use crate::{
         case::{Best, Variant, spec},
-        runs::Runs,
-        study::Study,
         suite,
     };
 
@@ -550,9 +548,6 @@ mod tests {
         fn plan(&self, _: Tier) -> Vec<Planned> {
             let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
             vec![planned(1), planned(2), planned(3).timed()]
-        }
-        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
-            Vec::new()
         }
     }
 

@@ -54,10 +54,8 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
             on top of each other, and a block at a thousand times the speed of sound. Each variant is an \
             experiment of its own.",
     variants,
-    is_stable: completed,
     declaration: |_| Declaration::default(),
     plan,
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {

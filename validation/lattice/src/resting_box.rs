@@ -68,10 +68,8 @@ pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     about: "Velocity noise of 1e-8 c0 excites every wave of a periodic lattice at rest. Its energy grows \
             if the time step is beyond the limit that linear theory of the same box predicts.",
     variants,
-    is_stable,
     declaration,
     plan,
-    studies: |_, _| Vec::new(),
 };
 
 fn is_stable(record: &Record) -> bool {
@@ -294,7 +292,7 @@ fn declaration(tier: Tier) -> Declaration {
                  predictor-corrector has no limit without damping, because it grows at every step.";
     let of = table(tier).rows.into_iter().map(bisected).collect();
     let limits = StepLimits { about: about.into(), of };
-    Declaration { limits, ..Declaration::default() }
+    Declaration { limits, is_stable: Some(is_stable), ..Declaration::default() }
 }
 
 /// Super-time-stepping at its limit, in a larger box.

@@ -46,10 +46,8 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
     variants: || solid::variants(schemes::solid::free()),
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {

@@ -38,10 +38,8 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
             particles, and the effect of the time step is divided out.",
     variants,
-    is_stable: completed,
     declaration: |_| Declaration { stepwise: &[FREQUENCY_ERROR], ..Declaration::default() },
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 const NAME: &str = "elastic_wave";

@@ -38,10 +38,8 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",
     variants: || solid::variants(schemes::solid::free()),
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {

@@ -125,14 +125,13 @@ impl Case for Staged {
             uncertainty: None,
             reach: ("re", "", ""),
         };
-        Declaration { card: (self.name == "main").then(card), ..Declaration::default() }
-    }
-
-    fn studies(&self, _: Tier, runs: &Runs) -> Vec<Study> {
-        let count = runs.all.len() as f64;
-        let id = format!("{}-count", self.name);
-        let study = Study::new(&id, "How many").prose("Runs are counted.");
-        vec![study.judge(gate(self.name, "count"), count)]
+        let (name, card) = (self.name, (self.name == "main").then(card));
+        let studies = move |runs: &Runs| {
+            let count = runs.all.len() as f64;
+            let study = Study::new(&format!("{name}-count"), "How many").prose("Runs are counted.");
+            vec![study.judge(gate(name, "count"), count)]
+        };
+        Declaration { card, studies: Some(Box::new(studies)), ..Declaration::default() }
     }
 }
 

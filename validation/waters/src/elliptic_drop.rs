@@ -213,10 +213,8 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
             follow an ordinary differential equation exactly. Gravity, in which it falls freely, must \
             change nothing.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// What a run is for.

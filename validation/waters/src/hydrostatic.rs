@@ -106,10 +106,8 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
             moves. After 20 acoustic periods 4 H/c0 the pressure, the level, the kinetic energy, the gap \
             between water and bottom, and the particles outside of the tank are compared with it.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Spacings from the surface of the water to the rim of the tank.

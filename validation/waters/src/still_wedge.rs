@@ -64,10 +64,8 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
             columns are stretched to fill the tank, so that their particles are not those of a lattice and \
             must first find their places. The exact pressure is that of the depth, and nothing moves.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Half of the width of the tank \[H\].

@@ -165,8 +165,9 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
             (`divergence`). The rate of that, the particles at the end less those of the start over the \
             time, is the operator, which is compared with its exact value.",
     variants,
-    is_stable: completed,
-    declaration: |_| Declaration::default(),
+    declaration: |tier| Declaration {
+        studies: Some(Box::new(move |runs| study::studies(tier, runs))),
+        ..Declaration::default()
+    },
     plan: plan::plan,
-    studies: study::studies,
 };

@@ -89,10 +89,8 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             rules: |method, s| run::rules(Polarisation::Sound, method, s),
         })
     },
-    is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
-    studies: |_, _| Vec::new(),
 };
 
 /// A decaying shear wave.
@@ -109,10 +107,8 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
             rules: |method, s| run::rules(Polarisation::Shear, method, s),
         })
     },
-    is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
-    studies: |_, _| Vec::new(),
 };
 
 const BEST: Best = Best {

@@ -48,10 +48,8 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
             begins to act: shape, material and load are those of the test CSM3 of Turek & Hron (2006). The \
             path of its end is compared with finite elements of the same bar and law.",
     variants,
-    is_stable: completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {
