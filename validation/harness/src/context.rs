@@ -36,7 +36,7 @@ pub struct Progress {
 /// How a run is executed, apart from what it computes.
 #[derive(Clone, Default)]
 pub struct Context<'a> {
-    /// The run: what it does with its time step, what is wrong with its scene, what is measured of it and kept.
+    /// The run: what may be wrong with its time step and its scene, and what is measured of it and kept.
     pub spec: RunSpec,
     /// Run even if it is estimated to take more time or memory than a run may.
     pub allow_long: bool,

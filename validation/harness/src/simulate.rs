@@ -24,7 +24,8 @@ pub const INTEGRATOR: &str = "integrator";
 /// Name of the walls.
 pub const WALLS: &str = "walls";
 
-/// A record of the run of a context, with what its rules chose: numbers by name, a kernel, an integrator, walls.
+/// A record of the run of a context, with what its rules chose: numbers by name, a kernel, an integrator,
+/// walls.
 pub fn begin<X, D: ?Sized>(
     method: &Method<X, D>,
     numbers: &[(&str, f64)],

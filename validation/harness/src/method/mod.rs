@@ -109,8 +109,9 @@ pub fn scene<S: Standard>(parts: Parts<S::Extra>) -> Scene<S> {
     scene
 }
 
-/// Parts with their errors and their disorder, of which no scheme needs to know; from each wall particle to the
-/// point of the surface that is nearest to it \[m\], if walls read that; and the factor of [`Scene::skin_share`].
+/// Parts with their errors and their disorder, of which no scheme needs to know; from each wall particle to
+/// the point of the surface that is nearest to it \[m\], if walls read that; and the factor of
+/// [`Scene::skin_share`].
 fn changed<X: Numbers>(mut parts: Parts<X>) -> (Parts<X>, Vec<Vector2<f64>>, f64) {
     mutate(&mut parts);
     let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);

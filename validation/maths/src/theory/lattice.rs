@@ -26,8 +26,8 @@ struct Site {
     guard: f64,
 }
 
-/// The points of a square lattice in reach of the origin, without it, row by row, each with V F \[1/dx²\]; the
-/// spacing is 1.
+/// The points of a square lattice of spacing 1 in reach of the origin, without it, row by row, each with V F
+/// \[1/dx²\].
 pub fn near<K: Kernel>(h_over_dx: f64) -> Vec<(Vector2<f64>, f64)> {
     let kernel = Smoothing::<K>::new(h_over_dx);
     let reach = kernel.support().ceil() as i32;
