@@ -178,6 +178,8 @@ pub struct Gate {
     pub cause: Option<Cause>,
     /// is it a control, which must lie outside its bound?
     pub control: bool,
+    /// is a run that ends early the limitation or the failure that is expected?
+    pub may_end_early: bool,
 }
 
 impl Gate {
@@ -202,6 +204,7 @@ impl Gate {
             reason: None,
             cause: None,
             control: false,
+            may_end_early: false,
         };
         gate.sound()
     }
@@ -216,9 +219,17 @@ impl Gate {
         Gate { known, reason, cause, ..self }.sound()
     }
 
-    /// A control: a finite number outside the bound, or a run that ends early, is what must come out.
+    /// A control: a finite number outside the bound is what must come out.
     pub fn expected_to_fail(self) -> Self {
         Gate { control: true, ..self }
+    }
+
+    /// A run that ends early counts as the limitation or as the failure that is expected.
+    ///
+    /// # Panics
+    /// If the gate has neither.
+    pub fn may_end_early(self) -> Self {
+        Gate { may_end_early: true, ..self }.sound()
     }
 
     /// Panics unless it is sound.
@@ -257,6 +268,11 @@ impl Gate {
                 "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"
             ));
         }
+        if self.may_end_early && known.is_none() && !self.control {
+            return Err(format!(
+                "gate {id} lets a run end early and names neither a limitation nor an expected failure"
+            ));
+        }
         match known {
             Some(known) if !known.is_beyond(*bound) => Err(format!(
                 "the limitation of gate {id} is {known}, which must have finite ends in ascending order and \
@@ -273,12 +289,16 @@ impl Gate {
     }
 
     /// Judges a record: its metric by [`Gate::judge`] if the run reached its end, and otherwise the early
-    /// end, however good the run was until then: it fails, as a control must.
+    /// end, however good the run was until then: it fails unless the gate says what it is.
     pub fn judge_record(&self, record: &Record) -> Judgement {
-        if record.status == Status::Completed {
-            return self.judge(record.metric(&self.metric));
-        }
-        let verdict = if self.control { Verdict::ExpectedFailure } else { Verdict::Fail };
+        let verdict = match (self.may_end_early, self.control) {
+            _ if record.status == Status::Completed => {
+                return self.judge(record.metric(&self.metric));
+            }
+            (true, true) => Verdict::ExpectedFailure,
+            (true, false) => Verdict::Limitation,
+            (false, _) => Verdict::Fail,
+        };
         Judgement { verdict, value: None, margin: None }
     }
 
@@ -458,7 +478,7 @@ mod tests {
     /// A run that diverged was "not measured": the gates of a method that broke down neither passed nor
     /// failed.
     #[test]
-    fn an_early_end_fails_unless_the_gate_is_a_control() {
+    fn an_early_end_fails_unless_the_gate_names_it() {
         let mut record = Record::new("case", "seed", serde_json::json!({}), 1);
         record.metrics.insert("metric".into(), crate::record::Metric::new(0.5, "-", "exact"));
         let plain = gate(Bound::Below(1.0));
@@ -466,12 +486,15 @@ mod tests {
         record.status = Status::Interrupted { step: 3, time: 0.1 };
         let limited = plain.clone().with_limitation(Bound::Below(2.0), "it tears", &CAUSE);
         let control = plain.clone().expected_to_fail();
-        for (gate, verdict) in
-            [(plain, Verdict::Fail), (limited, Verdict::Fail), (control, Verdict::ExpectedFailure)]
-        {
+        for gate in [plain.clone(), limited.clone(), control.clone()] {
             let judgement = gate.judge_record(&record);
-            assert_eq!((judgement.verdict, judgement.value), (verdict, None), "{gate:?}");
+            assert_eq!((judgement.verdict, judgement.value), (Verdict::Fail, None), "{gate:?}");
         }
+        let verdict = |gate: Gate| gate.may_end_early().judge_record(&record).verdict;
+        assert_eq!(verdict(limited), Verdict::Limitation);
+        assert_eq!(verdict(control), Verdict::ExpectedFailure);
+        let silent = Gate { may_end_early: true, ..plain };
+        assert!(silent.check().is_err_and(|words| words.contains("lets a run end early")));
     }
 
     #[test]
