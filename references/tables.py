@@ -70,7 +70,7 @@ def check(folder):
     package = json.loads((folder / "datapackage.json").read_text())
     assert package["name"] == folder.resolve().name
     allowed = {"profile", "name", "title", "description", "grade", "licenses", "sources", "resources", "method",
-               "uncertainty", "caveats", "errata"}
+               "uncertainty", "caveats"}
     assert set(package) <= allowed, set(package) - allowed
     assert all(package[key].strip() for key in ("title", "description", "method", "uncertainty"))
     assert package["licenses"] and all(one["name"] for one in package["licenses"])

@@ -31,13 +31,13 @@ fn medium(method: &Method, s: &Decay) -> Medium {
     Medium { nu: 0.01, eta2_over_h2: 1e-6, ..method.medium(eos, [dx, 1.3 * dx]) }
 }
 
-fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record, RunError> {
+fn run(m: &Method, s: &Decay, context: &Context) -> Result<Record, RunError> {
     let (medium, dt, dx) = (medium(m, s), rules(m, s)?.dt(), 1.0 / s.n as f64);
     let wave = |x: Vector2<f64>| Vector2::new(1e-3 * sin(TAU * x.y), 0.0);
     let places = lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
     let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
     let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
-    let mut record = begin((DECAY.name, variant), s, m, &[(PLANNED_DT, dt)], context);
+    let mut record = begin(m, &[(PLANNED_DT, dt)], context);
     let all = simulate(m, parts, [dt, s.end], context, &mut record)?.particles();
     let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
     let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;
@@ -73,8 +73,6 @@ pub const DECAY: Composed<Decay> = Composed {
             .with("quintic", "quintic spline", Method::of::<Flow<QuinticSpline>>(), |_| {})
             .all
     },
-    is_stable: completed,
     declaration,
     plan: |_| Vec::new(),
-    studies: |_, _| Vec::new(),
 };

@@ -74,8 +74,7 @@ fn made(case: &'static dyn Case, damage: Damage, records: &BTreeMap<String, Reco
     let of = |planned: Planned| {
         let any = || records.values().next();
         let mut record = damaged(records.get(&planned.spec.variant).or_else(any)?, damage);
-        record.run.settings = planned.spec.settings.clone();
-        let record = record.of(&planned.spec);
+        record.run = RunSpec { measure: <_>::default(), ..planned.spec.clone() };
         Some((planned.spec.key(), record))
     };
     let records = plan::of_case(case, Tier::Quick).into_iter().filter_map(of).collect();

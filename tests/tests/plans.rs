@@ -132,9 +132,8 @@ fn a_budget_compares_each_change_with_the_run_that_it_names() {
 /// The gates of a case that are known without a run: of its plan, and those that its studies declare.
 fn gates(case: &dyn Case, tier: Tier) -> Vec<Gate> {
     let runs = Runs::default();
-    let studies = case.studies(tier, &runs).into_iter();
-    let of_studies = studies.chain(studies::of(case.name(), &case.declaration(tier), &runs));
-    let of_studies = of_studies.flat_map(|study| study.judged).map(|judged| judged.gate);
+    let studies = studies::of(case.name(), &case.declaration(tier), &runs).into_iter();
+    let of_studies = studies.flat_map(|study| study.judged).map(|judged| judged.gate);
     let planned = plan::of_case(case, tier).into_iter().flat_map(|planned| planned.gates);
     planned.chain(of_studies).collect()
 }

@@ -164,12 +164,13 @@ fn flawed<const KIND: char>() -> Method {
     })
 }
 
-fn run(m: &Method, variant: &str, s: &Decay, context: &Context) -> Result<Record, RunError> {
+fn run(m: &Method, _: &Decay, context: &Context) -> Result<Record, RunError> {
     let eos = Tait { background: 0.3, ..Tait::new(1.0, 1.0) };
     let medium = Medium { nu: 0.01, eta2_over_h2: 1e-6, ..m.medium(eos, [1.0 / 12.0, 0.1]) };
-    let domain = if variant == "border" { Domain::torus(1.0, 1.0) } else { Domain::open() };
+    let domain =
+        if context.spec.variant == "border" { Domain::torus(1.0, 1.0) } else { Domain::open() };
     let parts = Parts::new(medium, domain, patch(12, 0.15, 11), context);
-    let mut record = begin((FLAWED.name, variant), s, m, &[], context);
+    let mut record = begin(m, &[], context);
     simulate(m, parts, [1.0 / 32.0, 1.0], context, &mut record)?;
     Ok(record)
 }
@@ -192,10 +193,8 @@ const FLAWED: Composed<Decay> = Composed {
             .with("border", "", flawed::<BORDER>(), |_| {})
             .all
     },
-    is_stable: completed,
     declaration: |_| Declaration::default(),
     plan: |_| Vec::new(),
-    studies: |_, _| Vec::new(),
 };
 
 #[test]

@@ -19,7 +19,6 @@
 //! ```
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
@@ -328,21 +327,6 @@ impl Gate {
     }
 }
 
-/// Checks every gate, and that no two have the same name.
-///
-/// # Errors
-/// What is wrong with the first that is not sound.
-pub fn check_all(gates: &[Gate]) -> Result<(), String> {
-    let mut names = BTreeSet::new();
-    for gate in gates {
-        gate.check()?;
-        if !names.insert(&gate.id) {
-            return Err(format!("two gates are called {}", gate.id));
-        }
-    }
-    Ok(())
-}
-
 /// What came of a gate, mildest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -364,16 +348,6 @@ impl Verdict {
     /// Does it fail the run? Only [`Verdict::Fail`] does.
     pub fn is_failure(self) -> bool {
         self == Verdict::Fail
-    }
-
-    /// In words, for tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Limitation => "limitation",
-            Self::ExpectedFailure => "expected failure",
-            Self::Fail => "fail",
-        }
     }
 }
 
@@ -599,9 +573,7 @@ mod tests {
             let unsound = Gate { bound, ..sound.clone() };
             assert!(refused(unsound).starts_with("the bound of gate"));
         }
-        let twice = check_all(&[sound.clone(), sound.clone()]);
-        assert_eq!(twice, Err("two gates are called case.metric".into()));
-        assert_eq!(check_all(&[sound]), Ok(()));
+        assert_eq!(sound.check(), Ok(()));
     }
 
     #[test]

@@ -6,43 +6,41 @@
 //! `#[serde(with = "crate::number")]` on an `f64` field, `crate::number::option` on an `Option<f64>`, and
 //! `crate::number::list` on a `Vec<f64>`.
 
-use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// An `f64` whose JSON form is never `null`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Form", into = "Form")]
 pub struct Number(pub f64);
 
 /// The JSON form of a number: what a reader of a record finds.
-#[derive(Deserialize)]
-#[serde(untagged)]
+#[derive(Serialize, Deserialize)]
+#[serde(untagged, deny_unknown_fields)]
+#[serde(expecting = r#"expected a number or {"not_finite": "NaN" | "inf" | "-inf"}"#)]
 enum Form {
     Finite(f64),
-    Other(NotFinite),
+    Other { not_finite: String },
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct NotFinite {
-    not_finite: String,
-}
-
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        json(self.0).serialize(serializer)
+impl From<Number> for Form {
+    fn from(Number(value): Number) -> Self {
+        match value.is_finite() {
+            true => Self::Finite(value),
+            false => Self::Other { not_finite: value.to_string() },
+        }
     }
 }
 
-impl<'de> Deserialize<'de> for Number {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        const EXPECTED: &str = r#"expected a number or {"not_finite": "NaN" | "inf" | "-inf"}"#;
-        match Form::deserialize(deserializer).map_err(|_| D::Error::custom(EXPECTED))? {
-            Form::Finite(value) => Ok(Number(value)),
-            Form::Other(NotFinite { not_finite }) => match not_finite.as_str() {
-                "NaN" => Ok(Number(f64::NAN)),
-                "inf" => Ok(Number(f64::INFINITY)),
-                "-inf" => Ok(Number(f64::NEG_INFINITY)),
-                other => Err(D::Error::custom(format!("{EXPECTED}, found not_finite {other:?}"))),
+impl TryFrom<Form> for Number {
+    type Error = String;
+    fn try_from(form: Form) -> Result<Self, String> {
+        match form {
+            Form::Finite(value) => Ok(Self(value)),
+            Form::Other { not_finite } => match not_finite.as_str() {
+                "NaN" => Ok(Self(f64::NAN)),
+                "inf" => Ok(Self(f64::INFINITY)),
+                "-inf" => Ok(Self(f64::NEG_INFINITY)),
+                other => Err(format!("not_finite is {other:?}; allowed are NaN, inf and -inf")),
             },
         }
     }
@@ -50,10 +48,7 @@ impl<'de> Deserialize<'de> for Number {
 
 /// The number as a JSON value, for maps of values: `Value::from(f64::NAN)` would be `null`.
 pub fn json(value: f64) -> serde_json::Value {
-    match serde_json::Number::from_f64(value) {
-        Some(finite) => serde_json::Value::Number(finite),
-        None => serde_json::json!({ "not_finite": value.to_string() }),
-    }
+    serde_json::to_value(Number(value)).unwrap_or_default()
 }
 
 /// For `#[serde(with = …)]` on an `f64`.

@@ -27,7 +27,7 @@ use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::reference::sha256;
 use crate::settings::Settings;
-use crate::spec::{Measure, RunKey, RunSpec, is_default};
+use crate::spec::{Measure, RunSpec, is_default};
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
@@ -424,15 +424,7 @@ impl Deref for Record {
 impl Record {
     /// A record of a run that was refused before its first step, for this reason.
     pub fn refused(spec: &RunSpec, reason: String) -> Self {
-        let record = Self::new(&spec.case, &spec.variant, spec.settings.clone(), 1);
-        Self { status: Status::Refused { reason }, ..record }.of(spec)
-    }
-
-    /// The same record with its own settings, which states that it is of this run.
-    pub fn of(mut self, spec: &RunSpec) -> Self {
-        let RunSpec { case, variant, settings, .. } = self.run;
-        self.run = RunSpec { case, variant, settings, measure: Measure::default(), ..spec.clone() };
-        self
+        Self { status: Status::Refused { reason }, ..Self::of(spec, 1) }
     }
 
     /// The run that it is of, whatever was measured of it.
@@ -454,11 +446,16 @@ impl Record {
         serde_json::from_value(self.settings.clone()).unwrap_or_default()
     }
 
-    /// A record of this process that is yet to be filled: completed, nothing measured.
+    /// A record of one simulation of this process that is yet to be filled: completed, nothing measured.
     pub fn new(case: &str, variant: &str, settings: Value, threads: usize) -> Self {
+        Self::of(&RunSpec::new(case, variant, settings), threads)
+    }
+
+    /// The same of any run.
+    pub fn of(spec: &RunSpec, threads: usize) -> Self {
         Record {
             schema: SCHEMA,
-            run: RunSpec::new(case, variant, settings),
+            run: RunSpec { measure: Measure::default(), ..spec.clone() },
             cost: Cost { threads, ..Cost::default() },
             manifest: Manifest::of_this_process(threads),
             ..Record::default()
@@ -532,11 +529,6 @@ impl Record {
             return Err(RecordError::Null { path });
         }
         Ok(serde_json::from_str(&document)?) // from the text again: errors then name line and column
-    }
-
-    /// Names the run, see [`RunSpec::key`].
-    pub fn key(&self) -> RunKey {
-        self.run.key()
     }
 }
 

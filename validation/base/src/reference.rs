@@ -66,9 +66,6 @@ pub struct Package {
     /// what a reader would get wrong
     #[serde(default)]
     pub caveats: Vec<String>,
-    /// corrections, applied on loading
-    #[serde(default)]
-    pub errata: Vec<Erratum>,
 }
 
 /// What stands behind the numbers of a reference.
@@ -177,25 +174,7 @@ pub enum FieldKind {
     String,
 }
 
-/// A correction of one cell.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Erratum {
-    /// name of the table
-    pub resource: String,
-    /// counted from 0 below the header
-    pub row: usize,
-    /// name of the field
-    pub column: String,
-    /// the cell as the source has it
-    pub was: String,
-    /// the cell as it should be
-    pub now: String,
-    /// why
-    pub because: String,
-}
-
-/// A package that passed every check, with its errata applied.
+/// A package that passed every check.
 #[derive(Debug, Clone)]
 pub struct Reference {
     /// provenance
@@ -258,13 +237,7 @@ impl Reference {
         let package: Package = serde_json::from_str(package).map_err(unreadable)?;
         check_provenance(name, &package)?;
         let table = |resource| read_table(name, resource, files);
-        let mut tables = package.resources.iter().map(table).collect::<Result<Vec<_>, _>>()?;
-        for erratum in &package.errata {
-            correct(name, &mut tables, erratum)?;
-        }
-        for (table, resource) in tables.iter().zip(&package.resources) {
-            check_cells(name, &resource.path, table)?;
-        }
+        let tables = package.resources.iter().map(table).collect::<Result<_, _>>()?;
         Ok(Reference { package, tables })
     }
 
@@ -442,9 +415,6 @@ fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError>
             stated(&format!("what column {column} of {path} is"), says(&field.description))?;
         }
     }
-    for erratum in &package.errata {
-        stated("why an erratum corrects", says(&erratum.because))?;
-    }
     Ok(())
 }
 
@@ -457,7 +427,7 @@ fn place(name: &str) -> Result<usize, ReferenceError> {
     EMBEDDED.iter().position(|(known, _)| *known == name).ok_or_else(unknown)
 }
 
-/// Reads a table after checking its header.
+/// Reads a table, and checks its header and its cells.
 fn read_table(
     name: &str,
     resource: &Resource,
@@ -483,31 +453,13 @@ fn read_table(
         let record = record.map_err(|error| differs(error.to_string()))?;
         rows.push(record.iter().map(String::from).collect());
     }
-    Ok(Table { name: resource.name.clone(), fields: resource.schema.fields.clone(), rows })
-}
-
-/// Applies one correction, if the cell reads as the correction says.
-fn correct(name: &str, tables: &mut [Table], erratum: &Erratum) -> Result<(), ReferenceError> {
-    let wrong = |reason: String| {
-        let Erratum { resource, row, column, .. } = erratum;
-        let place = format!("row {row}, column {column} of reference {name}/{resource}");
-        ReferenceError(format!("the erratum for {place} is refused: {reason}"))
-    };
-    let table = tables.iter_mut().find(|table| table.name == erratum.resource);
-    let table = table.ok_or_else(|| wrong("there is no such table".into()))?;
-    let position = table.position(&erratum.column).map_err(|error| wrong(error.to_string()))?;
-    let rows = table.rows.len();
-    let row = table.rows.get_mut(erratum.row);
-    let cell = &mut row.ok_or_else(|| wrong(format!("there are {rows} rows")))?[position];
-    if *cell != erratum.was {
-        return Err(wrong(format!("the cell is {cell:?}, not {:?}", erratum.was)));
-    }
-    *cell = erratum.now.clone();
-    Ok(())
+    let table = Table { name: resource.name.clone(), fields: resource.schema.fields.clone(), rows };
+    check_cells(&file, &table)?;
+    Ok(table)
 }
 
 /// Refuses cells that are neither empty nor what their field says.
-fn check_cells(name: &str, path: &str, table: &Table) -> Result<(), ReferenceError> {
+fn check_cells(file: &str, table: &Table) -> Result<(), ReferenceError> {
     for (row, cells) in table.rows.iter().enumerate() {
         for (field, text) in table.fields.iter().zip(cells) {
             let is_valid = match field.kind {
@@ -517,7 +469,7 @@ fn check_cells(name: &str, path: &str, table: &Table) -> Result<(), ReferenceErr
             };
             if !is_valid {
                 let Field { name: column, kind, .. } = field;
-                let place = format!("row {row}, column {column} of reference {name}/{path}");
+                let place = format!("row {row}, column {column} of reference {file}");
                 return refused(format!("{place} is {text:?}, not of type {kind:?}"));
             }
         }
@@ -629,24 +581,6 @@ mod tests {
         let expected =
             "row 0, column u of reference sample/profile.csv is \"NaN\", not of type Number";
         assert_eq!(error, expected);
-    }
-
-    #[test]
-    fn errata_are_applied_and_must_fit() {
-        let erratum = |was: &str, row: usize, column: &str| {
-            let mut package = package();
-            package["errata"] = json!([{
-                "resource": "profile", "row": row, "column": column, "was": was, "now": "-0.08664",
-                "because": "misprint",
-            }]);
-            load(&package, TABLE)
-        };
-        let corrected = erratum("-0.86636", 1, "u").unwrap();
-        let table = corrected.table("profile").unwrap();
-        assert_eq!(table.select(&[("who", "b")], ["u"]).unwrap(), [[-0.08664]]);
-        for wrong in [erratum("-0.8", 1, "u"), erratum("-0.86636", 9, "u"), erratum("b", 1, "v")] {
-            assert!(wrong.unwrap_err().to_string().starts_with("the erratum for row"));
-        }
     }
 
     /// Each table has its own hash; the build script asks only for one that its package states.

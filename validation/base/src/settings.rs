@@ -195,7 +195,9 @@ fn edit_distance(name: &str, written: &str) -> usize {
 }
 
 /// A type that a setting may have.
-pub trait SettingType: Copy {
+///
+/// A value that is compared with the limits of the range converts to what they are.
+pub trait SettingType: Copy + Into<Option<Self::Limit>> {
     /// What the limits of the range are.
     type Limit: PartialOrd;
 
@@ -207,9 +209,6 @@ pub trait SettingType: Copy {
 
     /// The value without its type.
     fn value(self) -> Value;
-
-    /// What is compared with the limits, if there is anything to compare.
-    fn limited(self) -> Option<Self::Limit>;
 }
 
 /// Reads a value. One that is not finite, or outside of the range, is refused.
@@ -219,7 +218,8 @@ pub fn read<T: SettingType>(
     Field { name, kind, range: words, .. }: &Field,
 ) -> Result<T, SettingError> {
     let is_allowed = |value: &T| {
-        value.limited().zip(range).is_none_or(|(number, range)| range.contains(&number))
+        let limited: Option<T::Limit> = (*value).into();
+        limited.zip(range).is_none_or(|(number, range)| range.contains(&number))
     };
     let refused =
         || SettingError(format!("setting {name} is {text:?}; allowed is {kind}, {words}"));
@@ -237,10 +237,6 @@ impl SettingType for f64 {
     fn value(self) -> Value {
         Value::Real(self)
     }
-
-    fn limited(self) -> Option<f64> {
-        Some(self)
-    }
 }
 
 impl SettingType for Option<f64> {
@@ -253,10 +249,6 @@ impl SettingType for Option<f64> {
 
     fn value(self) -> Value {
         self.map_or(Value::Auto(Auto::Auto), Value::Real)
-    }
-
-    fn limited(self) -> Option<f64> {
-        self
     }
 }
 
@@ -275,10 +267,6 @@ impl SettingType for usize {
     fn value(self) -> Value {
         Value::Count(self as u64)
     }
-
-    fn limited(self) -> Option<usize> {
-        Some(self)
-    }
 }
 
 impl SettingType for bool {
@@ -291,10 +279,6 @@ impl SettingType for bool {
 
     fn value(self) -> Value {
         Value::Flag(self)
-    }
-
-    fn limited(self) -> Option<bool> {
-        None
     }
 }
 

@@ -399,16 +399,10 @@ impl Entry {
         problem: &Problem,
     ) -> Result<Record, RunError> {
         let playback = self.playback();
-        let context = Context {
-            playback: Some(&playback),
-            allow_long: true,
-            allow_unstable: true,
-            ..Context::default()
-        };
+        let context = Context { playback: Some(&playback), allow_long: true, ..Context::default() };
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
-        let record = case.run(&ours, &context)?;
-        let spec = RunSpec { submission: Some(Box::new(self.submission())), ..ours };
-        let mut record = record.of(&spec);
+        let mut record = case.run(&ours, &context)?;
+        record.run.submission = Some(Box::new(self.submission()));
         record.run.settings = problem.spec.settings.clone();
         let why = "the particles of the submission do not determine it";
         record.take_out(|_, metric| !metric.value.is_finite(), why);

@@ -73,10 +73,8 @@ static CASE: Composed<Cavity> = Composed {
             fills the box, so that a density that drifts has nowhere to go. Both mid-lines are compared with \
             finite differences of this project and with Ghia, Ghia & Shin 1982, which these judge too.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// The cavity.
@@ -169,13 +167,13 @@ fn measure(places: &[Place], means: &[f64], record: &mut Record) {
     record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
 }
 
-fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Record, RunError> {
+fn run(m: &Method, s: &Cavity, context: &Context) -> Result<Record, RunError> {
     let flow = flow(s, m, context)?;
     let (dx, eos, start) = (flow.medium.dx, flow.medium.eos, particles(m, &flow));
     let volume = start.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum::<f64>();
     let parts = flow.parts(Domain::open(), start, context);
     let numbers = flow.rules.numbers([s.h_over_dx, dx]);
-    let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
+    let mut record = simulate::begin(m, &numbers, context);
     let mut simulation = (m.build)(parts)?;
     let time = |k: usize| s.end * (0.8 + 0.2 * k as f64 / SAMPLES as f64);
     let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
@@ -199,7 +197,7 @@ fn run(m: &Method, variant: &str, s: &Cavity, context: &Context) -> Result<Recor
         let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
         record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
     }
-    if context.keep_particles {
+    if context.spec.keep.particles {
         let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
         pictures::keep(&mut record, pictures::END, "L", ("speed", "U"), speeds);
     }

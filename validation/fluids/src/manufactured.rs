@@ -75,10 +75,11 @@ static CASE: Composed<ManufacturedSettings> = Composed {
             less than 0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 \
             it is mixed.",
     variants,
-    is_stable: completed,
-    declaration: |_| Declaration::default(),
+    declaration: |tier| Declaration {
+        studies: Some(Box::new(move |runs| studies(tier, runs))),
+        ..Declaration::default()
+    },
     plan: |tier| table(tier).plan(),
-    studies,
 };
 
 /// A manufactured flow.
@@ -122,19 +123,14 @@ fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
     fluid.chain(wall.flat_map(|(y, role)| row(y, role))).collect()
 }
 
-fn run(
-    method: &Method,
-    variant: &str,
-    s: &ManufacturedSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(method: &Method, s: &ManufacturedSettings, context: &Context) -> Result<Record, RunError> {
     let flow = flow(s, method, context)?;
     let mirror = |y, normal| PlaneWall::new(Vector2::new(0.0, y), normal, Vector2::zeros());
     let mut parts = flow.parts(Domain::channel(1.0), particles(method, &flow), context);
     parts.outline = None; // no format of export states a force that depends on the place
     parts.mirrors = vec![mirror(0.0, Vector2::y()), mirror(1.0, -Vector2::y())];
     let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let steps = [flow.rules.dt(), s.end];
     let simulation = simulate::simulate(method, parts, steps, context, &mut record)?;
     if record.status == Status::Completed {

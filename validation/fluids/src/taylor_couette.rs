@@ -113,7 +113,6 @@ impl Cylinders {
 
 fn run(
     method: &Method,
-    variant: &str,
     settings: &CylinderSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -122,7 +121,7 @@ fn run(
     let numbers = [&common[..], &[("V [m/s]", cylinders.flow.speed)]].concat();
     let particles = cylinders.particles(method);
     let parts = Parts::new(cylinders.medium, Domain::open(), particles, context);
-    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let until = [cylinders.rules.dt(), cylinders.rules.end];
     let simulation = simulate::simulate(method, parts, until, context, &mut record)?;
     if record.status == Status::Completed {
@@ -179,10 +178,8 @@ static CASE: Composed<CylinderSettings> = Composed {
             and the outer one concave, and made of rows of particles that are spaced by their own arc \
             length.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |_| Vec::new(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Flow between two cylinders.

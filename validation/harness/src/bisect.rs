@@ -6,7 +6,7 @@ use base::{
 };
 
 use crate::{
-    case::{self, Case, RunError},
+    case::{self, Case, RunError, Tier},
     context::Context,
 };
 
@@ -30,10 +30,11 @@ pub fn run(
     bisect: &Bisect,
     context: &Context,
 ) -> Result<Record, RunError> {
-    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
+    let mut record = Record::of(spec, 1);
+    let criterion = case.declaration(Tier::Quick).is_stable;
     let is_stable = |x: f64| {
         let one = simulate(case, &at(spec, bisect, x), context, &mut record.cost)?;
-        Ok(case.is_stable(&one))
+        Ok(criterion.map_or(one.status == Status::Completed, |is_stable| is_stable(&one)))
     };
     match largest_stable(bisect.guess, bisect.resolution, is_stable) {
         Ok(Some([stable, unstable])) => {
@@ -187,8 +188,7 @@ mod tests {
     use super::*;
     use crate::{
         case::{Best, Planned, Tier, Variant},
-        runs::Runs,
-        study::Study,
+        declare::Declaration,
     };
 
     /// The bisection of what cannot fail.
@@ -283,7 +283,7 @@ mod tests {
             assert_eq!(spec.task, Task::Simulate, "one simulation at a time");
             let mut asked = self.0.lock().expect("no panic before");
             asked.push((dt, end));
-            let mut record = Record::new("spring", "only", spec.settings.clone(), 1).of(spec);
+            let mut record = Record::of(spec, 1);
             record.put(GREW, f64::from(dt > 3e-3));
             let more = asked.len() as u64;
             record.cost = Cost {
@@ -297,13 +297,11 @@ mod tests {
             };
             Ok(record)
         }
-        fn is_stable(&self, record: &Record) -> bool {
-            record.value(GREW) == Some(0.0)
+        fn declaration(&self, _: Tier) -> Declaration {
+            let is_stable = |record: &Record| record.value(GREW) == Some(0.0);
+            Declaration { is_stable: Some(is_stable), ..Declaration::default() }
         }
         fn plan(&self, _: Tier) -> Vec<Planned> {
-            Vec::new()
-        }
-        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
             Vec::new()
         }
     }

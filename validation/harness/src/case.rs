@@ -2,13 +2,13 @@
 //! of judged runs.
 
 use base::{
-    record::{Record, Status},
+    record::Record,
     settings::{self, Field, Kind},
     spec::{RunSpec, SpecError, Task},
 };
 use serde_json::Value;
 
-use crate::{context::Context, declare::Declaration, runs::Runs, study::Study};
+use crate::{context::Context, declare::Declaration};
 pub use crate::{
     error::RunError,
     limits::Limits,
@@ -61,18 +61,12 @@ pub trait Case: Sync {
         let setting = spec.case.clone();
         Err(RunError::NoRules { case: setting })
     }
-    /// Was this run stable? The criterion of bisections.
-    fn is_stable(&self, record: &Record) -> bool {
-        record.status == Status::Completed
-    }
     /// The declaration from which the studies common to all cases are made.
     fn declaration(&self, _tier: Tier) -> Declaration {
         Declaration::default()
     }
     /// The runs of a tier and their gates, beside those of the declaration.
     fn plan(&self, tier: Tier) -> Vec<Planned>;
-    /// Studies of this case alone, a pure function of the records of its plan.
-    fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study>;
 }
 
 /// One simulation of a case. Settings that are refused give a record too, with the reason.
@@ -82,7 +76,7 @@ pub trait Case: Sync {
 pub fn record_of(case: &dyn Case, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
     match case.run(spec, context) {
         Err(refusal) if refusal.is_refusal() => Ok(Record::refused(spec, refusal.to_string())),
-        made => Ok(made?.of(spec)),
+        made => made,
     }
 }
 

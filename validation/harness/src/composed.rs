@@ -5,7 +5,7 @@ use std::{fmt::Display, rc::Rc};
 
 use base::{
     gate::{Bound, Evidence, Gate},
-    record::{MetricName, Record, Status},
+    record::{MetricName, Record},
     settings::{self, Field, Settings},
     spec::RunSpec,
 };
@@ -18,12 +18,10 @@ use crate::{
     deep::deepened,
     method::{Knob, Method},
     rules::state_steps,
-    runs::Runs,
-    study::Study,
 };
 
-/// What runs a variant: its name, settings.
-pub type Run<T> = dyn Fn(&str, &T, &Context) -> Result<Record, RunError>;
+/// What runs a variant with these settings.
+pub type Run<T> = dyn Fn(&T, &Context) -> Result<Record, RunError>;
 
 /// What states the rules of a variant.
 pub type Ruled<T> = dyn Fn(&T) -> Result<Rules, RunError>;
@@ -44,8 +42,8 @@ pub struct Composition<T> {
 
 /// What a case does with any of its methods.
 pub struct Program<T, M> {
-    /// Runs it: method, name of the variant, settings.
-    pub run: fn(&M, &str, &T, &Context) -> Result<Record, RunError>,
+    /// Runs it.
+    pub run: fn(&M, &T, &Context) -> Result<Record, RunError>,
     /// What the rules choose from the settings.
     pub rules: fn(&M, &T) -> Result<Rules, RunError>,
 }
@@ -79,19 +77,12 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
         self.all.push(Composition {
             variant: Variant { name, about },
             adjust,
-            run: Box::new(move |variant, settings, context| {
-                run(&method, variant, settings, context)
-            }),
+            run: Box::new(move |settings, context| run(&method, settings, context)),
             rules: Box::new(move |settings| rules(&ruled, settings)),
             lacks,
         });
         self
     }
-}
-
-/// A run is stable if it reached its end: the criterion of a case that needs no stricter one.
-pub fn completed(record: &Record) -> bool {
-    record.status == Status::Completed
 }
 
 /// A table of compositions as a [`Case`].
@@ -106,14 +97,10 @@ pub struct Composed<T> {
     pub about: &'static str,
     /// The variants.
     pub variants: fn() -> Vec<Composition<T>>,
-    /// The criterion of bisections.
-    pub is_stable: fn(&Record) -> bool,
     /// The declaration from which the studies common to all cases are made.
     pub declaration: fn(Tier) -> Declaration,
     /// The judged runs beside those of the declaration.
     pub plan: fn(Tier) -> Vec<Planned>,
-    /// Studies of this case alone.
-    pub studies: fn(Tier, &Runs) -> Vec<Study>,
 }
 
 impl<T: Settings + 'static> Composed<T> {
@@ -223,8 +210,10 @@ impl<T: Settings + 'static> Case for Composed<T> {
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         let (chosen, settings) = self.resolve(spec)?;
-        let run = (chosen.run)(&spec.variant, &settings, &context.of(spec));
-        let mut record = run?.of(spec);
+        // All settings in their usual form, those that the spec leaves out included.
+        let json = serde_json::to_value(&settings).unwrap_or_default();
+        let spec = RunSpec { settings: json, ..spec.clone() };
+        let mut record = (chosen.run)(&settings, &Context { spec, ..context.clone() })?;
         state_steps(&mut record);
         Ok(record)
     }
@@ -234,10 +223,6 @@ impl<T: Settings + 'static> Case for Composed<T> {
         (chosen.rules)(&settings)
     }
 
-    fn is_stable(&self, record: &Record) -> bool {
-        (self.is_stable)(record)
-    }
-
     fn declaration(&self, tier: Tier) -> Declaration {
         let declared = (self.declaration)(tier.declared());
         if tier == Tier::Deep { deepened(declared, self) } else { declared }
@@ -245,9 +230,5 @@ impl<T: Settings + 'static> Case for Composed<T> {
 
     fn plan(&self, tier: Tier) -> Vec<Planned> {
         (self.plan)(tier.declared())
-    }
-
-    fn studies(&self, tier: Tier, runs: &Runs) -> Vec<Study> {
-        (self.studies)(tier.declared(), runs)
     }
 }

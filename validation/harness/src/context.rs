@@ -7,7 +7,6 @@ use std::sync::{
 };
 
 use base::{
-    mutation::{Disorder, Mutation},
     record::Profile,
     spec::{Measure, RunSpec},
 };
@@ -37,26 +36,16 @@ pub struct Progress {
 /// How a run is executed, apart from what it computes.
 #[derive(Clone, Default)]
 pub struct Context<'a> {
-    /// Run even with a time step beyond the theoretical limit.
-    pub allow_unstable: bool,
+    /// The run: what may be wrong with its time step and its scene, and what is measured of it and kept.
+    pub spec: RunSpec,
     /// Run even if it is estimated to take more time or memory than a run may.
     pub allow_long: bool,
     /// Threads inside the run, 1 for serial; 0 counts as 1.
     pub threads: usize,
     /// Frames for ParaView: the folder, and how many.
     pub frames: Option<(PathBuf, usize)>,
-    /// A deliberate error of the scene.
-    pub mutation: Option<Mutation>,
-    /// A small disorder of the start.
-    pub disorder: Option<Disorder>,
     /// Where all fields of the particles at the end are put.
     pub at_the_end: Option<&'a Mutex<Option<Profile>>>,
-    /// Keep the particles of the last time in the record.
-    pub keep_particles: bool,
-    /// How many pictures, at equal intervals from the start, a case keeps in place of its own.
-    pub pictures: Option<usize>,
-    /// How much is measured.
-    pub measure: Measure,
     /// Told what the run is estimated to take, before its first step.
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Nothing but that estimate is asked for: the run ends as soon as it is told, before its particles are
@@ -85,7 +74,7 @@ pub struct Context<'a> {
 impl Context<'_> {
     /// Is all to be measured, whatever it costs?
     pub fn measures_all(&self) -> bool {
-        self.measure == Measure::All
+        self.spec.measure == Measure::All
     }
 
     /// What time it is by the clocks of the run.
@@ -106,20 +95,7 @@ impl Context<'_> {
     /// The context for computing rules, which give the time step whether or not it is stable, and however
     /// many there are.
     pub fn of_rules() -> Self {
-        Self { allow_unstable: true, allow_long: true, ..Self::default() }
-    }
-
-    /// The same context for this run, with what its spec says about the time step and about what is measured
-    /// and kept.
-    pub fn of(&self, spec: &RunSpec) -> Self {
-        Self {
-            allow_unstable: spec.allow_unstable,
-            keep_particles: spec.keep.particles,
-            pictures: spec.keep.pictures,
-            mutation: spec.mutation,
-            disorder: spec.disorder,
-            measure: spec.measure,
-            ..self.clone()
-        }
+        let spec = RunSpec::default().allow_unstable();
+        Self { spec, allow_long: true, ..Self::default() }
     }
 }

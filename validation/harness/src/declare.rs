@@ -15,7 +15,8 @@ use serde_json::Value;
 
 use crate::{
     rules::Rules,
-    runs::{Planned, Tier},
+    runs::{Planned, Runs, Tier},
+    study::Study,
 };
 
 /// The declaration of one case for one tier.
@@ -37,6 +38,8 @@ pub struct Declaration {
     pub budgets: Budgets,
     /// Largest stable time steps.
     pub limits: StepLimits,
+    /// Was this run stable? The criterion of bisections; without one a run is stable if it reaches its end.
+    pub is_stable: Option<fn(&Record) -> bool>,
     /// Outcomes over two settings.
     pub maps: Vec<Map>,
     /// Errors of constants that the gates must detect.
@@ -50,7 +53,12 @@ pub struct Declaration {
     pub of_methods: &'static [MetricKey],
     /// What can be measured of a profile or a series of another code that hands in no particles.
     pub curve: Option<Curve>,
+    /// Studies of this case alone.
+    pub studies: Option<OwnStudies>,
 }
+
+/// Studies of a case, a pure function of the records of its plan.
+pub type OwnStudies = Box<dyn Fn(&Runs) -> Vec<Study> + Send + Sync>;
 
 /// Settings, the rows at a time, and the positions at the start of the particles that move in their order, to
 /// their positions and velocities.

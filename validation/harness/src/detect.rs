@@ -3,7 +3,7 @@
 use base::{
     gate::{Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
-    record::{Cost, Record},
+    record::Record,
     spec::{RunSpec, Task},
 };
 
@@ -55,8 +55,7 @@ pub fn run(
     let mut wrong = RunSpec { task: Task::Simulate, ..spec.clone() }.allow_unstable();
     let gates = gates(case, &wrong, detect.of);
     wrong.measure = case.declaration(Tier::Quick).measure_for(&gates);
-    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(spec);
-    record.cost = Cost::default();
+    let mut record = Record::of(spec, 1);
     // The gates that the run fails with a constant multiplied by this factor.
     let failed_at = |factor: f64| {
         wrong.mutation = Some(Mutation { of: detect.of, factor });
@@ -134,8 +133,6 @@ mod tests {
     use crate::{
         case::{Best, Planned, Variant},
         declare::Declaration,
-        runs::Runs,
-        study::Study,
     };
 
     base::metrics! {
@@ -171,7 +168,7 @@ mod tests {
             Ok(json!({}))
         }
         fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
-            let mut record = Record::new("balance", "only", json!({}), 1).of(spec);
+            let mut record = Record::of(spec, 1);
             let factor = spec.mutation.map_or(1.0, |m| m.factor_of(Constant::BodyForce));
             match spec.measure {
                 Measure::All => record.put(FORCE, factor),
@@ -195,9 +192,6 @@ mod tests {
             ];
             gates.retain(|gate| tier == Tier::Full || gate.id != "balance.exact");
             vec![Planned::new(spec()).judged(gates)]
-        }
-        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
-            Vec::new()
         }
     }
 

@@ -493,8 +493,6 @@ mod tests {
     use super::*;
     use crate::{
         case::{Best, Variant, spec},
-        runs::Runs,
-        study::Study,
         suite,
     };
 
@@ -529,7 +527,7 @@ mod tests {
             Ok(json!({ "set": set }))
         }
         fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-            let mut record = Record::new(self.name(), &spec.variant, spec.settings.clone(), 1);
+            let mut record = Record::of(spec, 1);
             record.put(ERROR, 1.0);
             (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
             match spec.settings["set"][0].as_str() {
@@ -550,9 +548,6 @@ mod tests {
         fn plan(&self, _: Tier) -> Vec<Planned> {
             let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
             vec![planned(1), planned(2), planned(3).timed()]
-        }
-        fn studies(&self, _: Tier, _: &Runs) -> Vec<Study> {
-            Vec::new()
         }
     }
 

@@ -11,7 +11,7 @@ use crate::{
     error::RunError,
     frames,
     medium::Medium,
-    relation::{NoSymmetry, Relation, View},
+    relation::{NoSymmetry, Relation, TIME, View},
 };
 
 /// What a scene and its drive are made of.
@@ -103,7 +103,7 @@ impl Sink {
             }
             Some(_) => inside.refused,
         };
-        let dt = dt * inside.outline.as_ref().map_or(1.0, |of| of.view.time(1.0));
+        let dt = dt * inside.outline.as_ref().map_or(1.0, |of| of.view.scale(TIME));
         match reason {
             Some(reason) => Err(RunError::NoSymmetry { relation, reason }),
             None => Ok(Some((dt, COMPARED.map(|steps| steps as f64 * dt).to_vec()))),

@@ -73,10 +73,14 @@ impl Relation {
 pub type NoSymmetry = &'static str;
 
 /// Exponents of length, time and mass per length.
-type Unit = [i32; 3];
-const LENGTH: Unit = [1, 0, 0];
+pub type Unit = [i32; 3];
+/// \[m\].
+pub const LENGTH: Unit = [1, 0, 0];
+/// \[s\].
+pub const TIME: Unit = [0, 1, 0];
+/// \[kg/m³\].
+pub const DENSITY: Unit = [-2, 0, 1];
 const SPEED: Unit = [1, -1, 0];
-const DENSITY: Unit = [-2, 0, 1];
 const PRESSURE: Unit = [0, -2, 1];
 
 /// What an observer sees: x' = (Q x + s + U t)/\[L\], v' = (Q v + U) \[T\]/\[L\], in units \[L\] m, \[T\] s
@@ -134,23 +138,9 @@ impl View {
         })
     }
 
-    fn scale(&self, unit: Unit) -> f64 {
+    /// By what a quantity of a unit is multiplied.
+    pub fn scale(&self, unit: Unit) -> f64 {
         (0..3).map(|k| self.units[k].powi(unit[k])).product()
-    }
-
-    /// A time \[s\].
-    pub fn time(&self, time: f64) -> f64 {
-        time * self.units[1]
-    }
-
-    /// A length \[m\].
-    pub fn length(&self, length: f64) -> f64 {
-        length * self.units[0]
-    }
-
-    /// A density \[kg/m³\].
-    pub fn density(&self, density: f64) -> f64 {
-        density * self.scale(DENSITY)
     }
 
     /// The most of a speed \[m/s\].
@@ -208,7 +198,7 @@ impl View {
         if let (Mirrored, Some(period)) = (self.relation, domain.period[0]) {
             domain.low.x = -(domain.low.x + period);
         }
-        let period = domain.period.map(|period| period.map(|period| self.length(period)));
+        let period = domain.period.map(|period| period.map(|period| period * self.scale(LENGTH)));
         Domain { low: domain.low * self.scale(LENGTH), period }
     }
 
@@ -231,7 +221,7 @@ impl View {
             *stress = Symmetric { xx: turned.m11, yy: turned.m22, xy: turned.m12 };
         }
         let (position, velocity) = (self.place(p.position), self.velocity(p.velocity));
-        let (density, mass) = (self.density(p.density), p.mass * self.units[2]);
+        let (density, mass) = (p.density * self.scale(DENSITY), p.mass * self.units[2]);
         Particle { position, velocity, density, mass, extra, ..*p }
     }
 

@@ -396,7 +396,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
         let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
             self;
         let pressure = &*pressure;
-        let factor = context.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
+        let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
         let (dt, least) = (dt * factor, least as f64 / factor);
         let end = times.last().copied().unwrap_or_default();
         let fewest = least.max(1.0) * times.len() as f64;

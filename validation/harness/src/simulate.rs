@@ -3,7 +3,6 @@
 use base::{
     number,
     record::{Record, digest},
-    settings::Settings,
 };
 use nalgebra::Vector2;
 use solver::{Numbers, Particle, Role, Stepper};
@@ -25,11 +24,9 @@ pub const INTEGRATOR: &str = "integrator";
 /// Name of the walls.
 pub const WALLS: &str = "walls";
 
-/// A record with the settings of a run and what its rules chose: numbers by name, a kernel, an integrator,
+/// A record of the run of a context, with what its rules chose: numbers by name, a kernel, an integrator,
 /// walls.
 pub fn begin<X, D: ?Sized>(
-    (case, variant): (&str, &str),
-    settings: &impl Settings,
     method: &Method<X, D>,
     numbers: &[(&str, f64)],
     context: &Context,
@@ -39,8 +36,7 @@ pub fn begin<X, D: ?Sized>(
         let shifts = method.uses.contains(&Knob::Shift);
         outline.method(MethodWords { kernel, support, integrator, walls, law, shifts });
     }
-    let json = serde_json::to_value(settings).unwrap_or_default();
-    let mut record = Record::new(case, variant, json, context.threads.max(1));
+    let mut record = Record::of(&context.spec, context.threads.max(1));
     let words = [(KERNEL, method.kernel), (INTEGRATOR, method.integrator), (WALLS, method.walls)];
     let numerics = &mut record.numerics;
     numerics.extend(numbers.iter().map(|(name, value)| (name.to_string(), number::json(*value))));
@@ -58,7 +54,7 @@ pub fn check_step(
     context: &Context,
 ) -> Result<(), RunError> {
     let (dt, limit) = (rules.dt(), rules.dt_limit());
-    if dt > limit && !context.allow_unstable {
+    if dt > limit && !context.spec.allow_unstable {
         return Err(RunError::TimeStep { dt, limit, integrator });
     }
     Ok(())

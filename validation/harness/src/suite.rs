@@ -125,8 +125,7 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
         .collect();
     let study = |(case, runs): (&'static dyn Case, Runs)| {
         let declared = case.declaration(tier);
-        let mut studies = case.studies(tier, &runs);
-        studies.extend(studies::of(case.name(), &declared, &runs));
+        let mut studies = studies::of(case.name(), &declared, &runs);
         let card = studies::card(case.name(), &declared, &studies, &runs);
         studies.extend(unplanned(case, &runs));
         CaseResults { case, runs, studies, card, declared }

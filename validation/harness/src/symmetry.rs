@@ -11,7 +11,7 @@ use crate::{
     context::Context,
     outline::{Outline, Sink},
     playback::{Frame, Placed},
-    relation::Relation,
+    relation::{DENSITY, Relation, TIME},
 };
 
 /// The largest difference between the particles of two observers, against what round-off explains.
@@ -58,8 +58,8 @@ fn told((outline, frames): Seen, k: usize) -> Vec<Placed> {
     let nearest = frames.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
     let back = |placed: &Placed| {
         let of = [placed.position, placed.velocity];
-        let [position, velocity] = view.back(time / view.time(1.0), of);
-        let density = placed.density.map(|density| density / view.density(1.0));
+        let [position, velocity] = view.back(time / view.scale(TIME), of);
+        let density = placed.density.map(|density| density / view.scale(DENSITY));
         Placed { id: numbers[placed.id as usize] as u32, position, velocity, density }
     };
     let all = nearest.into_iter().flat_map(|frame| &frame.particles);

@@ -70,7 +70,7 @@ impl Counts {
             p.counts {
                 @for (verdict, count) in self.worst_first() {
                     a class=(class(verdict)) href=(target(class(verdict))) {
-                        (mark(verdict)) " " (count) " " (verdict.name())
+                        (mark(verdict)) " " (count) " " (verdict)
                     }
                 }
             }

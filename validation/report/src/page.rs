@@ -216,7 +216,7 @@ fn contents(sections: &[Section]) -> Markup {
             @for section in sections {
                 li {
                     @if let Some(s) = section.counts.worst() {
-                        span class=(format!("mark {}", class(s))) title=(s.name()) { (mark(s)) }
+                        span class=(format!("mark {}", class(s))) title=(s) { (mark(s)) }
                         " "
                     }
                     a href=(format!("#{}", section.id)) { (inline(&section.title)) }

@@ -8,8 +8,10 @@ use maud::{Markup, PreEscaped, html};
 /// A verdict as a class of the style sheet.
 pub(super) fn class(verdict: Verdict) -> &'static str {
     match verdict {
+        Verdict::Pass => "pass",
+        Verdict::Limitation => "limitation",
         Verdict::ExpectedFailure => "expected",
-        other => other.name(),
+        Verdict::Fail => "fail",
     }
 }
 
@@ -77,7 +79,7 @@ impl Cell {
 
     /// A verdict in words.
     pub fn status(status: Verdict) -> Self {
-        Self::text(status.name()).with(status)
+        Self::text(status.to_string()).with(status)
     }
 
     /// The same cell with a verdict.

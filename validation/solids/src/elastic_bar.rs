@@ -34,7 +34,7 @@ crate::solid_settings! {
 
 /// Elastic bars.
 pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
-    name: BarSettings::NAME,
+    name: "elastic_bar",
     problem: "A pulse in an elastic bar; two bars collide",
     best: Best {
         variant: LAGRANGIAN,
@@ -46,10 +46,8 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
     variants: || solid::variants(schemes::solid::free()),
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {
@@ -98,7 +96,6 @@ impl BarSettings {
 }
 
 impl Problem for BarSettings {
-    const NAME: &'static str = "elastic_bar";
     type Watch = Motion;
 
     fn dx(&self) -> f64 {

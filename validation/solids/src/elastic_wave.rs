@@ -38,10 +38,8 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
             particles, and the effect of the time step is divided out.",
     variants,
-    is_stable: completed,
     declaration: |_| Declaration { stepwise: &[FREQUENCY_ERROR], ..Declaration::default() },
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 const NAME: &str = "elastic_wave";
@@ -117,7 +115,6 @@ fn phase(k: usize) -> f64 {
 
 fn run(
     method: &Method<Symmetric>,
-    variant: &str,
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -126,7 +123,7 @@ fn run(
     let rules = settings.rules(method);
     let dt = rules.dt();
     let numbers = [("h/dx", h_over_dx), (PLANNED_DT, dt)];
-    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
     let (times, eos) = ([rules.end], RUBBER.eos());
     (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, eos, &mut watch)

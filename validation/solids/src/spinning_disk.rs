@@ -27,7 +27,7 @@ crate::solid_settings! {
 
 /// A spinning disk.
 pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
-    name: DiskSettings::NAME,
+    name: "spinning_disk",
     problem: "A free elastic disk spins",
     best: Best {
         variant: LAGRANGIAN,
@@ -38,10 +38,8 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",
     variants: || solid::variants(schemes::solid::free()),
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {
@@ -64,7 +62,6 @@ const SAMPLES: f64 = 200.0;
 const TENTH: f64 = 0.1;
 
 impl Problem for DiskSettings {
-    const NAME: &'static str = "spinning_disk";
     type Watch = History;
 
     fn dx(&self) -> f64 {

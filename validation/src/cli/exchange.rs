@@ -82,7 +82,7 @@ fn solve(
     };
     let record = match case.run(spec, &context) {
         // Nothing was measured of what an observer sees, and nothing was counted.
-        Err(RunError::Told) => Record::new(case.name(), &spec.variant, spec.settings.clone(), 1),
+        Err(RunError::Told) => Record::of(spec, 1),
         made => made?,
     };
     world.go_on("the problem is written, its results are not")?;

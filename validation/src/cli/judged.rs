@@ -82,7 +82,7 @@ pub struct Verdicts {
     /// commit of the program
     pub commit: String,
     /// gates by verdict
-    pub counts: BTreeMap<String, usize>,
+    pub counts: BTreeMap<Verdict, usize>,
     /// runs of all cases
     pub runs: Vec<RunVerdicts>,
     /// studies of all cases and of the method
@@ -159,7 +159,7 @@ impl Verdicts {
         Verdicts {
             tier: tier_name(suite.tier),
             commit: super::SOURCE.commit.into(),
-            counts: there_are.map(|of| (of.name().to_string(), counts.count(of))).collect(),
+            counts: there_are.map(|of| (of, counts.count(of))).collect(),
             runs: suite
                 .cases
                 .iter()

@@ -90,7 +90,7 @@ impl Case for Staged {
         if spec.variant == "stopping" && !context.only_estimate {
             STOP.store(STOPS.swap(false, Ordering::Relaxed), Ordering::Relaxed);
         }
-        let mut record = Record::new(self.name, &spec.variant, spec.settings.clone(), 1);
+        let mut record = Record::of(spec, 1);
         if context.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
             record.status = Status::Interrupted { step: 64, time: 0.1 };
             return Ok(record);
@@ -125,14 +125,13 @@ impl Case for Staged {
             uncertainty: None,
             reach: ("re", "", ""),
         };
-        Declaration { card: (self.name == "main").then(card), ..Declaration::default() }
-    }
-
-    fn studies(&self, _: Tier, runs: &Runs) -> Vec<Study> {
-        let count = runs.all.len() as f64;
-        let id = format!("{}-count", self.name);
-        let study = Study::new(&id, "How many").prose("Runs are counted.");
-        vec![study.judge(gate(self.name, "count"), count)]
+        let (name, card) = (self.name, (self.name == "main").then(card));
+        let studies = move |runs: &Runs| {
+            let count = runs.all.len() as f64;
+            let study = Study::new(&format!("{name}-count"), "How many").prose("Runs are counted.");
+            vec![study.judge(gate(name, "count"), count)]
+        };
+        Declaration { card, studies: Some(Box::new(studies)), ..Declaration::default() }
     }
 }
 
@@ -238,7 +237,7 @@ fn a_report_is_whole_and_explain_reads_it() {
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
     check_page(&read("index.html")).expect("a page that opens");
     let verdicts: Verdicts = serde_json::from_str(&read("verdicts.json")).expect("verdicts");
-    assert_eq!((verdicts.runs.len(), verdicts.counts["fail"]), (3, 1));
+    assert_eq!((verdicts.runs.len(), verdicts.counts[&Verdict::Fail]), (3, 1));
     for run in &verdicts.runs {
         let name = format!("records/{}-{}-{}.json", run.case, run.variant, run.key);
         assert_eq!(Record::from_json(&read(&name)).expect("a record").key().to_string(), run.key);
@@ -275,7 +274,7 @@ fn the_page_is_there_when_one_case_is_complete_and_ends_as_it_would_have_without
                  record: 3 missing. Still to come: stopping, wrong.";
     assert!(early.contains(words), "{early}");
     let verdicts: Verdicts = serde_json::from_str(&read("verdicts.json")).expect("verdicts");
-    assert_eq!(verdicts.counts.into_iter().collect::<Vec<_>>(), [("pass".to_string(), 2)]);
+    assert_eq!(verdicts.counts.into_iter().collect::<Vec<_>>(), [(Verdict::Pass, 2)]);
     std::fs::remove_dir_all(folder.path().join("records")).expect("removed");
     STOP.store(false, Ordering::Relaxed);
     assert_eq!(run_on(&CASES, &STOP, line, folder.path()), Exit::GateFailed);
@@ -535,7 +534,8 @@ fn a_record_that_cannot_be_kept_is_reported_all_the_same() {
     check_page(&page).expect("a page that opens");
     let verdicts = std::fs::read_to_string(folder.path().join("verdicts.json")).expect("verdicts");
     let verdicts: Verdicts = serde_json::from_str(&verdicts).expect("verdicts");
-    assert_eq!((verdicts.counts["pass"], verdicts.counts.get("fail")), (2, None));
+    let of = |verdict| verdicts.counts.get(&verdict);
+    assert_eq!((of(Verdict::Pass), of(Verdict::Fail)), (Some(&2), None));
     assert_eq!(in_folder("verify --store OUT/records"), Exit::Usage);
 }
 

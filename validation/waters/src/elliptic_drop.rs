@@ -162,12 +162,7 @@ impl History {
     }
 }
 
-fn run(
-    method: &WaterMethod,
-    variant: &str,
-    s: &DropSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Record, RunError> {
     let drop = Drop::new(s, method);
     let (medium, end) = (&drop.medium, drop.rules.end);
     let (particles, decisive) = (drop.particles.len() as f64, "end, dt, courant, c0 or n");
@@ -175,7 +170,7 @@ fn run(
     let parts = Parts::new(*medium, Domain::open(), drop.particles.clone(), context);
     let mut simulation = (method.build)(parts)?;
     let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
@@ -193,7 +188,7 @@ fn run(
     ledger.measure(kinetic, "initial kinetic energy", context, &mut record);
     let particles = simulation.particles();
     record.state = Some(simulate::state(&particles));
-    if context.keep_particles {
+    if context.spec.keep.particles {
         let centre = shape(&particles).centre;
         let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
         let pressures = particles
@@ -218,10 +213,8 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
             follow an ordinary differential equation exactly. Gravity, in which it falls freely, must \
             change nothing.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// What a run is for.

@@ -106,10 +106,8 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
             moves. After 20 acoustic periods 4 H/c0 the pressure, the level, the kinetic energy, the gap \
             between water and bottom, and the particles outside of the tank are compared with it.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Spacings from the surface of the water to the rim of the tank.
@@ -196,17 +194,12 @@ impl Column {
     }
 }
 
-fn run(
-    m: &WaterMethod,
-    variant: &str,
-    s: &HydrostaticSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Record, RunError> {
     let column = Column::new(s, m, context)?;
     let Column { medium, rules, period, .. } = &column;
     let mut simulation = (m.build)(column.parts(m, context))?;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
+    let mut record = simulate::begin(m, &numbers, context);
     let mut history = History::new(&column, &*simulation);
     history.sample(&*simulation);
     // Once a period and at the end.

@@ -64,10 +64,8 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
             columns are stretched to fill the tank, so that their particles are not those of a lattice and \
             must first find their places. The exact pressure is that of the depth, and nothing moves.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Half of the width of the tank \[H\].
@@ -210,19 +208,19 @@ impl Moments<'_> {
         let water = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.position);
         let is_outside = |x: &Vector2<f64>| (x.x - HALF).abs() > HALF || x.y < floor(s, x.x);
         record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
-        if context.keep_particles {
+        if context.spec.keep.particles {
             let errors = water.zip(errors);
             pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
         }
     }
 }
 
-fn run(m: &WaterMethod, variant: &str, s: &Wedge, context: &Context) -> Result<Record, RunError> {
+fn run(m: &WaterMethod, s: &Wedge, context: &Context) -> Result<Record, RunError> {
     let (medium, rules) = scene(s, m, context)?;
     let parts = Parts::new(medium, Domain::open(), particles(s, m, &medium), context);
     let mut simulation = (m.build)(parts)?;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, m, &numbers, context);
+    let mut record = simulate::begin(m, &numbers, context);
     let count = (0.25 * SAMPLES * s.end).ceil().max(1.0);
     let times = (1..=count as usize).map(|k| rules.end * (0.75 + 0.25 * k as f64 / count));
     let times: Vec<f64> = times.collect();

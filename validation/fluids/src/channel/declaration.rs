@@ -22,6 +22,8 @@ pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
         budgets: budgets(flow, tier),
         accuracy: vec![at_half],
         limits: limits(flow, tier),
+        is_stable: Some(is_stable),
+        studies: Some(Box::new(move |runs| studies(flow, tier, runs))),
         maps: maps::declared(&table),
         sensitivity: Some(sensitivity(flow, tier)),
         curve: Some(profile()),

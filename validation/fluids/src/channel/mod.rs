@@ -11,7 +11,7 @@ mod stiff;
 pub mod variants;
 mod waves;
 
-use declaration::{declaration, is_stable, studies};
+use declaration::declaration;
 pub use plan::{GHOSTS, ladder};
 pub use setup::{ChannelSettings, Flow, Setup};
 
@@ -60,10 +60,8 @@ pub static COUETTE: ChannelCase = ChannelCase {
             with constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series in y, and \
             pressure and cross-flow are exactly zero.",
     variants: variants::of_couette,
-    is_stable,
     declaration: |tier| declaration(Flow::Couette, tier),
     plan: |tier| plan::table(Flow::Couette, tier).plan(),
-    studies: |tier, runs| studies(Flow::Couette, tier, runs),
 };
 
 /// Case 2, start-up Poiseuille flow (the paper's figure 2).
@@ -80,8 +78,6 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
             along the plates sets in; V = Re nu/L is the centre-line velocity of the steady parabola. The \
             exact velocity is a Fourier series; pressure and cross-flow are exactly zero.",
     variants: variants::of_poiseuille,
-    is_stable,
     declaration: |tier| declaration(Flow::Poiseuille, tier),
     plan: |tier| plan::table(Flow::Poiseuille, tier).plan(),
-    studies: |tier, runs| studies(Flow::Poiseuille, tier, runs),
 };

@@ -9,20 +9,19 @@ use super::{ChannelProgram, ChannelSettings, Flow, Setup};
 
 /// Runs of the flow that a plate drives.
 pub const COUETTE: ChannelProgram = Program {
-    run: |method, variant, s, context| run(Flow::Couette, method, variant, s, context),
+    run: |method, s, context| run(Flow::Couette, method, s, context),
     rules: |method, s| Ok(Setup::new(Flow::Couette, s, method, &Context::of_rules())?.rules),
 };
 
 /// Runs of the flow that a body force drives.
 pub const POISEUILLE: ChannelProgram = Program {
-    run: |method, variant, s, context| run(Flow::Poiseuille, method, variant, s, context),
+    run: |method, s, context| run(Flow::Poiseuille, method, s, context),
     rules: |method, s| Ok(Setup::new(Flow::Poiseuille, s, method, &Context::of_rules())?.rules),
 };
 
 fn run(
     flow: Flow,
     method: &Method,
-    variant: &str,
     settings: &ChannelSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -32,7 +31,7 @@ fn run(
     let c0 = eos.sound_speed;
     let own = [("V [m/s]", setup.v), ("c0/V", c0 / setup.v), ("c0 h/nu", c0 * h / s.nu)];
     let numbers = [&setup.rules.numbers([s.h_over_dx, dx])[..], &own].concat();
-    let mut record = simulate::begin((flow.case().name, variant), s, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     record.numerics.insert("columns".into(), setup.columns.into());
     let compared = s.compared();
     let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();

@@ -22,6 +22,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
         accuracy: vec![accuracy],
         limits: limits(tier),
+        is_stable: Some(is_stable),
+        studies: Some(Box::new(move |runs| studies(tier, runs))),
         sensitivity: Some(sensitivity(tier, &table)),
         ..Declaration::default()
     }

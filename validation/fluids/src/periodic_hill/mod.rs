@@ -90,10 +90,8 @@ static CASE: Composed<HillSettings> = Composed {
             trough, or on the next hill. It is steady and laminar. The reference is a finite-element \
             computation of this project, because none is published.",
     variants,
-    is_stable: declaration::is_stable,
     declaration: declaration::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: declaration::studies,
 };
 
 /// Flow over periodic hills.

@@ -4,7 +4,7 @@ use base::{functions::exp, record::*};
 use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
 use schemes::hill::{Driving, HillMethod};
 
-use super::{HillSettings, NAME, Setup, measure::*};
+use super::{HillSettings, Setup, measure::*};
 
 /// Runs of the flow over hills.
 pub const PROGRAM: Program<HillSettings, HillMethod> =
@@ -100,7 +100,6 @@ fn kinetic_energy(simulation: &dyn Driving) -> f64 {
 
 fn run(
     method: &HillMethod,
-    variant: &str,
     settings: &HillSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -108,7 +107,7 @@ fn run(
     let mut simulation = (method.build)(setup.parts(context))?;
     let (s, flow) = (&setup.settings, &setup.flow);
     let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
-    let mut record = simulate::begin((NAME, variant), s, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let stretches = (s.end / (STRETCH * flow.rules.dt())).ceil().max(1.0) as usize;
     let stretch = s.end / stretches as f64;
     let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();
@@ -130,7 +129,7 @@ fn run(
             .run(context)?;
     if record.status == Status::Completed {
         measure(setup, &monitor.window, area, &mut record);
-        particles(setup, &*simulation, context.keep_particles, &mut record);
+        particles(setup, &*simulation, context.spec.keep.particles, &mut record);
     }
     let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
     let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];

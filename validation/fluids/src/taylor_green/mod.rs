@@ -78,10 +78,8 @@ static CASE: Composed<VortexSettings> = Composed {
             stagnation points, so that the order of the start is soon lost. The case therefore shows what \
             a method does with disorder. Runs start from a square lattice or from a disturbed one.",
     variants,
-    is_stable: completed,
     declaration,
     plan: |tier| table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 /// Taylor-Green vortices.

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use solver::{Domain, EquationOfState, Particle};
 
-use super::{NAME, VortexSettings};
+use super::VortexSettings;
 use crate::unit_flow::{Scales, UnitFlow};
 use base::{random::Random, record::*};
 use harness::{
@@ -89,19 +89,13 @@ const DECAYED: f64 = 0.01;
 /// Samples of the series.
 const SAMPLES: usize = 40;
 
-fn run(
-    method: &Method,
-    variant: &str,
-    settings: &VortexSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(method: &Method, settings: &VortexSettings, context: &Context) -> Result<Record, RunError> {
     let setup = Setup::new(settings, method, context)?;
     let flow = &setup.flow;
     let parts = flow.parts(Domain::torus(1.0, 1.0), setup.particles(), context);
     let mut simulation = (method.build)(parts)?;
-    let name = (NAME, variant);
     let numbers = flow.rules.numbers([settings.h_over_dx, flow.medium.dx]);
-    let mut record = simulate::begin(name, settings, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let end = settings.end;
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let start = simulation.particles();
@@ -116,7 +110,7 @@ fn run(
     let end = simulation.particles();
     if record.status == Status::Completed {
         measure(&setup, [&start, &end], &series, &mut record);
-        if context.keep_particles {
+        if context.spec.keep.particles {
             let (time, scale) = (simulation.time(), setup.exact.decay(simulation.time()));
             let all = end.iter().map(|p| {
                 let error = (p.velocity - setup.exact.velocity(p.position, time)).norm() / scale;

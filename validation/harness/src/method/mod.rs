@@ -85,8 +85,8 @@ impl<X: Numbers> Parts<X> {
             skin: None,
             limits: solver::Limits::default(),
             threads: context.threads,
-            mutation: context.mutation,
-            disorder: context.disorder,
+            mutation: context.spec.mutation,
+            disorder: context.spec.disorder,
             outline: context.outline.clone(),
         }
     }

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use solver::{Numbers, Particle, Role};
 
 use super::Parts;
-use crate::relation::{NoSymmetry, Relation, View};
+use crate::relation::{DENSITY, LENGTH, NoSymmetry, Relation, View};
 
 /// Disorders the start, then multiplies the constant that is wrong by its factor; the time step is not a
 /// part of a scene, and neither are the lifetime of neighbour lists and what bodies of a total Lagrangian
@@ -75,15 +75,15 @@ fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetr
     *particles = numbers.iter().map(|k| view.particle(&particles[*k])).collect();
     *bodies = numbers.iter().filter_map(|k| bodies.get(*k).copied()).collect();
     *mirrors = mirrors.iter().map(|wall| view.wall(wall)).collect();
-    *skin = skin.map(|skin| view.length(skin));
-    limits.density = limits.density.map(|density| view.density(density));
+    *skin = skin.map(|skin| skin * view.scale(LENGTH));
+    limits.density = limits.density.map(|density| density * view.scale(DENSITY));
     limits.speed = view.speed(limits.speed);
     Ok(view)
 }
 
 #[cfg(test)]
 mod tests {
-    use base::mutation::Mutation;
+    use base::{mutation::Mutation, spec::RunSpec};
     use solver::{Domain, PlaneWall, Tait};
 
     use super::*;
@@ -117,7 +117,8 @@ mod tests {
         };
         let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
         let wall = fluid.with_role(Role::Wall);
-        let context = Context { mutation, ..Context::default() };
+        let spec = RunSpec { mutation, ..RunSpec::default() };
+        let context = Context { spec, ..Context::default() };
         let wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
         Parts {
             mirrors: vec![wall_at],

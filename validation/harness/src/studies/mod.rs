@@ -29,10 +29,10 @@ pub(crate) fn anchor(case: &str, study: &str) -> String {
     format!("{}-{study}", case.replace('_', "-"))
 }
 
-/// All studies of a declaration, in the order of the report.
+/// All studies of a declaration, in the order of the report: those of the case alone first.
 pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
-    let mut studies: Vec<Study> =
-        declared.curves.iter().map(|curves| curves::study(curves, runs)).collect();
+    let mut studies = declared.studies.as_ref().map_or_else(Vec::new, |own| own(runs));
+    studies.extend(declared.curves.iter().map(|curves| curves::study(curves, runs)));
     studies.extend(declared.pictures.iter().map(|picture| pictures::study(picture, runs)));
     let has_ladder = |of: &&Accuracy| of.ladders.iter().any(|ladder| ladder.levels.len() > 1);
     let accuracy = declared.accuracy.iter().filter(has_ladder);

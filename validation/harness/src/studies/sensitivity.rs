@@ -236,7 +236,7 @@ mod tests {
         let gate =
             |id: &str, evidence| Gate::new(id, ERROR, Bound::Below(0.1), evidence, "made up");
         let planned = |spec: RunSpec, gates: Vec<Gate>| {
-            let record = Record::new("case", "seed", spec.settings.clone(), 1).of(&spec);
+            let record = Record::of(&spec, 1);
             JudgedRun::new(Planned::new(spec).judged(gates), record)
         };
         let both = |k: usize| {

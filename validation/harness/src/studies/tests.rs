@@ -33,7 +33,7 @@ pub fn records<F: FnOnce(&mut Record)>(of: impl IntoIterator<Item = (RunSpec, F)
 
 /// A run that reached its end, and what its record holds.
 pub fn run(spec: RunSpec, fill: impl FnOnce(&mut Record)) -> JudgedRun {
-    let mut record = Record::new(&spec.case, &spec.variant, spec.settings.clone(), 1).of(&spec);
+    let mut record = Record::of(&spec, 1);
     fill(&mut record);
     JudgedRun::new(Planned::new(spec), record)
 }

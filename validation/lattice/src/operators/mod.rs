@@ -142,7 +142,7 @@ fn variants() -> Vec<Composition<OperatorSettings>> {
         Composition {
             variant: Variant { name: of.name, about: of.about() },
             adjust: of.adjust,
-            run: Box::new(move |_, s, context| run::run(of, &method, s, context)),
+            run: Box::new(move |s, context| run::run(of, &method, s, context)),
             rules: Box::new(move |s| run::rules(&ruled, s, &Context::of_rules())),
             lacks: Vec::new(),
         }
@@ -165,8 +165,9 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
             (`divergence`). The rate of that, the particles at the end less those of the start over the \
             time, is the operator, which is compared with its exact value.",
     variants,
-    is_stable: completed,
-    declaration: |_| Declaration::default(),
+    declaration: |tier| Declaration {
+        studies: Some(Box::new(move |runs| study::studies(tier, runs))),
+        ..Declaration::default()
+    },
     plan: plan::plan,
-    studies: study::studies,
 };

@@ -13,7 +13,7 @@ use nalgebra::Vector2;
 use schemes::lattice::summing_step;
 use solver::{Domain, EquationOfState, Particle, Stepper, Tait};
 
-use super::{OPERATORS, Operator, OperatorSettings, Subject};
+use super::{Operator, OperatorSettings, Subject};
 
 base::metrics! {
     ERROR = "error" ["-"] "(sum |o - o_exact|^2/sum |o_exact|^2)^(1/2) over particles, o the operator";
@@ -142,7 +142,7 @@ pub(super) fn run(
     let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
     let start = parts.particles.clone();
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((OPERATORS.name, of.name), s, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let simulation =
         simulate::simulate(method, parts, [rules.dt(), rules.end], context, &mut record)?;
     if record.status == Status::Completed {

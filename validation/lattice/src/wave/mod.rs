@@ -85,16 +85,12 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             whatever the kernel.",
     variants: || {
         variants(&Program {
-            run: |method, variant, s, context| {
-                run::run((ACOUSTIC_WAVE.name, Polarisation::Sound), method, variant, s, context)
-            },
+            run: |method, s, context| run::run(Polarisation::Sound, method, s, context),
             rules: |method, s| run::rules(Polarisation::Sound, method, s),
         })
     },
-    is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
-    studies: |_, _| Vec::new(),
 };
 
 /// A decaying shear wave.
@@ -107,16 +103,12 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
             exactly zero to first order.",
     variants: || {
         variants(&Program {
-            run: |method, variant, s, context| {
-                run::run((SHEAR_WAVE.name, Polarisation::Shear), method, variant, s, context)
-            },
+            run: |method, s, context| run::run(Polarisation::Shear, method, s, context),
             rules: |method, s| run::rules(Polarisation::Shear, method, s),
         })
     },
-    is_stable: completed,
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
-    studies: |_, _| Vec::new(),
 };
 
 const BEST: Best = Best {

@@ -196,9 +196,8 @@ pub(super) fn rules(
 
 /// Runs a wave, projects it on itself, and compares it with theory.
 pub(super) fn run(
-    (case, polarisation): (&str, Polarisation),
+    polarisation: Polarisation,
     method: &Method,
-    variant: &str,
     settings: &WaveSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -217,7 +216,7 @@ pub(super) fn run(
         (PLANNED_DT, wave.rules.dt()),
         ("omega dt", wave.mode.omega * wave.rules.dt()),
     ];
-    let mut record = simulate::begin((case, variant), s, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let Projection { series, momentum, .. } = projection;
     compare(wave, method.theory, &series, &mut record);
     let scale = density * s.length * s.length * s.amplitude * sound_speed;

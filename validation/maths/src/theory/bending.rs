@@ -9,10 +9,13 @@
 //! stiffness. Frequencies go with its root, and deflections under a load with its inverse.
 
 use lagrangian::body::hourglass;
-use nalgebra::{DMatrix, DVector};
-use solver::kernel::{Kernel, Smoothing};
+use nalgebra::{DMatrix, DVector, Vector2};
+use solver::kernel::Kernel;
 
-use super::{lagrangian::HOURGLASS, lattice::SquareLattice};
+use super::{
+    lagrangian::HOURGLASS,
+    lattice::{SquareLattice, near},
+};
 
 /// Σ a (l·w + m)²/2, so many unknowns w.
 struct Squares {
@@ -52,8 +55,13 @@ pub fn stiffness<K: Kernel>(h_over_dx: f64, layers: usize, poisson: f64) -> f64 
     let mut squares = Squares { matrix, vector, constant: 0.0 };
     let none = DVector::zeros(layers);
     let height = |row: usize| row as f64 - 0.5 * (layers as f64 - 1.0);
+    let points = near::<K>(h_over_dx);
     for row in 0..layers {
-        let near = neighbours::<K>(h_over_dx, layers, row);
+        let in_plate = |&(x, g): &(Vector2<f64>, f64)| {
+            let other = row.checked_add_signed(x.y as isize).filter(|other| *other < layers);
+            other.map(|row| Neighbour { row, x, g })
+        };
+        let near: Vec<Neighbour> = points.iter().filter_map(in_plate).collect();
         let moment =
             |axis: usize| near.iter().fold(0.0, |sum, n| sum + n.g * n.x[axis] * n.x[axis]);
         let [along, across] = [0, 1].map(moment);
@@ -84,20 +92,8 @@ pub fn stiffness<K: Kernel>(h_over_dx: f64, layers: usize, poisson: f64) -> f64 
 /// A neighbour: its row, the vector to it, and its weight F.
 struct Neighbour {
     row: usize,
-    x: [f64; 2],
+    x: Vector2<f64>,
     g: f64,
-}
-
-/// Those of a particle of a row.
-fn neighbours<K: Kernel>(h_over_dx: f64, layers: usize, row: usize) -> Vec<Neighbour> {
-    let kernel = Smoothing::<K>::new(h_over_dx);
-    let reach = kernel.support().ceil() as i32;
-    let at = |other: usize, x: i32| {
-        let x = [f64::from(x), other as f64 - row as f64];
-        Neighbour { row: other, x, g: kernel.f(x[0] * x[0] + x[1] * x[1]) }
-    };
-    let all = (0..layers).flat_map(|other| (-reach..=reach).map(move |x| at(other, x)));
-    all.filter(|n| n.g > 0.0 && n.x != [0.0; 2]).collect()
 }
 
 #[cfg(test)]

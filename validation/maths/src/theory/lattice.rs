@@ -26,6 +26,16 @@ struct Site {
     guard: f64,
 }
 
+/// The points of a square lattice of spacing 1 in reach of the origin, without it, row by row, each with V F
+/// \[1/dx²\].
+pub fn near<K: Kernel>(h_over_dx: f64) -> Vec<(Vector2<f64>, f64)> {
+    let kernel = Smoothing::<K>::new(h_over_dx);
+    let reach = kernel.support().ceil() as i32;
+    let row = |y: i32| (-reach..=reach).map(move |x| Vector2::new(f64::from(x), f64::from(y)));
+    let weighted = (-reach..=reach).flat_map(row).map(|r| (r, kernel.f(r.norm_squared())));
+    weighted.filter(|(r, vf)| *vf > 0.0 && *r != Vector2::zeros()).collect()
+}
+
 /// A square lattice seen through a kernel.
 pub struct SquareLattice {
     /// h/dx.
@@ -39,20 +49,13 @@ impl SquareLattice {
     /// The lattice seen through kernel `K` with smoothing length `h_over_dx` \[dx\] and
     /// η² = `eta2_over_h2` \[h²\]; both must be finite, the first positive, the second not negative.
     pub fn of<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> Self {
-        let (h, eta2) = (h_over_dx, eta2_over_h2 * h_over_dx * h_over_dx);
-        let kernel = Smoothing::<K>::new(h);
-        let reach = kernel.support().ceil() as i32;
-        let mut sites = Vec::new();
-        for y in -reach..=reach {
-            for x in -reach..=reach {
-                let r = Vector2::new(f64::from(x), f64::from(y));
-                let (r2, vf) = (r.norm_squared(), kernel.f(r.norm_squared()));
-                if r2 > 0.0 && vf > 0.0 {
-                    sites.push(Site { r, vf, guard: r2 / (r2 + eta2) });
-                }
-            }
-        }
-        Self { h, correction: 1.0, sites }
+        let eta2 = eta2_over_h2 * h_over_dx * h_over_dx;
+        let site = |(r, vf): (Vector2<f64>, f64)| {
+            let r2 = r.norm_squared();
+            Site { r, vf, guard: r2 / (r2 + eta2) }
+        };
+        let sites = near::<K>(h_over_dx).into_iter().map(site).collect();
+        Self { h: h_over_dx, correction: 1.0, sites }
     }
 
     /// The same with gradients, and their conjugate forces, that are corrected by the inverse of the moments,

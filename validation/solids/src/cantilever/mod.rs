@@ -37,7 +37,7 @@ crate::solid_settings! {
 
 /// A bar under its own weight.
 pub static CANTILEVER: Composed<CantileverSettings> = Composed {
-    name: CantileverSettings::NAME,
+    name: "cantilever",
     problem: "A clamped elastic bar swings under its own weight",
     best: Best {
         variant: LAGRANGIAN,
@@ -48,10 +48,8 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
             begins to act: shape, material and load are those of the test CSM3 of Turek & Hron (2006). The \
             path of its end is compared with finite elements of the same bar and law.",
     variants,
-    is_stable: completed,
     declaration: plan::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };
 
 base::metrics! {
@@ -153,7 +151,6 @@ impl CantileverSettings {
 }
 
 impl Problem for CantileverSettings {
-    const NAME: &'static str = "cantilever";
     type Watch = End;
 
     fn dx(&self) -> f64 {

@@ -64,6 +64,8 @@ pub fn declaration(tier: Tier) -> Declaration {
         comparisons: comparisons(&accuracy),
         budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
         limits: limits(tier),
+        is_stable: Some(is_stable),
+        studies: Some(Box::new(move |runs| studies::studies(tier, runs))),
         maps: vec![map(tier)],
         sensitivity: Some(sensitivity(tier)),
         stepwise: STEPWISE,

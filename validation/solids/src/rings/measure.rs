@@ -253,7 +253,7 @@ impl Watch for Series {
         let (s, stop) = (&self.settings, stop + 1);
         let is_frame = |frames: usize| (stop * frames).is_multiple_of(s.samples);
         let share = stop as f64 / s.samples as f64;
-        if !PICTURES.contains(&share) && !context.pictures.is_some_and(is_frame) {
+        if !PICTURES.contains(&share) && !context.spec.keep.pictures.is_some_and(is_frame) {
             return;
         }
         let all = along_flight(s, simulation.particles());

@@ -131,7 +131,7 @@ fn variants() -> Vec<Composition<RingSettings>> {
 
 /// Colliding rubber rings.
 pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
-    name: RingSettings::NAME,
+    name: "rubber_rings",
     problem: "Two rubber rings collide and bounce",
     best: Best {
         variant: LAGRANGIAN,
@@ -145,10 +145,8 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
             is exact, and a ring must not break: numerical fracture is the tensile instability that \
             artificial stress is there to prevent.",
     variants,
-    is_stable,
     declaration: declaration::declaration,
     plan: |tier| table(tier).plan(),
-    studies: studies::studies,
 };
 
 /// The largest energy at any time over that at the start, less 1: what stress rates in time leave.

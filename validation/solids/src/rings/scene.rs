@@ -39,7 +39,6 @@ impl RingSettings {
 }
 
 impl Problem for RingSettings {
-    const NAME: &'static str = "rubber_rings";
     type Watch = Series;
 
     fn dx(&self) -> f64 {
@@ -82,7 +81,7 @@ impl Problem for RingSettings {
         if self.inner > widest {
             return too_much("the inner radius", self.inner, widest, "inner, outer or spacing");
         }
-        if method.is_corrected && self.layers() > MOST_CORRECTED && !context.allow_unstable {
+        if method.is_corrected && self.layers() > MOST_CORRECTED && !context.spec.allow_unstable {
             let what = "the number of layers of rings with corrected gradients";
             let setting = "spacing, or use --allow-unstable";
             return too_much(what, self.layers(), MOST_CORRECTED, setting);

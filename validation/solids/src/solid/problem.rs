@@ -37,8 +37,6 @@ pub trait SharedSettings: Settings + 'static {
 
 /// A problem of elasticity, stated by its settings: what differs between solid cases.
 pub trait Problem: SharedSettings {
-    /// Name of the case.
-    const NAME: &'static str;
     /// What sees every step.
     type Watch: Watch;
 
@@ -173,7 +171,6 @@ fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
 /// One run with a method.
 fn run<P: Problem>(
     method: &Method<Symmetric>,
-    variant: &str,
     settings: &P,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -192,7 +189,7 @@ fn run<P: Problem>(
         ("c_p [m/s]", material.p_wave_speed()),
     ];
     let numbers = [&rules.numbers([settings.h_over_dx(), medium.dx])[..], &own].concat();
-    let mut record = simulate::begin((P::NAME, variant), settings, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let (eos, particles) = (material.eos(), settings.particles());
     let limits = settings.bounds();
     let is_held = particles.iter().any(|p| p.role == Role::Wall);
@@ -214,7 +211,7 @@ fn run<P: Problem>(
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
         .after_step("measurements", &|(watch, _), simulation| watch.after_step(simulation))
         .at_positions("particles", &|(watch, record), simulation, stop| {
-            if context.keep_particles {
+            if context.spec.keep.particles {
                 watch.keep(simulation, stop, context, record);
             }
         })

@@ -36,6 +36,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         budgets: budgets(tier, &accuracy),
         accuracy: vec![accuracy, in_the_tank(tier)],
         limits: limits(tier),
+        is_stable: Some(is_stable),
         sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
         curve: Some(front()),

@@ -126,8 +126,6 @@ pub static DAM_BREAK: Composed<DamSettings> = Composed {
             residual height, levels, pressures and impulses are compared with the experiments and with the \
             same model by volume of fluid; energy and momentum are accounted for term by term.",
     variants,
-    is_stable: declared::is_stable,
     declaration: declared::declaration,
     plan: |tier| plan::table(tier).plan(),
-    studies: |_, _| Vec::new(),
 };

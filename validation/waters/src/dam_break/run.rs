@@ -35,7 +35,6 @@ pub const COSTLY: &[MetricKey] = &{
 
 fn run(
     method: &WaterMethod,
-    variant: &str,
     settings: &DamSettings,
     context: &Context,
 ) -> Result<Record, RunError> {
@@ -43,7 +42,7 @@ fn run(
     let mut simulation = (method.build)(dam.parts(method, context))?;
     let Dam { settings, medium, rules, .. } = dam;
     let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
-    let mut record = simulate::begin((NAME, variant), settings, method, &numbers, context);
+    let mut record = simulate::begin(method, &numbers, context);
     let (is_balanced, mut ledger) = (context.measures_all(), Ledger::new(medium));
     let mut samples = Samples::new(dam);
     let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
@@ -57,7 +56,7 @@ fn run(
             ledger.sample(s)
         })
         .at_positions("picture", &|(.., record), s, k| {
-            if context.keep_particles && k == pictured {
+            if context.spec.keep.particles && k == pictured {
                 let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
                 let fluid = s.fluid().map(|(_, p)| (p.position / settings.height, value(p)));
                 pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);

@@ -39,7 +39,7 @@ impl Dam {
             let (what, setting) = ("the width of the column", "width or tank");
             return Err(RunError::TooMuch { what, value: s.width, most: s.tank, setting });
         }
-        if method.walls == Ghosts::NAME && !context.allow_unstable {
+        if method.walls == Ghosts::NAME && !context.spec.allow_unstable {
             return Err(RunError::Combination {
                 key: "variant",
                 value: Ghosts::NAME.into(),

@@ -128,7 +128,7 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::spec::Measure;
+    use base::spec::RunSpec;
     use harness::method::Parts;
     use schemes::water::modern;
     use solver::{Domain, Particle, Tait};
@@ -176,7 +176,7 @@ mod tests {
         assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
-        let context = Context { measure: Measure::All, ..Context::default() };
+        let context = Context { spec: RunSpec::default().measure_all(), ..Context::default() };
         ledger.measure(50.0, "it", &context, &mut record);
         let gap = record.value(ENERGY_GAP).expect("a metric");
         assert!((gap - 27.0 / 50.0).abs() < 1e-12);
