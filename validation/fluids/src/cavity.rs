@@ -291,7 +291,7 @@ fn declaration(tier: Tier) -> Declaration {
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
     let caption = "Particles of `consistent` at the end, finest spacing, coloured by speed.";
     let (texts, size) = (["cavity-picture", "The cavity", caption], [300.0, 270.0]);
-    let panel = |r: &Row| (format!("Re {}", r.group), 1.0 / r.settings.n as f64);
+    let panel = |r: &Row| vec![r.panel(format!("Re {}", r.group), 1.0 / r.settings.n as f64)];
     let picture = table.picture(texts, ("speed [U]", ColourMap::Sequential), size, panel);
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
     Declaration {

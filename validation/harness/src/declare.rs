@@ -26,7 +26,7 @@ pub struct Declaration {
     pub card: Option<Card>,
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
-    /// Particles at the end of some runs.
+    /// Particles of some runs.
     pub pictures: Vec<Picture>,
     /// Resolution ladders: order, error against cost.
     pub accuracy: Vec<Accuracy>,
@@ -500,7 +500,7 @@ pub struct Curves {
     pub panels: Vec<CurvePanel>,
 }
 
-/// Particles at the end of some runs, coloured by what each keeps beside its place.
+/// Particles of some runs, coloured by what each keeps beside its place.
 pub struct Picture {
     /// Anchor of the study and of its figure, title of the section, caption.
     pub texts: [&'static str; 3],
@@ -508,16 +508,28 @@ pub struct Picture {
     pub colours: (&'static str, ColourMap),
     /// Width and height of a panel \[px\].
     pub size: [f64; 2],
-    /// The panels: runs that keep particles, their spacing in the unit of the places, and titles as labels.
-    pub panels: Vec<Level>,
-    /// The profile of a record that has the particles.
-    pub profile: &'static str,
+    /// The panels.
+    pub panels: Vec<PicturePanel>,
+    /// How many of them stand side by side.
+    pub columns: usize,
     /// What is shown of the value of a particle, such as its logarithm.
     pub shown: fn(f64) -> f64,
     /// The ends of the colours, for all panels; each panel has those of its own values without.
     pub range: Option<[f64; 2]>,
-    /// Lines over the particles of each panel, in the unit of the places; of panels without an entry none.
-    pub lines: Vec<Vec<Vec<(f64, f64)>>>,
+}
+
+/// One panel of a picture.
+pub struct PicturePanel {
+    /// Title of the panel.
+    pub title: String,
+    /// A run that keeps particles.
+    pub spec: RunSpec,
+    /// The profile of its record that has them.
+    pub profile: String,
+    /// Their spacing, in the unit of their places.
+    pub spacing: f64,
+    /// Lines over them, in the same unit.
+    pub lines: Vec<Vec<(f64, f64)>>,
 }
 
 /// One panel of curves.
@@ -621,7 +633,7 @@ impl Declaration {
         let panels = self.curves.iter().flat_map(|curves| &curves.panels);
         panels.flat_map(|panel| &panel.lines).for_each(|line| plain(&line.spec));
         let pictured = self.pictures.iter().flat_map(|picture| &picture.panels);
-        pictured.for_each(|panel| plain(&panel.run.spec));
+        pictured.for_each(|panel| plain(&panel.spec));
         self.card.iter().flat_map(|card| &card.runs).for_each(&mut plain);
         runs
     }

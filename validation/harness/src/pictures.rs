@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use report::{Axis, Colour, Dots, Figure, Plot, Series};
 
 use crate::{
-    declare::{Level, Picture},
+    declare::{Picture, PicturePanel},
     runs::Runs,
     study::Study,
 };
@@ -34,22 +34,20 @@ pub fn points(record: &Record, profile: &str, value: &str) -> Vec<(f64, f64, f64
 
 /// The runs that are there.
 pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
-    let panel = |(k, Level { run, spacing, label: title }): (usize, &Level)| {
-        let record = runs.record(&run.spec)?;
-        let [x, _, value] = &record.profiles.get(of.profile)?.columns[..] else { return None };
+    let panel = |PicturePanel { title, spec, profile, spacing, lines }: &PicturePanel| {
+        let record = runs.record(spec)?;
+        let [x, _, value] = &record.profiles.get(profile)?.columns[..] else { return None };
         let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
-        let points = points(record, of.profile, &value.name).into_iter();
+        let points = points(record, profile, &value.name).into_iter();
         let points = points.map(|(x, y, value)| (x, y, (of.shown)(value))).collect();
         let (label, colours) = of.colours;
         let dots = Dots::new(label, colours, *spacing, points);
         let dots = of.range.into_iter().fold(dots, |dots, [low, high]| dots.values(low, high));
         let plot = Plot::new(title, x, y).layer(dots);
-        let lines = of.lines.get(k).into_iter().flatten();
         let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(2.0);
-        Some(lines.map(line).fold(plot, Plot::layer))
+        Some(lines.iter().map(line).fold(plot, Plot::layer))
     };
     let [id, title, caption] = of.texts;
-    let figure = Figure::new(id, caption).panel_size(of.size[0], of.size[1]);
-    Study::new(id, title)
-        .block(of.panels.iter().enumerate().filter_map(panel).fold(figure, Figure::panel))
+    let figure = Figure::new(id, caption).panel_size(of.size[0], of.size[1]).columns(of.columns);
+    Study::new(id, title).block(of.panels.iter().filter_map(panel).fold(figure, Figure::panel))
 }

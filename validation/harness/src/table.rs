@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 
 use crate::{
     composed::Composed,
-    declare::{Ladder, Level, Picture},
+    declare::{Ladder, Level, Picture, PicturePanel},
     pictures,
     runs::{Planned, Tier},
 };
@@ -29,6 +29,14 @@ pub struct Row<T, G> {
     pub settings: T,
     /// The run and its gates.
     pub run: Planned,
+}
+
+impl<T, G> Row<T, G> {
+    /// A panel of its particles at the end, of this spacing in the unit of their places.
+    pub fn panel(&self, title: impl Into<String>, spacing: f64) -> PicturePanel {
+        let (spec, profile) = (self.run.spec.clone(), pictures::END.into());
+        PicturePanel { title: title.into(), spec, profile, spacing, lines: Vec::new() }
+    }
 }
 
 /// The runs of a case in one tier. `G` is what runs are for, an enum of the case.
@@ -126,29 +134,17 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         Ladder { variant, levels, order: None }
     }
 
-    /// A picture of the runs that keep particles; `panel` gives the title of one, and its spacing.
+    /// A picture of the runs that keep particles; `panels` gives those of one.
     pub fn picture(
         &self,
         texts: [&'static str; 3],
         colours: (&'static str, ColourMap),
         size: [f64; 2],
-        panel: impl Fn(&Row<T, G>) -> (String, f64),
+        panels: impl Fn(&Row<T, G>) -> Vec<PicturePanel>,
     ) -> Picture {
         let kept = self.rows.iter().filter(|row| row.run.spec.keep.particles);
-        let panels = kept.map(|row| {
-            let (label, spacing) = panel(row);
-            Level { run: row.run.clone(), spacing, label }
-        });
-        Picture {
-            texts,
-            colours,
-            size,
-            panels: panels.collect(),
-            profile: pictures::END,
-            shown: |value| value,
-            range: None,
-            lines: Vec::new(),
-        }
+        let (panels, columns) = (kept.flat_map(panels).collect(), 1);
+        Picture { texts, colours, size, panels, columns, shown: |value| value, range: None }
     }
 
     /// The plan: every run with its gates.

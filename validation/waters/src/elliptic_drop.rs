@@ -273,8 +273,9 @@ fn declaration(tier: Tier) -> Declaration {
                    initial pressure at its centre; its rows are two initial spacings apart.";
     let texts = ["elliptic-drop-picture", "A free drop at the end", caption];
     let colours = ("p/p(0) [-]", ColourMap::Sequential);
-    let pictures =
-        vec![table.picture(texts, colours, [360.0, 320.0], |_| ("A t = 0.8".into(), 0.05))];
+    let pictures = vec![
+        table.picture(texts, colours, [360.0, 320.0], |row| vec![row.panel("A t = 0.8", 0.05)]),
+    ];
     let costly = &ledger::METRICS;
     Declaration { accuracy: vec![accuracy], pictures, costly, ..Declaration::default() }
 }

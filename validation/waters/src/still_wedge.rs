@@ -302,7 +302,8 @@ fn declaration(tier: Tier) -> Declaration {
                    spacings along the depth.";
     let texts = ["still-wedge-errors", "Errors of still water over a wedge", caption];
     let colours = ("p − p_exact [ρ g H]", ColourMap::Diverging);
-    let pictures =
-        vec![table.picture(texts, colours, [360.0, 220.0], |row| (row.variant.into(), 0.05))];
+    let pictures = vec![
+        table.picture(texts, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]),
+    ];
     Declaration { accuracy: vec![accuracy], pictures, sensitivity, ..Declaration::default() }
 }

@@ -263,10 +263,11 @@ fn picture(table: &Table) -> Picture {
                    channel. Black lines are the floor and, where the flow separates, the border of the \
                    fluid that circulates in finite elements.";
     let texts = ["periodic-hill-pictures", "Pictures", caption];
-    let panel =
-        |row: &Row| (format!("Re {}, {}", row.settings.re, name(row)), 1.0 / row.settings.n as f64);
+    let panel = |row: &Row| {
+        let HillSettings { re, n, .. } = row.settings;
+        let panel = row.panel(format!("Re {re}, {}", name(row)), 1.0 / n as f64);
+        vec![PicturePanel { lines: vec![floor(), bubble(re)], ..panel }]
+    };
     let picture = table.picture(texts, ("u [U_b]", ColourMap::Diverging), [640.0, 230.0], panel);
-    let kept = table.rows.iter().filter(|row| row.run.spec.keep.particles);
-    let lines = kept.map(|row| vec![floor(), bubble(row.settings.re)]).collect();
-    Picture { lines, range: Some([-1.5, 1.5]), ..picture }
+    Picture { range: Some([-1.5, 1.5]), ..picture }
 }

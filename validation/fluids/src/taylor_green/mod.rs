@@ -262,7 +262,7 @@ fn picture(table: &Table) -> Picture {
     let colours = ("log₁₀(error/largest exact speed)", ColourMap::Sequential);
     let picture = table.picture(texts, colours, [300.0, 270.0], |row| {
         let n = row.settings.n;
-        (format!("{}, {n} x {n}", row.variant), 1.0 / n as f64)
+        vec![row.panel(format!("{}, {n} x {n}", row.variant), 1.0 / n as f64)]
     });
     Picture { shown: |error| log10(error.max(1e-12)), range: Some([-4.0, 0.0]), ..picture }
 }

@@ -1,7 +1,7 @@
 //! What the studies that every case has are made of: histories over finite elements, errors over spacing and
 //! cost, an error budget, step limits, maps, errors of constants that the gates must detect.
 
-use report::{Colour, sig};
+use report::{Colour, ColourMap, sig};
 
 use super::*;
 
@@ -65,14 +65,45 @@ pub fn declaration(tier: Tier) -> Declaration {
         budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
         limits: limits(tier),
         is_stable: Some(is_stable),
-        studies: Some(Box::new(move |runs| studies::studies(tier, runs))),
         maps: vec![map(tier)],
+        pictures: pictures(tier),
         sensitivity: Some(sensitivity(tier)),
         stepwise: STEPWISE,
         curve: Some(path_and_extents()),
         accuracy: vec![accuracy],
         ..Declaration::default()
     }
+}
+
+/// The ring on the right at the paper's speed, over that of finite elements, and one that is torn.
+fn pictures(tier: Tier) -> Vec<Picture> {
+    let whole = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. Particles \
+                 of variant `seed`, spacing 0.2 L, are coloured by the largest principal stress σ₁ over the \
+                 bulk modulus K; tension is positive. Black lines are the faces of the ring in finite \
+                 elements.";
+    let torn = "The right one of two rubber rings after a collision at 0.12 c0 each without artificial stress, \
+                spacing 0.2 L. Colour is the largest principal stress σ₁ over the bulk modulus K. Rubber of \
+                this law does not break; the method does.";
+    let table = table(tier);
+    let picture = |group, texts, shares: &[f64], most: f64| {
+        let panel = |row: &Row, share: f64| {
+            let RingSettings { spacing, speed, end, .. } = row.settings;
+            let panel = row.panel(format!("t = {} L/c0", sig(share * end, 3)), spacing);
+            let lines = reference::outlines(speed, share * end);
+            PicturePanel { profile: format!("particles@{share}"), lines, ..panel }
+        };
+        let panels = |row: &Row| match row.group == group {
+            true => shares.iter().map(|share| panel(row, *share)).collect(),
+            false => Vec::new(),
+        };
+        let colours = ("σ₁ [K]", ColourMap::Diverging);
+        let picture = table.picture(texts, colours, [185.0, 170.0], panels);
+        Picture { columns: shares.len(), range: Some([-most, most]), ..picture }
+    };
+    vec![
+        picture(Group::Paper, ["rubber-rings-pictures", "Pictures", whole], &PICTURES, 0.09),
+        picture(Group::Unstressed, ["rubber-rings-fracture", "Torn rings", torn], &[1.0], 0.07),
+    ]
 }
 
 /// The best variant and the paper's over their ladders, each with the reference of its law.

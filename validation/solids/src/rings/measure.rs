@@ -242,18 +242,11 @@ impl Observer<Symmetric> for Series {
 }
 
 impl Watch for Series {
-    /// x, y and the largest principal stress, for pictures, and for a film if one is asked for.
-    fn keep(
-        &self,
-        simulation: &dyn Stepper<Symmetric>,
-        stop: usize,
-        context: &Context,
-        record: &mut Record,
-    ) {
-        let (s, stop) = (&self.settings, stop + 1);
-        let is_frame = |frames: usize| (stop * frames).is_multiple_of(s.samples);
-        let share = stop as f64 / s.samples as f64;
-        if !PICTURES.contains(&share) && !context.spec.keep.pictures.is_some_and(is_frame) {
+    /// x, y and the largest principal stress of the ring on the right, for pictures.
+    fn keep(&self, simulation: &dyn Stepper<Symmetric>, stop: usize, record: &mut Record) {
+        let s = &self.settings;
+        let share = (stop + 1) as f64 / s.samples as f64;
+        if !PICTURES.contains(&share) {
             return;
         }
         let all = along_flight(s, simulation.particles());
@@ -262,7 +255,8 @@ impl Watch for Series {
             let (m, d) = (0.5 * (p.extra.xx + p.extra.yy), 0.5 * (p.extra.xx - p.extra.yy));
             m + hypot(d, p.extra.xy) - eos.pressure(p.density)
         };
-        let stressed = all.iter().map(|p| (p.position, stress(p)));
+        let [_, right] = halves(&all);
+        let stressed = right.iter().map(|p| (p.position, stress(p)));
         let name = format!("particles@{share}");
         pictures::keep(record, &name, "m", ("stress", "Pa"), stressed);
     }

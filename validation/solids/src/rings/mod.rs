@@ -10,14 +10,13 @@ mod metrics;
 mod plan;
 mod reference;
 mod scene;
-mod studies;
 #[cfg(test)]
 mod tests;
 
 use base::{functions::*, gate::*, mutation::Constant, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::Method, pictures, runs::Runs,
-    simulate, studies::causes::*, study::Study, table,
+    case::*, composed::*, context::Context, declare::*, method::Method, pictures, simulate,
+    studies::causes::*, table,
 };
 use nalgebra::{Rotation2, Vector2};
 use solver::{EquationOfState, Limits, Observer, Particle, Stepper, Symmetric};

@@ -23,9 +23,6 @@ pub type Row = table::Row<RingSettings, Group>;
 /// The paper's speed of each ring \[c0\].
 pub const SPEED: f64 = 0.059;
 
-/// Pictures of the film.
-pub const FRAMES: usize = 20;
-
 /// The runs of a tier, with their gates.
 pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     use Group::{Coarse, Paper, Speed, Unstressed};
@@ -33,8 +30,8 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     let mut table = Table::new(&RUBBER_RINGS, tier);
     let dx = |s: &mut RingSettings, spacing| s.spacing = spacing;
     let at = |s: &mut RingSettings, (dx, speed)| (s.spacing, s.speed) = (dx, speed);
-    let film = table.one(Paper, "seed", |s| s.spacing = 0.2);
-    film.run.spec = film.run.spec.clone().keep_particles().keep_pictures(FRAMES);
+    let whole = table.one(Paper, "seed", |s| s.spacing = 0.2);
+    whole.run.spec = whole.run.spec.clone().keep_particles();
     table.over(Paper, &["seed"], [&[], &[0.1, 0.05]], dx);
     table.over(Paper, &["leapfrog"], [&[0.2], &[0.2, 0.1]], dx);
     table.over(Paper, &[COMPONENTWISE], [&[], &[0.2]], dx);

@@ -95,7 +95,7 @@ pub trait Problem: SharedSettings {
 /// Sees every step of a run and measures it.
 pub trait Watch: Observer<Symmetric> + Bits {
     /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
-    fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &Context, _: &mut Record) {}
+    fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &mut Record) {}
     /// Puts metrics and profiles; `simulation` is at its end.
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
@@ -212,7 +212,7 @@ fn run<P: Problem>(
         .after_step("measurements", &|(watch, _), simulation| watch.after_step(simulation))
         .at_positions("particles", &|(watch, record), simulation, stop| {
             if context.spec.keep.particles {
-                watch.keep(simulation, stop, context, record);
+                watch.keep(simulation, stop, record);
             }
         })
         .run(context)?;

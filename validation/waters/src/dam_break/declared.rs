@@ -50,13 +50,14 @@ fn picture(tier: Tier) -> Picture {
                    far wall, coloured by pressure; colours end at 0 and 1 ρ g H.";
     let texts = ["dam-break-picture", "Picture of the tank", caption];
     let colours = ("p [ρ g H]", ColourMap::Sequential);
-    let picture =
-        plan::table(tier).picture(texts, colours, [560.0, 230.0], |Row { settings: s, .. }| {
-            let time = sig(run::PICTURE * s.end, 3);
-            (format!("time {time} √(H/g), H/dx = {}", s.n), 1.0 / s.n as f64)
-        });
+    let picture = plan::table(tier).picture(texts, colours, [560.0, 230.0], |row| {
+        let DamSettings { n, end, .. } = row.settings;
+        let title = format!("time {} √(H/g), H/dx = {n}", sig(run::PICTURE * end, 3));
+        let panel = row.panel(title, 1.0 / n as f64);
+        vec![PicturePanel { profile: run::PICTURED.into(), ..panel }]
+    });
     // A few drops that meet have many times the pressure of the water.
-    Picture { profile: run::PICTURED, range: Some([0.0, 1.0]), ..picture }
+    Picture { range: Some([0.0, 1.0]), ..picture }
 }
 
 /// The front over time: the column, moved with it, stands for it.
