@@ -2,7 +2,7 @@
 //
 //     node page.mjs PAGE [--full]
 //
-// search, filters, order and links of the table of verdicts, films, printing, and axe-core at two widths in
+// search, filters, order and links of the table of verdicts, printing, and axe-core at two widths in
 // light and dark. With --full it also checks the limits of a whole report: height, words, bytes, printed pages.
 import { chromium } from "playwright-core";
 import axe from "axe-core";
@@ -108,20 +108,6 @@ const arrived = await atFigure.waitForFunction((id) => {
 }, figure, { timeout: 10_000 }).then(() => true, () => false);
 check("a link to a figure leads to it", arrived, figure);
 await atFigure.close();
-
-// Films.
-const film = page.locator(".film").first();
-if (await film.count()) {
-  const play = page.locator(".controls button").first();
-  const place = () => film.locator("img").evaluate((image) => image.style.transform);
-  if ((await play.innerText()) === "Play") await play.click();
-  await page.waitForTimeout(700);
-  const moved = (await place()) !== "";
-  await play.press("Enter");
-  const stopped = await place();
-  await page.waitForTimeout(600);
-  check("a film plays, and stops by the keyboard", moved && (await place()) === stopped);
-}
 
 // Printing.
 const pdf = await page.pdf({ format: "A4" });

@@ -3,8 +3,8 @@
 use super::counts::Counts;
 use super::explorer::verdicts_where;
 use super::figure::Figure;
-use super::film::drawing;
 use super::inline::inline;
+use super::pixels::drawing;
 use maud::{Markup, html};
 
 /// What is said first of one subject.

@@ -143,26 +143,4 @@
     apply();
   }
   follow();
-
-  // Films: the frames are one below the other in an image, of which one is seen.
-  all(".film").forEach(function (film) {
-    var image = film.querySelector("img");
-    var frames = Number(film.dataset.frames);
-    var play = make("button", { type: "button" }, "Play");
-    var at = make("input", { type: "range", min: 0, max: frames - 1, value: 0, "aria-label": "Frame" });
-    var controls = make("div", { class: "controls" });
-    var show = function () { image.style.transform = "translateY(" + (-100 * at.value / frames) + "%)"; };
-    var timer = null;
-    var toggle = function () {
-      if (timer) { clearInterval(timer); timer = null; } else {
-        timer = setInterval(function () { at.value = (Number(at.value) + 1) % frames; show(); }, film.dataset.delay);
-      }
-      play.textContent = timer ? "Pause" : "Play";
-    };
-    play.addEventListener("click", toggle);
-    at.addEventListener("input", show);
-    controls.append(play, at);
-    film.after(controls);
-    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) { toggle(); }
-  });
 }());

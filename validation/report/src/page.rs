@@ -4,9 +4,9 @@ use super::card::Card;
 use super::counts::Counts;
 use super::explorer::{Explorer, verdicts_where};
 use super::figure::Figure;
-use super::film::{Film, drawing, image};
 use super::font;
 use super::inline::inline;
+use super::pixels::drawing;
 use super::render;
 use super::table::{Table, class, first_sentence, mark};
 use base::{files, text::base64};
@@ -91,8 +91,6 @@ pub enum Block {
     List(Vec<String>),
     /// A drawing with its caption and number; its id is its anchor.
     Figure(Figure),
-    /// A figure that moves.
-    Film(Film),
     /// A table with its number.
     Table(Table),
     /// The table of all verdicts, once a page.
@@ -109,12 +107,6 @@ pub enum Block {
 impl From<Figure> for Block {
     fn from(figure: Figure) -> Self {
         Self::Figure(figure)
-    }
-}
-
-impl From<Film> for Block {
-    fn from(film: Film) -> Self {
-        Self::Film(film)
     }
 }
 
@@ -200,9 +192,6 @@ fn write_image(block: &Block, folder: &Path) -> io::Result<()> {
         Block::Figure(figure) if !figure.panels.is_empty() => {
             render::png(figure, &path(&figure.id))
         }
-        Block::Film(film) => {
-            files::write_atomically(&path(&film.id), &film.png).map_err(io::Error::other)
-        }
         Block::Details { blocks, .. } => {
             blocks.par_iter().try_for_each(|block| write_image(block, folder))
         }
@@ -259,7 +248,6 @@ impl Writer<'_> {
                 html! { p id=(figure.id) { "No figure: none of the runs that it shows was completed." } }
             }
             Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
-            Block::Film(film) => self.figure(&film.id, &film.caption, moving(film)),
             Block::Table(table) => {
                 self.tables += 1;
                 table.markup(&format!("Table {}", self.tables))
@@ -302,17 +290,6 @@ fn prose(text: &str) -> Markup {
         return html! { p { (inline(text)) } };
     }
     html! { details.prose { summary { (inline(first)) } p { (inline(rest)) } } }
-}
-
-/// The frames of a film one below the other; the script shows them one after the other.
-fn moving(film: &Film) -> Markup {
-    let (width, height) = film.size;
-    let style = format!("width:{width}px;aspect-ratio:{width}/{height}");
-    html! {
-        div.film style=(style) data-frames=(film.frames) data-delay=(film.milliseconds) {
-            (image(&film.caption, &film.sheet))
-        }
-    }
 }
 
 #[cfg(test)]

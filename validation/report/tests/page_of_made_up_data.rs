@@ -5,7 +5,7 @@
 
 use base::gate::Verdict;
 use report::{
-    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Film, Page, Plot,
+    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Page, Plot,
     Section, Series, Table, VERDICTS, check_page,
 };
 use std::io;
@@ -21,9 +21,7 @@ fn a_page_of_made_up_data_is_whole() {
     page.write_html(&folder.join("index.html"), &html).unwrap();
     check_page(&html).unwrap();
     assert_eq!(std::fs::read_to_string(folder.join("index.html")).unwrap(), html);
-    for name in ["figure.png", "film.png"] {
-        assert!(folder.join("figures").join(name).is_file(), "{name}");
-    }
+    assert!(folder.join("figures").join("figure.png").is_file());
 }
 
 /// A plot over logarithmic axes, with all that runs add to it, and a map of particles.
@@ -82,17 +80,6 @@ fn explorer() -> Explorer {
     Explorer { gates, reasons: reasons.into() }
 }
 
-fn film() -> io::Result<Film> {
-    let frame = |k: u32| {
-        let points =
-            (0..40).map(|x| (0.15 * f64::from(x), (0.15 * f64::from(x + k)).sin())).collect();
-        let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]").range(-1.0, 1.0));
-        let plot = plot.layer(Series::line("", points));
-        Figure::new("frame", "").panel(plot).panel_size(200.0, 100.0)
-    };
-    Film::new("film", "A wave that moves.", &(0..8).map(frame).collect::<Vec<_>>(), 120)
-}
-
 fn page() -> io::Result<Page> {
     let card = Card {
         id: "curves".into(),
@@ -120,7 +107,6 @@ fn page() -> io::Result<Page> {
         sections: vec![
             Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer())),
             Section::new("maps", "A table")
-                .block(film()?)
                 .block(table())
                 .block(Block::List(vec!["one".into(), "two".into()]))
                 .block(details),
