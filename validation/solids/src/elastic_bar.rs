@@ -98,33 +98,23 @@ impl BarSettings {
 impl Problem for BarSettings {
     type Watch = Motion;
 
-    fn dx(&self) -> f64 {
-        self.length / self.n as f64
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.wave()
-    }
-
-    fn bodies(&self) -> usize {
-        if self.collide { 2 } else { 1 }
-    }
-
-    fn end(&self) -> f64 {
-        let auto = match (self.collide, self.gap > 0.0) {
-            (false, _) => 0.3,
-            (true, false) => 1.3,
-            (true, true) => 3.0,
+    fn scales(&self) -> Scales {
+        let (dx, rows) = (self.length / self.n as f64, self.rows());
+        let (bodies, auto) = match (self.collide, self.gap > 0.0) {
+            (false, _) => (1, 0.3),
+            (true, false) => (2, 1.3),
+            (true, true) => (2, 3.0),
         };
-        self.end.unwrap_or(auto) * 2.0 * self.length / self.wave()
-    }
-
-    fn count(&self) -> f64 {
-        (self.bodies() * self.n * self.rows()) as f64
-    }
-
-    fn domain(&self) -> Domain {
-        Domain { low: Vector2::zeros(), period: [None, Some(self.rows() as f64 * self.dx())] }
+        Scales {
+            dx,
+            speed: self.speed * self.wave(),
+            end: self.end.unwrap_or(auto) * 2.0 * self.length / self.wave(),
+            count: (bodies * self.n * rows) as f64,
+            decisive: "end, dt or n",
+            meet: self.collide,
+            domain: Domain { low: Vector2::zeros(), period: [None, Some(rows as f64 * dx)] },
+            ..Scales::default()
+        }
     }
 
     fn particles(&self) -> Vec<Particle<Symmetric>> {
@@ -525,7 +515,8 @@ mod tests {
         }
         let (dx, method) = (s.dx(), schemes::solid::bare());
         let mut watch = s.watch(&particles, None);
-        let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
+        let parts =
+            Parts::new(s.medium(&method, dx), s.scales().domain, particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");
         watch.after_step(&*simulation);
         let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));

@@ -64,20 +64,16 @@ const TENTH: f64 = 0.1;
 impl Problem for DiskSettings {
     type Watch = History;
 
-    fn dx(&self) -> f64 {
-        self.radius / self.n as f64
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.material().sound_speed()
-    }
-
-    fn end(&self) -> f64 {
-        self.end * TAU * self.radius / self.speed()
-    }
-
-    fn count(&self) -> f64 {
-        PI * (self.n as f64).powi(2)
+    fn scales(&self) -> Scales {
+        let speed = self.speed * self.material().sound_speed();
+        Scales {
+            dx: self.radius / self.n as f64,
+            speed,
+            end: self.end * TAU * self.radius / speed,
+            count: PI * (self.n as f64).powi(2),
+            decisive: "end, dt or n",
+            ..Scales::default()
+        }
     }
 
     /// Around the origin, without stress.
@@ -368,7 +364,8 @@ mod tests {
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
         let (dx, method) = (s.dx(), schemes::solid::bare());
-        let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
+        let parts =
+            Parts::new(s.medium(&method, dx), Domain::open(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");
         let [inside, rim] = mistaken(&*simulation, 0.03);
         assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");

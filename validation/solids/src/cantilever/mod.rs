@@ -153,29 +153,20 @@ impl CantileverSettings {
 impl Problem for CantileverSettings {
     type Watch = End;
 
-    fn dx(&self) -> f64 {
-        self.thickness / self.n as f64
-    }
-
-    /// Of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to either side; at most
-    /// that of a rigid bar that falls to the vertical.
-    fn speed(&self) -> f64 {
+    /// The speed is that of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to
+    /// either side; at most that of a rigid bar that falls to the vertical.
+    fn scales(&self) -> Scales {
         let Self { length, thickness, young, poisson, rho, gravity, .. } = *self;
         let modulus = young / (1.0 - poisson * poisson);
         let slenderness = length * length / thickness;
         let period = solid::thin_plate_period([length, thickness], [young, poisson, rho]);
         let sag = 1.5 * rho * gravity / modulus * slenderness * slenderness;
-        (sag * (TAU / period)).min((3.0 * gravity * length).sqrt())
-    }
-
-    fn end(&self) -> f64 {
-        self.end
-    }
-
-    const DECISIVE: &'static str = "end, dt, n, length or thickness";
-
-    fn count(&self) -> f64 {
-        self.length / self.dx() * self.n as f64
+        Scales {
+            speed: (sag * (TAU / period)).min((3.0 * gravity * length).sqrt()),
+            end: self.end,
+            gravity: Vector2::new(0.0, -gravity),
+            ..solid::of_layers(self.n, [length, thickness])
+        }
     }
 
     fn check(&self, _: &Method<Symmetric>, _: &Context) -> Result<(), RunError> {
@@ -198,10 +189,6 @@ impl Problem for CantileverSettings {
         };
         let held = row(-(held as f64), held).map(|p| p.with_role(Role::Wall));
         row(0.0, columns).chain(held).collect()
-    }
-
-    fn gravity(&self) -> Vector2<f64> {
-        Vector2::new(0.0, -self.gravity)
     }
 
     fn watch(&self, _: &[Particle<Symmetric>], _: Option<Energy>) -> End {

@@ -116,22 +116,12 @@ impl PlateSettings {
 impl Problem for PlateSettings {
     type Watch = Tip;
 
-    fn dx(&self) -> f64 {
-        self.thickness / self.n as f64
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.material().sound_speed()
-    }
-
-    fn end(&self) -> f64 {
-        self.end * thin_plate_period(self)
-    }
-
-    const DECISIVE: &'static str = "end, dt, n, length or thickness";
-
-    fn count(&self) -> f64 {
-        self.length / self.dx() * self.n as f64
+    fn scales(&self) -> Scales {
+        Scales {
+            speed: self.speed * self.material().sound_speed(),
+            end: self.end * thin_plate_period(self),
+            ..solid::of_layers(self.n, [self.length, self.thickness])
+        }
     }
 
     fn check(&self, _: &Method<Symmetric>, _: &Context) -> Result<(), RunError> {
@@ -304,7 +294,8 @@ mod tests {
         }
         let (dx, method) = (s.dx(), schemes::solid::clamped_bare());
         let mut tip = s.watch(&particles, None);
-        let parts = Parts::new(s.medium(&method, dx), s.domain(), particles, &Context::default());
+        let parts =
+            Parts::new(s.medium(&method, dx), Domain::open(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");
         tip.after_step(&*simulation);
         assert!(tip.series[1][1].abs() < 1e-15);

@@ -41,37 +41,22 @@ impl RingSettings {
 impl Problem for RingSettings {
     type Watch = Series;
 
-    fn dx(&self) -> f64 {
-        (self.outer - self.inner) / self.layers()
-    }
-
-    fn speed(&self) -> f64 {
-        self.speed * self.c0()
-    }
-
-    fn bodies(&self) -> usize {
-        2
-    }
-
-    fn end(&self) -> f64 {
-        self.end / self.c0()
-    }
-
-    fn stops(&self) -> Vec<f64> {
-        let (end, count) = (self.end(), self.samples);
-        (1..=count).map(|k| end * k as f64 / count as f64).collect()
-    }
-
-    const DECISIVE: &'static str = "end, dt, courant, spacing or outer";
-
-    fn count(&self) -> f64 {
-        TAU * (self.outer * self.outer - self.inner * self.inner) / (self.dx() * self.dx())
-    }
-
     /// Twice the density or twice the speed of sound is no rubber any more.
-    fn bounds(&self) -> Limits {
-        let (density, speed) = (self.rho, 2.0 * (self.material().p_wave_speed() + self.speed()));
-        Limits { density: [0.5 * density, 2.0 * density], speed }
+    fn scales(&self) -> Scales {
+        let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
+        let (density, speed) = (self.rho, self.speed * c0);
+        let most = 2.0 * (self.material().p_wave_speed() + speed);
+        Scales {
+            dx,
+            speed,
+            end: self.end / c0,
+            count: TAU * (self.outer * self.outer - self.inner * self.inner) / (dx * dx),
+            decisive: "end, dt, courant, spacing or outer",
+            meet: true,
+            stops: self.samples,
+            bounds: Limits { density: [0.5 * density, 2.0 * density], speed: most },
+            ..Scales::default()
+        }
     }
 
     fn check(&self, method: &Method<Symmetric>, context: &Context) -> Result<(), RunError> {

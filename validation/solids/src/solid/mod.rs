@@ -16,9 +16,9 @@ pub use energy::{Energy, angular_momentum, norm_squared};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
 pub use maths::{geometry::corners, metrics::norms::largest};
-pub use plates::{FIRST_MODE, clamp, thin_plate_period};
+pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};
 pub use problem::{
-    Problem, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
+    Problem, Scales, SharedSettings, Watch, check_length, digest, leave_out, program, variants,
 };
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its

@@ -4,6 +4,8 @@ use nalgebra::Vector2;
 use solver::PlaneWall;
 use std::f64::consts::TAU;
 
+use super::Scales;
+
 /// k L of the first mode of a cantilever: cos kL cosh kL = −1.
 pub const FIRST_MODE: f64 = 1.875_104_068_711_961;
 
@@ -16,6 +18,12 @@ pub fn thin_plate_period(
     let k = FIRST_MODE / length;
     let stiffness = young * thickness * thickness / (12.0 * (1.0 - poisson * poisson));
     TAU / (k * k * (stiffness / density).sqrt())
+}
+
+/// Scales of a plate of so many layers, of this length and thickness \[m\].
+pub fn of_layers(n: usize, [length, thickness]: [f64; 2]) -> Scales {
+    let (dx, decisive) = (thickness / n as f64, "end, dt, n, length or thickness");
+    Scales { dx, count: length / dx * n as f64, decisive, ..Scales::default() }
 }
 
 /// The plane at x = 0 that holds a plate without held particles.

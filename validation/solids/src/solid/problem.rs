@@ -35,32 +35,57 @@ pub trait SharedSettings: Settings + 'static {
     }
 }
 
+/// What follows from the settings of a problem before its particles are made.
+#[derive(Clone, Debug, Default)]
+pub struct Scales {
+    /// Spacing \[m\].
+    pub dx: f64,
+    /// Largest speed at the start \[m/s\].
+    pub speed: f64,
+    /// End of the run \[s\].
+    pub end: f64,
+    /// About how many particles there are.
+    pub count: f64,
+    /// The settings on which the number of particles and of time steps depends.
+    pub decisive: &'static str,
+    /// Are there two equal bodies that meet, whose particles follow each other, each with the largest speed?
+    pub meet: bool,
+    /// Times, equally far apart, to which steps lead exactly, which changes the length of the steps before
+    /// them; 0 is as 1, the end alone.
+    pub stops: usize,
+    /// The acceleration of weight \[m/s²\], which only methods with weight read.
+    pub gravity: Vector2<f64>,
+    /// Open, unless a case has a period.
+    pub domain: Domain,
+    /// Densities and speeds beyond which a run counts as diverged.
+    pub bounds: solver::Limits,
+}
+
 /// A problem of elasticity, stated by its settings: what differs between solid cases.
 pub trait Problem: SharedSettings {
     /// What sees every step.
     type Watch: Watch;
 
+    /// Spacing, speed, end and the like.
+    fn scales(&self) -> Scales;
     /// Spacing \[m\].
-    fn dx(&self) -> f64;
+    fn dx(&self) -> f64 {
+        self.scales().dx
+    }
     /// Largest speed at the start \[m/s\].
-    fn speed(&self) -> f64;
-    /// How many equal bodies there are, whose particles follow each other: one, or two that meet, each with
-    /// the largest speed.
-    fn bodies(&self) -> usize {
-        1
+    fn speed(&self) -> f64 {
+        self.scales().speed
     }
     /// End of the run \[s\].
-    fn end(&self) -> f64;
+    fn end(&self) -> f64 {
+        self.scales().end
+    }
     /// The particles at the start. Those that are held stand behind the plane x = 0, by which methods that
     /// have no held particles hold the body.
     fn particles(&self) -> Vec<Particle<Symmetric>>;
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
-    /// The acceleration of weight \[m/s²\], which only methods with weight read.
-    fn gravity(&self) -> Vector2<f64> {
-        Vector2::zeros()
-    }
     /// Refuses settings that are in their ranges and make no body together, or none that this method holds.
     ///
     /// # Errors
@@ -68,28 +93,11 @@ pub trait Problem: SharedSettings {
     fn check(&self, _method: &Method<Symmetric>, _context: &Context) -> Result<(), RunError> {
         Ok(())
     }
-    /// The times to which steps lead exactly \[s\], ascending; the last is the end. Any other changes the
-    /// length of the steps before it.
-    fn stops(&self) -> Vec<f64> {
-        vec![self.end()]
-    }
-    /// Densities and speeds beyond which a run counts as diverged.
-    fn bounds(&self) -> solver::Limits {
-        solver::Limits::default()
-    }
-    /// Open, unless a case has a period.
-    fn domain(&self) -> Domain {
-        Domain::open()
-    }
     /// Displacement at the start of the particle that is at this place without stress \[m\], for methods
     /// whose stress follows from displacements.
     fn displacement(&self, _place: Vector2<f64>) -> Vector2<f64> {
         Vector2::zeros()
     }
-    /// About how many particles there are, before they are made.
-    fn count(&self) -> f64;
-    /// The settings on which the number of particles and of time steps depends.
-    const DECISIVE: &'static str = "end, dt or n";
 }
 
 /// Sees every step of a run and measures it.
@@ -155,58 +163,54 @@ const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
 fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
-    let (material, medium) = (settings.material(), settings.medium(method, settings.dx()));
+    let Scales { dx, speed, end, meet, gravity, .. } = settings.scales();
+    let (material, medium) = (settings.material(), settings.medium(method, dx));
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
     let [dt, courant] = settings.given_step();
     let courant = courant.unwrap_or(usual);
-    let (h, speed, force) = (medium.h, settings.speed(), settings.gravity().norm());
+    let (h, force) = (medium.h, gravity.norm());
     let step = Step::courant(courant, h, [material.p_wave_speed(), speed]);
     let step = step.forced(FORCED, h, force).or_given(dt);
-    let approach = if settings.bodies() > 1 { 2.0 * speed } else { 0.0 };
+    let approach = if meet { 2.0 * speed } else { 0.0 };
     let limits =
         limits(method, &material, &medium, settings.h_over_dx(), approach).moving(h, speed, force);
-    Rules { step, limits, sound_speed: material.sound_speed(), end: settings.end() }
+    Rules { step, limits, sound_speed: material.sound_speed(), end }
 }
 
 /// One run with a method.
-fn run<P: Problem>(
-    method: &Method<Symmetric>,
-    settings: &P,
-    context: &Context,
-) -> Result<Record, RunError> {
-    settings.check(method, context)?;
-    let rules = rules(method, settings);
-    simulate::check_step(method.integrator, &rules, context)?;
-    let acceleration = settings.gravity();
-    let medium = Medium { acceleration, ..settings.medium(method, settings.dx()) };
-    let size = simulate::size(method, &medium, [rules.end / rules.dt(), settings.count()]);
+fn run<P: Problem>(m: &Method<Symmetric>, s: &P, context: &Context) -> Result<Record, RunError> {
+    s.check(m, context)?;
+    let (rules, scales) = (rules(m, s), s.scales());
+    simulate::check_step(m.integrator, &rules, context)?;
+    let medium = Medium { acceleration: scales.gravity, ..s.medium(m, scales.dx) };
+    let size = simulate::size(m, &medium, [rules.end / rules.dt(), scales.count]);
     let size = Size { samples: size.steps, ..size };
-    runner::check_size(size, P::DECISIVE, context)?;
-    let material = settings.material();
+    runner::check_size(size, scales.decisive, context)?;
+    let material = s.material();
     let own = [
         ("K [Pa]", material.bulk),
         ("mu [Pa]", material.shear),
         ("c_p [m/s]", material.p_wave_speed()),
     ];
-    let numbers = [&rules.numbers([settings.h_over_dx(), medium.dx])[..], &own].concat();
-    let mut record = simulate::begin(method, &numbers, context);
-    let (eos, particles) = (material.eos(), settings.particles());
-    let limits = settings.bounds();
+    let numbers = [&rules.numbers([s.h_over_dx(), medium.dx])[..], &own].concat();
+    let mut record = simulate::begin(m, &numbers, context);
+    let (eos, particles) = (material.eos(), s.particles());
     let is_held = particles.iter().any(|p| p.role == Role::Wall);
     let mirrors = if is_held { vec![clamp()] } else { Vec::new() };
-    let (count, all) = (settings.bodies(), particles.len());
-    let body = |k: usize| (k * count / all) as u32;
-    let bodies = if count > 1 { (0..all).map(body).collect() } else { Vec::new() };
-    let parts = Parts::new(medium, settings.domain(), particles.clone(), context);
-    let mut simulation = (method.build)(Parts { mirrors, bodies, limits, ..parts })?;
+    let all = particles.len();
+    let body = |k: usize| (2 * k / all) as u32;
+    let bodies = if scales.meet { (0..all).map(body).collect() } else { Vec::new() };
+    let parts = Parts::new(medium, scales.domain, particles.clone(), context);
+    let mut simulation = (m.build)(Parts { mirrors, bodies, limits: scales.bounds, ..parts })?;
     if simulation.potential().is_some() {
-        let by = |place| settings.displacement(place);
+        let by = |place| s.displacement(place);
         let view = context.outline.as_ref().map(Sink::view).unwrap_or_default();
         lagrangian::displace(&mut *simulation, |place| view.displacement(by, place));
     }
     let energy = Energy::known(&*simulation);
-    let mut watch = settings.watch(&particles, energy);
-    let stops = settings.stops();
+    let mut watch = s.watch(&particles, energy);
+    let count = scales.stops.max(1);
+    let stops: Vec<f64> = (1..=count).map(|k| scales.end * k as f64 / count as f64).collect();
     let mut seen = (&mut watch, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
         .after_step("measurements", &|(watch, _), simulation| watch.after_step(simulation))
