@@ -68,7 +68,7 @@ pub const DECAY: Composed<Decay> = Composed {
     best: Best { variant: "quintic", because: "a smoother kernel is less wrong", papers: None },
     about: "A shear wave in a periodic box decays as exp(-ν(2π)²t).",
     variants: || {
-        Variants::of(&Program { run, rules })
+        Variants::of(run, rules)
             .with("cubic", "cubic spline", Method::of::<Flow<CubicSpline>>(), |_| {})
             .with("quintic", "quintic spline", Method::of::<Flow<QuinticSpline>>(), |_| {})
             .all

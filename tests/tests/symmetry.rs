@@ -182,7 +182,7 @@ const FLAWED: Composed<Decay> = Composed {
     best: Best { variant: "sound", because: "the others are wrong", papers: None },
     about: "A patch of fluid in disorder.",
     variants: || {
-        Variants::of(&Program { run, rules: |_, _| Ok(Rules::REFUSED) })
+        Variants::of(run, |_, _| Ok(Rules::REFUSED))
             .with("sound", "", flawed::<SOUND>(), |_| {})
             .with("anisotropic", "", flawed::<ANISOTROPIC>(), |_| {})
             .with("chiral", "", flawed::<CHIRAL>(), |_| {})

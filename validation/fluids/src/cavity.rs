@@ -51,7 +51,7 @@ fn variants() -> Vec<Composition<Cavity>> {
     let consistent = "carried with sums that are exact for linear fields, as in the vortices";
     let strong: fn(&mut Cavity) = |s| s.shift = 3.0;
     let old: fn(&mut Cavity) = |s| (s.h_over_dx, s.eta2_over_h2, s.courant) = (1.2, 0.01, 0.25);
-    Variants::of(&Program { run, rules: |m, s| Ok(flow(s, m, &Context::of_rules())?.rules) })
+    Variants::of(run, |m, s| Ok(flow(s, m, &Context::of_rules())?.rules))
         .with("seed", seed, flow::cavity_seed(), old)
         .with("modern", modern, flow::cavity_modern(), |_| {})
         .with("carried", carried, flow::cavity_carried(), strong)

@@ -49,7 +49,7 @@ fn variants() -> Vec<Composition<ManufacturedSettings>> {
     let of_seed = "the paper's terms, kernel and predictor-corrector: what order have they?";
     let of_modern = "quintic spline, leapfrog, density diffusion, shifting: what order have they?";
     let of_consistent = "modern with sums that are exact for linear fields: what order have they?";
-    Variants::of(&Program { run, rules: |m, s| Ok(flow(s, m, &Context::of_rules())?.rules) })
+    Variants::of(run, |m, s| Ok(flow(s, m, &Context::of_rules())?.rules))
         .with(SEED[0], of_seed, flow::manufactured_seed(), seed)
         .with(SEED[1], of_seed, flow::manufactured_seed_interface(), seed)
         .with(MODERN[0], of_modern, flow::manufactured_modern(), |_| {})

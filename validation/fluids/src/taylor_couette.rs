@@ -157,8 +157,7 @@ fn variants() -> Vec<Composition<CylinderSettings>> {
         "interface and wall particles (section 4.2 of the paper) on and behind both cylinders";
     let extrapolating =
         "wall particles behind both cylinders that extrapolate velocity and pressure";
-    let rules = |m: &_, s: &_| Ok(Cylinders::new(s, m, &Context::of_rules())?.rules);
-    Variants::of(&Program { run, rules })
+    Variants::of(run, |m, s| Ok(Cylinders::new(s, m, &Context::of_rules())?.rules))
         .with(INTERFACE, interface, flow::cylinders_interface(), |_| {})
         .with(EXTRAPOLATING, extrapolating, flow::cylinders_extrapolating(), |_| {})
         .all

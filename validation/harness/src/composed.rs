@@ -40,25 +40,21 @@ pub struct Composition<T> {
     pub lacks: Vec<&'static str>,
 }
 
-/// What a case does with any of its methods.
-pub struct Program<T, M> {
-    /// Runs it.
-    pub run: fn(&M, &T, &Context) -> Result<Record, RunError>,
-    /// What the rules choose from the settings.
-    pub rules: fn(&M, &T) -> Result<Rules, RunError>,
-}
-
-/// Variants that the same program runs, one after another.
-pub struct Variants<'a, T, M> {
-    program: &'a Program<T, M>,
+/// Variants that are run alike, one after another.
+pub struct Variants<T, M> {
+    run: Rc<dyn Fn(&M, &T, &Context) -> Result<Record, RunError>>,
+    rules: Rc<dyn Fn(&M, &T) -> Result<Rules, RunError>>,
     /// Those so far.
     pub all: Vec<Composition<T>>,
 }
 
-impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T, Method<X, D>> {
-    /// An empty list of variants.
-    pub fn of(program: &'a Program<T, Method<X, D>>) -> Self {
-        Self { program, all: Vec::new() }
+impl<T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
+    /// An empty list of variants: what runs each method with settings, and what the rules choose from these.
+    pub fn of(
+        run: impl Fn(&Method<X, D>, &T, &Context) -> Result<Record, RunError> + 'static,
+        rules: impl Fn(&Method<X, D>, &T) -> Result<Rules, RunError> + 'static,
+    ) -> Self {
+        Self { run: Rc::new(run), rules: Rc::new(rules), all: Vec::new() }
     }
 
     /// Adds a variant: name, description, method, and a function that changes the default settings.
@@ -70,7 +66,8 @@ impl<'a, T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<'a, T,
         method: Method<X, D>,
         adjust: fn(&mut T),
     ) -> Self {
-        let (method, &Program { run, rules }) = (Rc::new(method), self.program);
+        let (run, rules) = (Rc::clone(&self.run), Rc::clone(&self.rules));
+        let method = Rc::new(method);
         let is_setting = |name: &&str| T::FIELDS.iter().any(|field| field.name == *name);
         let lacks = Knob::others(&method.uses).filter(is_setting).collect();
         let ruled = Rc::clone(&method);

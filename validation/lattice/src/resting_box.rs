@@ -103,7 +103,7 @@ fn variants() -> Vec<Composition<BoxSettings>> {
     let damped = "what artificial viscosity and density diffusion take from the step";
     let single = "what one pair sweep a step allows, in place of the leapfrog's two";
     let quintic = "does theory hold for a kernel of wider support?";
-    Variants::of(&Program { run, rules })
+    Variants::of(run, rules)
         .with(CUBIC, cubic, method(CUBIC), |_| ())
         .with(MIDPOINT, midpoint, method(MIDPOINT), |_| ())
         .with(SUPER, super_stepping, method(SUPER), |_| ())

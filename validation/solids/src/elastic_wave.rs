@@ -51,7 +51,7 @@ base::metrics! {
 }
 
 fn variants() -> Vec<Composition<WaveSettings>> {
-    Variants::of(&Program { run, rules: |method, settings| Ok(settings.rules(method)) })
+    Variants::of(run, |method, settings| Ok(settings.rules(method)))
         .with(
             CubicSpline::NAME,
             "equations (9) to (12), leapfrog, cubic spline: are both moduli those of the material?",

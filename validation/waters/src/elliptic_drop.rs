@@ -60,7 +60,7 @@ fn variants() -> Vec<Composition<DropSettings>> {
     let seed = "the paper's terms: cubic spline, predictor-corrector, artificial viscosity and stress, XSPH";
     let best = "Wendland C2, h/dx 2.5, leapfrog, density diffusion, little artificial viscosity";
     let plain = "modern without dissipation: (3), (5) and (7) alone";
-    Variants::of(&Program { run, rules: |method, s| Ok(Drop::new(s, method).rules) })
+    Variants::of(run, |method, s| Ok(Drop::new(s, method).rules))
         .with("seed", seed, water::free_seed(), |_| {})
         .with("modern", best, water::free(), modern)
         .with("plain", plain, water::plain(), modern)

@@ -83,7 +83,7 @@ fn variants() -> Vec<Composition<HydrostaticSettings>> {
                 a hydrostatic column, leapfrog";
     let plain = "modern with the diffusion of Molteni and Colagrossi: does plain diffusion level out the \
                  column?";
-    Variants::of(&Program { run, rules: |m, s| Ok(Column::new(s, m, &Context::of_rules())?.rules) })
+    Variants::of(run, |m, s| Ok(Column::new(s, m, &Context::of_rules())?.rules))
         .with("seed", seed, schemes::water::seed(), |_| {})
         .with("ghosts", "seed with ghosts for walls", schemes::water::ghosts(), |_| {})
         .with("modern", best, schemes::water::modern(), modern)

@@ -45,7 +45,7 @@ fn variants() -> Vec<Composition<Wedge>> {
     let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";
-    Variants::of(&Program { run, rules: |m, s| Ok(scene(s, m, &Context::of_rules())?.1) })
+    Variants::of(run, |m, s| Ok(scene(s, m, &Context::of_rules())?.1))
         .with("seed", seed, schemes::water::seed(), |s| s.courant = 0.4)
         .with("modern", modern, schemes::water::modern(), |s| (s.alpha, s.courant) = (0.02, 0.8))
         .all

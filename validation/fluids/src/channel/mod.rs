@@ -15,16 +15,13 @@ use declaration::declaration;
 pub use plan::{GHOSTS, ladder};
 pub use setup::{ChannelSettings, Flow, Setup};
 
-use harness::{composed::*, method::Method, table::Table};
+use harness::{composed::*, table::Table};
 
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];
 
 /// A case of a channel flow.
 pub type ChannelCase = Composed<ChannelSettings>;
-
-/// What runs the variants of a channel flow.
-pub type ChannelProgram = Program<ChannelSettings, Method>;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,25 +1,14 @@
 //! One run of a channel flow: stepping, record.
 
 use base::record::{Record, Status};
-use harness::{case::*, composed::Program, context::Context, method::*, runner::Drive, simulate};
+use harness::{case::*, context::Context, method::*, runner::Drive, simulate};
 use solver::{Flow as Going, Particle, Role};
 
 use super::measure::{self, MODE};
-use super::{ChannelProgram, ChannelSettings, Flow, Setup};
+use super::{ChannelSettings, Flow, Setup};
 
-/// Runs of the flow that a plate drives.
-pub const COUETTE: ChannelProgram = Program {
-    run: |method, s, context| run(Flow::Couette, method, s, context),
-    rules: |method, s| Ok(Setup::new(Flow::Couette, s, method, &Context::of_rules())?.rules),
-};
-
-/// Runs of the flow that a body force drives.
-pub const POISEUILLE: ChannelProgram = Program {
-    run: |method, s, context| run(Flow::Poiseuille, method, s, context),
-    rules: |method, s| Ok(Setup::new(Flow::Poiseuille, s, method, &Context::of_rules())?.rules),
-};
-
-fn run(
+/// One run of a flow.
+pub fn run(
     flow: Flow,
     method: &Method,
     settings: &ChannelSettings,

@@ -1,9 +1,9 @@
 //! The variants of the channel flows: methods, and the settings that go with them.
 
-use harness::{composed::*, method::Method};
+use harness::{composed::*, context::Context, method::Method};
 use schemes::flow::{self, OfChannels};
 
-use super::{ChannelProgram, ChannelSettings, run::*};
+use super::{ChannelSettings, Flow, Setup, run::run};
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.
 fn modern(s: &mut ChannelSettings) {
@@ -39,11 +39,9 @@ fn single_sweep(s: &mut ChannelSettings) {
     (s.courant, s.c0_viscous) = (s.courant / 8_f64.sqrt(), s.c0_viscous / 8_f64.sqrt());
 }
 
-type All<'a> = Variants<'a, ChannelSettings, Method>;
-
 /// The variants of Couette flow.
 pub fn of_couette() -> Vec<Composition<ChannelSettings>> {
-    both(&COUETTE, flow::couette()).all
+    both(Flow::Couette, flow::couette()).all
 }
 
 /// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable: the paper's method
@@ -57,7 +55,7 @@ pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
                      instability?";
     let xsph = "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?";
     let shifting = "seed with particle shifting 0.5: does it cure the seed's instability?";
-    both(&POISEUILLE, flow::poiseuille())
+    both(Flow::Poiseuille, flow::poiseuille())
         .with("curved", bent, flow::poiseuille().plain, curved)
         .with("cure-stress", stress, flow::cure_stress(), |_| {})
         .with("cure-viscosity", viscosity, flow::cure_viscosity(), |_| {})
@@ -66,7 +64,7 @@ pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
         .all
 }
 
-fn both(program: &ChannelProgram, methods: OfChannels) -> All<'_> {
+fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
     let seed =
         "as in the paper: cubic spline, h/dx 1.2, eta^2 = 0.01 h^2, ghosts, predictor-corrector";
     let interface =
@@ -82,7 +80,8 @@ fn both(program: &ChannelProgram, methods: OfChannels) -> All<'_> {
     let single = "modern with one pair sweep a step in place of two: is its error cheaper?";
     let steps =
         "modern with super-time-stepping: what does a step save that viscosity does not limit?";
-    Variants::of(program)
+    let rules = move |m: &_, s: &_| Ok(Setup::new(flow, s, m, &Context::of_rules())?.rules);
+    Variants::of(move |m, s, context| run(flow, m, s, context), rules)
         .with("seed", seed, methods.seed, |_| {})
         .with("interface-wall", interface, methods.interface_wall, |_| {})
         .with("wendland-leapfrog", kernel, methods.wendland, wendland)

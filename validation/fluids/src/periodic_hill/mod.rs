@@ -11,7 +11,7 @@ mod reference;
 mod run;
 mod setup;
 
-use harness::{case::Case, composed::*};
+use harness::{case::Case, composed::*, context::Context};
 use schemes::hill;
 
 use crate::unit_flow::unit_settings;
@@ -62,7 +62,7 @@ fn variants() -> Vec<Composition<HillSettings>> {
                    know how the velocity bends: the best";
     let consistent = "carried with sums that are exact for linear fields: are they worth more work for each \
                       pair?";
-    Variants::of(&run::PROGRAM)
+    Variants::of(run::run, |m, s| Ok(Setup::new(s, m, &Context::of_rules())?.flow.rules))
         .with("plain", plain, hill::plain(), |_| {})
         .with("interface-wall", interface, hill::interface_wall(), |_| {})
         .with("modern", modern, hill::modern(), |_| {})

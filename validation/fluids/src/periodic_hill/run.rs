@@ -1,14 +1,10 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
 use base::{functions::exp, record::*};
-use harness::{case::RunError, composed::Program, context::Context, runner::Drive, simulate};
+use harness::{case::RunError, context::Context, runner::Drive, simulate};
 use schemes::hill::{Driving, HillMethod};
 
 use super::{HillSettings, Setup, measure::*};
-
-/// Runs of the flow over hills.
-pub const PROGRAM: Program<HillSettings, HillMethod> =
-    Program { run, rules: |method, s| Ok(Setup::new(s, method, &Context::of_rules())?.flow.rules) };
 
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;
@@ -98,7 +94,8 @@ fn kinetic_energy(simulation: &dyn Driving) -> f64 {
     simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum()
 }
 
-fn run(
+/// One run of the flow over hills.
+pub fn run(
     method: &HillMethod,
     settings: &HillSettings,
     context: &Context,

@@ -7,20 +7,16 @@ use super::VortexSettings;
 use crate::unit_flow::{Scales, UnitFlow};
 use base::{random::Random, record::*};
 use harness::{
-    case::RunError, composed::Program, context::Context, method::Method, pictures, runner::Drive,
-    simulate,
+    case::RunError, context::Context, method::Method, pictures, runner::Drive, simulate,
 };
 use maths::exact::TaylorGreen;
 
-/// Runs of the vortices.
-pub const PROGRAM: Program<VortexSettings, Method> =
-    Program { run, rules: |method, s| Ok(Setup::new(s, method, &Context::of_rules())?.flow.rules) };
-
 /// The numbers of one run, L = U = ρ = 1.
-struct Setup {
+pub struct Setup {
     settings: VortexSettings,
     exact: TaylorGreen,
-    flow: UnitFlow,
+    /// Medium, time step, sound speed.
+    pub flow: UnitFlow,
 }
 
 base::metrics! {
@@ -35,7 +31,7 @@ base::metrics! {
 
 impl Setup {
     /// Follows the rules for a method.
-    fn new(s: &VortexSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
+    pub fn new(s: &VortexSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
         let flow =
             s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt }, context)?;
         let exact = TaylorGreen { nu: flow.medium.nu };
@@ -89,14 +85,15 @@ const DECAYED: f64 = 0.01;
 /// Samples of the series.
 const SAMPLES: usize = 40;
 
-fn run(method: &Method, settings: &VortexSettings, context: &Context) -> Result<Record, RunError> {
-    let setup = Setup::new(settings, method, context)?;
+/// One run of the vortices.
+pub fn run(method: &Method, s: &VortexSettings, context: &Context) -> Result<Record, RunError> {
+    let setup = Setup::new(s, method, context)?;
     let flow = &setup.flow;
     let parts = flow.parts(Domain::torus(1.0, 1.0), setup.particles(), context);
     let mut simulation = (method.build)(parts)?;
-    let numbers = flow.rules.numbers([settings.h_over_dx, flow.medium.dx]);
+    let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
     let mut record = simulate::begin(method, &numbers, context);
-    let end = settings.end;
+    let end = s.end;
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let start = simulation.particles();
     let mut series = vec![[0.0, setup.error(0.0, &start)]];

@@ -19,7 +19,6 @@ use harness::{
     case::*,
     composed::*,
     declare::Declaration,
-    method::Method,
     table::{Row, Table},
 };
 
@@ -83,12 +82,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             p' + (c0 |g|)^2 p = 0. On a lattice, the symbols g(k) and lambda(k) of the sums of the method \
             are known exactly. A correct program has the frequency and decay that follow from them, \
             whatever the kernel.",
-    variants: || {
-        variants(&Program {
-            run: |method, s, context| run::run(Polarisation::Sound, method, s, context),
-            rules: |method, s| run::rules(Polarisation::Sound, method, s),
-        })
-    },
+    variants: || variants(Polarisation::Sound),
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
 };
@@ -101,12 +95,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
     about: "A shear wave of infinitesimal amplitude in a periodic box decays as exp(-nu lambda t). On \
             a lattice, the symbol lambda(k) of the viscous sum is known exactly. Sound and pressure stay \
             exactly zero to first order.",
-    variants: || {
-        variants(&Program {
-            run: |method, s, context| run::run(Polarisation::Shear, method, s, context),
-            rules: |method, s| run::rules(Polarisation::Shear, method, s),
-        })
-    },
+    variants: || variants(Polarisation::Shear),
     declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
 };
@@ -143,12 +132,13 @@ const STEPWISE: &[MetricKey] = &[
     run::VISCOUS_FACTOR,
 ];
 
-fn variants(program: &Program<WaveSettings, Method>) -> Vec<Composition<WaveSettings>> {
+fn variants(of: Polarisation) -> Vec<Composition<WaveSettings>> {
     let of_kernel = "are the symbols those of this kernel? its plain equations with the leapfrog";
     let of_step =
         "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";
     let of_diffusion = "does density diffusion decay as its symbol says? else as cubic-leapfrog";
-    Variants::of(program)
+    let rules = move |m: &_, s: &_| run::rules(of, m, s);
+    Variants::of(move |m, s, context| run::run(of, m, s, context), rules)
         .with(CUBIC, of_kernel, schemes::lattice::cubic(), |_| ())
         .with(MIDPOINT, of_step, schemes::lattice::midpoint(), |_| ())
         .with(QUINTIC, of_kernel, schemes::lattice::quintic(), |_| ())

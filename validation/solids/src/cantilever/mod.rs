@@ -101,7 +101,7 @@ const fn error(name: &'static str) -> MetricKey {
 const SAINT_VENANT: &str = "lagrangian-saint-venant";
 
 fn variants() -> Vec<Composition<CantileverSettings>> {
-    Variants::of(&solid::program())
+    solid::no_variants()
         .with(
             "seed",
             "what the paper describes, with weight: predictor-corrector, artificial viscosity, artificial \

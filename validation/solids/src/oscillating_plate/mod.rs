@@ -48,8 +48,7 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
 };
 
 fn variants() -> Vec<Composition<PlateSettings>> {
-    let program = solid::program();
-    let plain = Variants::of(&program).with(
+    let plain = solid::no_variants().with(
         PLAIN,
         "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?",
         schemes::solid::clamped_plain(),

@@ -87,7 +87,7 @@ const LONG_STEPS: f64 = 0.8;
 
 fn variants() -> Vec<Composition<RingSettings>> {
     use schemes::solid::{componentwise, corrected, leapfrog, seed};
-    Variants::of(&solid::program::<RingSettings>())
+    solid::no_variants::<RingSettings>()
         .with(
             "seed",
             "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \

@@ -11,7 +11,7 @@ use base::{
 };
 use harness::{
     case::{Rules, RunError, Step},
-    composed::{Composition, Program, Variants},
+    composed::{Composition, Variants},
     context::Context,
     method::{Medium, Method, Parts},
     outline::Sink,
@@ -108,14 +108,14 @@ pub trait Watch: Observer<Symmetric> + Bits {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
 
-/// What runs a problem with any method.
-pub fn program<P: Problem>() -> Program<P, Method<Symmetric>> {
-    Program { run: run::<P>, rules: |method, s| Ok(rules(method, s)) }
+/// No variants yet, of a problem that any method runs.
+pub fn no_variants<P: Problem>() -> Variants<P, Method<Symmetric>> {
+    Variants::of(run, |method, s| Ok(rules(method, s)))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
 pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composition<P>> {
-    Variants::of(&program())
+    no_variants()
         .with(
             "seed",
             "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \

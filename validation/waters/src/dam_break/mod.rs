@@ -101,7 +101,7 @@ fn variants() -> Vec<Composition<DamSettings>> {
                 makes `ghosts` noisy?";
     let sticking = "modern with artificial viscosity that sees the particles of the walls too, which stand \
                     still: how much do they drag the water?";
-    Variants::of(&run::PROGRAM)
+    Variants::of(run::run, |m, s| Ok(Dam::new(s, m, &Context::of_rules())?.rules))
         .with("seed", paper, water::seed(), seed)
         .with("ghosts", ghosts, water::ghosts(), seed)
         .with("modern", best, water::modern(), modern)

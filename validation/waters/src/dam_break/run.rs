@@ -5,12 +5,6 @@ use super::{
     *,
 };
 
-/// Runs of the variants.
-pub const PROGRAM: Program<DamSettings, WaterMethod> = Program {
-    run,
-    rules: |method, settings| Ok(Dam::new(settings, method, &Context::of_rules())?.rules),
-};
-
 /// When particles are kept for a picture, as a share of the run: the jet has risen at the far wall.
 pub const PICTURE: f64 = 0.6;
 /// The profile of the particles then, with their pressure.
@@ -33,7 +27,8 @@ pub const COSTLY: &[MetricKey] = &{
     [a, b, c, d, e, f, MOMENTUM_GAP]
 };
 
-fn run(
+/// One run.
+pub fn run(
     method: &WaterMethod,
     settings: &DamSettings,
     context: &Context,
