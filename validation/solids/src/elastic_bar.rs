@@ -2,7 +2,7 @@
 
 use base::{functions::*, gate::*, record::*};
 use harness::{case::*, composed::*, declare::*, simulate, table::*};
-use maths::{exact::impact::Impact, theory::lattice::SquareLattice};
+use maths::{exact::impact::Impact, metrics::history::passes, theory::lattice::SquareLattice};
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
@@ -216,11 +216,7 @@ impl Motion {
 
     /// When column `k` of the series first passes a value, between two steps \[s\].
     fn passes(&self, k: usize, value: f64) -> f64 {
-        let crosses = |w: &&[[f64; 4]]| (w[0][k] - value) * (w[1][k] - value) <= 0.0;
-        self.series.windows(2).find(crosses).map_or(f64::NAN, |w| {
-            let [a, b] = [w[0], w[1]];
-            a[0] + (b[0] - a[0]) * (value - a[k]) / (b[k] - a[k])
-        })
+        passes(&self.series, k, value).next().map_or(f64::NAN, |(time, _)| time)
     }
 
     fn pulse_metrics(&self, record: &mut Record) {

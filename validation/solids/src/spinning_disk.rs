@@ -87,9 +87,15 @@ impl Problem for DiskSettings {
     }
 
     fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> History {
-        let (row, mass) = first_row(start);
-        let (settings, until) = (self.clone(), self.end() / SAMPLES);
-        History { settings, mass, until, series: vec![row], first: None }
+        let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
+        let energy = Energy::of_all(start, &self.material()).total();
+        History {
+            settings: self.clone(),
+            mass: start.iter().map(|p| p.mass).sum(),
+            until: self.end() / SAMPLES,
+            series: vec![[0.0, spin, energy, 0.0]],
+            first: None,
+        }
     }
 }
 
@@ -173,18 +179,6 @@ impl Watch for History {
         let momentum = simulate::momentum(&simulation.particles()).norm();
         record.put(MOMENTUM_ERROR, momentum / (self.mass * speed));
     }
-}
-
-/// The first row of the series, and the mass.
-fn first_row(particles: &[Particle<Symmetric>]) -> ([f64; 4], f64) {
-    let [spin, energy, mass] = particles.iter().fold([0.0; 3], |[spin, energy, mass], p| {
-        [
-            spin + p.mass * p.position.perp(&p.velocity),
-            energy + 0.5 * p.mass * p.velocity.norm_squared(),
-            mass + p.mass,
-        ]
-    });
-    ([0.0, spin, energy, 0.0], mass)
 }
 
 /// Angular momentum at a time \[s\], between two samples of the series; NaN outside of it.
@@ -342,7 +336,8 @@ mod tests {
             particles.iter().find(|p| p.position.x == s.radius).expect("a particle at the rim");
         let [x, y] = [rim.velocity.x, rim.velocity.y];
         assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
-        let (row, mass) = first_row(&particles);
+        let History { mass, series, .. } = s.watch(&particles, None);
+        let row = series[0];
         let spin = 2.851 / 0.04;
         let inertia = mass * 0.5 * 0.04 * 0.04;
         assert!((row[1] / (inertia * spin) - 1.0).abs() < 0.05, "R^2/2 in the mean");

@@ -35,6 +35,24 @@ pub fn differences(samples: &[(f64, f64)], reference: &[(f64, f64)]) -> Result<V
     reference.iter().map(at).collect()
 }
 
+/// When column `k` of rows passes a value, and whether it falls; the first column is the time, and rows are
+/// joined by lines.
+pub fn passes<const N: usize>(
+    rows: &[[f64; N]],
+    k: usize,
+    value: f64,
+) -> impl Iterator<Item = (f64, bool)> {
+    let passes = move |w: &&[[f64; N]]| {
+        let [a, b] = [w[0][k] - value, w[1][k] - value];
+        a != 0.0 && a * b <= 0.0
+    };
+    rows.windows(2).filter(passes).map(move |w| {
+        let [a, b] = [w[0], w[1]];
+        let time = a[0] + (b[0] - a[0]) * (value - a[k]) / (b[k] - a[k]);
+        (time, a[k] > value)
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -43,6 +61,14 @@ mod tests {
     /// t² − 3 at these times.
     fn history(times: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
         times.map(|t| (t, t * t - 3.0)).collect()
+    }
+
+    /// Up through 1 at 0.5, down through it at 2, where a row is; a start at the value is no passage.
+    #[test]
+    fn a_zigzag_passes_a_value_where_its_lines_do() {
+        let rows = [[0.0, 0.0], [1.0, 2.0], [2.0, 1.0], [3.0, 0.0], [4.0, f64::NAN]];
+        assert_eq!(passes(&rows, 1, 1.0).collect::<Vec<_>>(), [(0.5, false), (2.0, true)]);
+        assert_eq!(passes(&rows[2..], 1, 1.0).count(), 0);
     }
 
     fn every(step: f64, end: f64) -> impl Iterator<Item = f64> {

@@ -5,7 +5,7 @@ mod path;
 mod plan;
 
 use ::lagrangian::*;
-use base::{gate::*, mutation::Constant, record::*, reference::Reference};
+use base::{gate::*, mutation::Constant, record::*};
 use harness::{case::*, composed::*, context::Context, declare::*, method::Method, table::*};
 use nalgebra::Vector2;
 use schemes::total;
@@ -136,8 +136,8 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     let law = if variant == SAINT_VENANT { SaintVenantKirchhoff::NAME } else { Hencky::NAME };
     let gravity = format!("{:?}", s.gravity);
     let of @ [law, gravity] = [("law", law), ("gravity", &*gravity)];
-    let (package, middle) = (Reference::load("cantilever").ok()?, [law, gravity, ("layers", "")]);
-    let mut found = Elements::of(package, [&middle, &of], ["x", "y"]).ok()?;
+    let middle = [law, gravity, ("layers", "")];
+    let mut found = Elements::of("cantilever", [&middle, &of], ["x", "y"])?;
     // Later, bars of another period are wherever they are.
     found.path.0.retain(|row| row[0] <= FIRST_SWING);
     found.number("harmonic_y").is_some().then_some(found)

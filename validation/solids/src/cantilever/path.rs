@@ -1,6 +1,7 @@
 //! What is measured of the path of the end of a bar, as finite elements are measured.
 
 use base::functions::{cos, sin};
+use maths::metrics::history::passes;
 
 use super::*;
 
@@ -48,21 +49,13 @@ fn mean_and_amplitude(rows: &[[f64; 3]], axis: usize) -> [f64; 2] {
     [0.5 * (high + low), 0.5 * (high - low)]
 }
 
-/// Times at which rows pass a height downwards \[s\].
-fn falls(rows: &[[f64; 3]], height: f64) -> Vec<f64> {
-    let pass = |w: &[[f64; 3]]| {
-        let [[t, _, a], [u, _, b]] = [w[0], w[1]];
-        (a > height && b <= height).then(|| t + (u - t) * (a - height) / (a - b))
-    };
-    rows.windows(2).filter_map(pass).collect()
-}
-
 /// The quantities of [`COMPARED`](super::COMPARED); averages, harmonics and the frequency need two falls,
 /// and the least height of the first swing needs to be passed.
 pub fn measure(path: &Path) -> [(MetricKey, Option<f64>); 10] {
     let [[mean_x, amplitude_x], [mean_y, amplitude_y]] =
         [0, 1].map(|axis| mean_and_amplitude(&path.0, axis));
-    let times = falls(&path.0, mean_y);
+    let falls = |(time, falls)| if falls { Some(time) } else { None };
+    let times: Vec<f64> = passes(&path.0, 2, mean_y).filter_map(falls).collect();
     let second = times.get(1).copied().unwrap_or(f64::INFINITY);
     let swing = &path.0[..path.0.partition_point(|row| row[0] < second)];
     let whole = if let [first, .., last] = times[..] {

@@ -3,8 +3,9 @@
 mod plan;
 
 use ::lagrangian::{Hencky, Law as _};
-use base::{functions::*, gate::*, record::*, reference::Reference};
+use base::{functions::*, gate::*, record::*};
 use harness::{case::*, composed::*, context::Context, declare::*, method::Method, table::*};
+use maths::metrics::history::passes;
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::TAU;
@@ -177,11 +178,7 @@ impl Observer<Symmetric> for Tip {
 impl Tip {
     /// Times at which the tip passes its height of rest \[s\].
     fn passes(&self) -> Vec<f64> {
-        let passes = |w: &[[f64; 3]]| {
-            let [[t, _, a], [u, _, b]] = [w[0], w[1]];
-            (a * b < 0.0).then(|| t + (u - t) * a / (a - b))
-        };
-        self.series.windows(2).filter_map(passes).collect()
+        passes(&self.series, 2, 0.0).map(|(time, _)| time).collect()
     }
 
     /// \[s\]; none if the tip does not pass its height of rest.
@@ -240,8 +237,7 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
     let law = ("law", if variant == LAGRANGIAN { Hencky::NAME } else { "jaumann" });
     let [n, x, y] = ["", "x_", "y_"].map(|axis| format!("{axis}{}", s.n));
     let rows: [&[_]; 2] = [&[law, ("layers", &n)], &[law]];
-    let package = Reference::load("oscillating_plate").ok()?;
-    let mut found = Elements::of(package, rows, [&x, &y]).ok()?;
+    let mut found = Elements::of("oscillating_plate", rows, [&x, &y])?;
     let end = found.number("passage_6").unwrap_or(0.0);
     found.path.0.retain(|row| row[0] <= end);
     Some(found)

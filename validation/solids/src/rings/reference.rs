@@ -91,9 +91,8 @@ impl Reference {
         let phases = begins.into_iter().zip(ends);
         let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
         let strains = Package::curve(PACKAGE, "checks", ["mesh", "value"], &strain);
-        let summary = Package::load(PACKAGE).ok()?.table("summary").ok()?;
         Some(Self {
-            quantities: quantities(summary, &of).ok()?,
+            quantities: quantities(PACKAGE, &of)?,
             phases: phases.map(|((begin, impulse), (end, _))| [impulse, begin, end]).collect(),
             doubt,
             uncertainty: largest(doubts) / diameter(&histories),

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use base::{
     record::{MetricKey, Record},
-    reference::{Reference, ReferenceError, Table},
+    reference::Reference,
 };
 use nalgebra::Vector2;
 
@@ -14,11 +14,12 @@ type Texts<'a> = &'a [(&'a str, &'a str)];
 /// Quantities by name, each with its uncertainty.
 pub type Quantities = BTreeMap<String, [f64; 2]>;
 
-/// Those of the rows of a summary that have these texts.
-pub fn quantities(summary: &Table, of: Texts) -> Result<Quantities, ReferenceError> {
-    let (names, rows) = (summary.texts("quantity")?, summary.rows_of(of)?);
-    let numbers = summary.select(of, ["value", "uncertainty"])?;
-    Ok(rows.into_iter().map(|row| names[row].to_string()).zip(numbers).collect())
+/// Those of the rows of the summary of a package that have these texts.
+pub fn quantities(package: &str, of: Texts) -> Option<Quantities> {
+    let summary = Reference::load(package).ok()?.table("summary").ok()?;
+    let (names, rows) = (summary.texts("quantity").ok()?, summary.rows_of(of).ok()?);
+    let numbers = summary.select(of, ["value", "uncertainty"]).ok()?;
+    Some(rows.into_iter().map(|row| names[row].to_string()).zip(numbers).collect())
 }
 
 /// Finite elements of one place.
@@ -30,14 +31,10 @@ pub struct Elements {
 
 impl Elements {
     /// Those of the rows of the summary and of the series of a package; the path has the columns x and y.
-    pub fn of(
-        package: &Reference,
-        [summary, series]: [Texts; 2],
-        [x, y]: [&str; 2],
-    ) -> Result<Self, ReferenceError> {
-        let quantities = quantities(package.table("summary")?, summary)?;
-        let path = package.table("series")?.select(series, ["t", x, y])?;
-        Ok(Self { quantities, path: Path(path) })
+    pub fn of(package: &str, [summary, series]: [Texts; 2], [x, y]: [&str; 2]) -> Option<Self> {
+        let table = Reference::load(package).ok()?.table("series").ok()?;
+        let path = Path(table.select(series, ["t", x, y]).ok()?);
+        Some(Self { quantities: quantities(package, summary)?, path })
     }
 
     /// A quantity.
