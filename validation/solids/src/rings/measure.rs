@@ -258,7 +258,7 @@ impl Watch for Series {
         let [_, right] = halves(&all);
         let stressed = right.iter().map(|p| (p.position, stress(p)));
         let name = format!("particles@{share}");
-        pictures::keep(record, &name, "m", ("stress", "Pa"), stressed);
+        pictures::keep(record, &name, "L", ("stress", "Pa"), stressed);
     }
 
     fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
