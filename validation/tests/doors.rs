@@ -68,14 +68,6 @@ fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() 
         ),
         (couette("seed", "{\"re\":-1}", ""), "setting re is \"-1\""),
         (couette("seed", "{\"ra\":1}", ""), "no setting is called \"ra\""),
-        (
-            couette("seed", "{}", r#","keep":{"pictures":1000000000}"#),
-            "keep.pictures is 1000000000",
-        ),
-        (
-            couette("seed", "{}", r#","keep":{"pictures":9223372036854775808}"#),
-            "keep.pictures is 9",
-        ),
         (bisect("dt", "0"), "task.bisect.resolution is 0.0; allowed is 1e-6 to 1"),
         (bisect("dt", "-1"), "task.bisect.resolution is -1.0"),
         (bisect("nothing", "0.1"), "no setting is called \"nothing\""),

@@ -198,7 +198,7 @@ fn rare_records(record: &Record) -> Vec<Value> {
     rare.metrics.insert("none".into(), Metric::new(f64::NAN, "-", "0/0"));
     rare.absent.insert("order".into(), "there is one level".into());
     rare.run.allow_unstable = true;
-    rare.run.keep = Keep { particles: true, pictures: Some(2) };
+    rare.run.keep = Keep { particles: true };
     rare.run.mutation = Some(Mutation { of: Constant::BodyForce, factor: 1.03 });
     rare.run.disorder = Some(Disorder { most: 1e-6, seed: 1 });
     let [code, version, scheme, method] = ["code", "1", "WCSPH", "abc"].map(String::from);

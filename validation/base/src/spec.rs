@@ -185,9 +185,6 @@ pub struct Keep {
     /// the particles at the end, as the curve `particles`
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub particles: bool,
-    /// so many pictures at equal intervals from the start, in place of those that the case chooses
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pictures: Option<usize>,
 }
 
 /// Names a run: 16 hexadecimal digits.
@@ -214,12 +211,6 @@ impl RunSpec {
     /// The same, with the particles of the end in its record.
     pub fn keep_particles(mut self) -> Self {
         self.keep.particles = true;
-        self
-    }
-
-    /// The same, with so many pictures at equal intervals from the start.
-    pub fn keep_pictures(mut self, count: usize) -> Self {
-        self.keep.pictures = Some(count);
         self
     }
 
@@ -275,9 +266,6 @@ impl RunSpec {
             let allowed = "none: only `touchstone submit` records runs of other codes";
             return Err(SpecError { field: "submission", value: of.to_string(), allowed });
         }
-        if let Some(count) = self.keep.pictures {
-            within("keep.pictures", count as f64, 1.0..=1000.0, "1 to 1000")?;
-        }
         if let Some(mutation) = self.mutation {
             // Studies leave out a term, turn its sign, and try how large an error is seen.
             let (range, allowed) = match mutation.of {
@@ -329,7 +317,6 @@ mod tests {
             spec.clone().with_setting("rows", 40),
             spec.clone().allow_unstable(),
             spec.clone().keep_particles(),
-            spec.clone().keep_pictures(3),
             spec.clone().bisect(bisect),
             spec.clone().detect(Detect { of: Constant::Xsph, only_allowed: false }),
             spec.clone().detect(Detect { of: Constant::Xsph, only_allowed: true }),
@@ -356,7 +343,7 @@ mod tests {
         assert!(spec.measure < all.measure);
     }
 
-    /// 10^9 pictures were kept, and a resolution of 0 never ended.
+    /// A resolution of 0 never ended.
     #[test]
     fn a_field_that_no_run_can_have_is_refused_with_its_range() {
         let spec = |rest: &str| {
@@ -376,12 +363,6 @@ mod tests {
         };
         assert_eq!(bisect(""), Ok(()));
         let refused = [
-            (
-                spec(r#""keep":{"pictures":1000000000}"#),
-                "keep.pictures is 1000000000.0; allowed is 1 to 1000",
-            ),
-            (spec(r#""keep":{"pictures":9223372036854775808}"#), "keep.pictures is 9.2"),
-            (spec(r#""keep":{"pictures":0}"#), "keep.pictures is 0.0"),
             (
                 spec(r#""mutation":{"of":"xsph","factor":-1001}"#),
                 "mutation.factor is -1001.0; allowed is -1000 to 1000",
