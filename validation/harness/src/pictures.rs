@@ -44,7 +44,7 @@ pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
         let dots = Dots::new(label, colours, *spacing, points);
         let dots = of.range.into_iter().fold(dots, |dots, [low, high]| dots.values(low, high));
         let plot = Plot::new(title, x, y).layer(dots);
-        let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(2.0);
+        let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(1.2);
         Some(lines.iter().map(line).fold(plot, Plot::layer))
     };
     let [id, title, caption] = of.texts;

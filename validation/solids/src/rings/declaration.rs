@@ -88,7 +88,7 @@ fn pictures(tier: Tier) -> Vec<Picture> {
     let picture = |group, texts, shares: &[f64], most: f64| {
         let panel = |row: &Row, share: f64| {
             let RingSettings { spacing, speed, end, .. } = row.settings;
-            let panel = row.panel(format!("t = {} L/c0", sig(share * end, 3)), spacing);
+            let panel = row.panel(format!("t = {} L/c0", share * end), spacing);
             let lines = reference::outlines(speed, share * end);
             PicturePanel { profile: format!("particles@{share}"), lines, ..panel }
         };
