@@ -77,13 +77,13 @@ pub fn declaration(tier: Tier) -> Declaration {
 
 /// The ring on the right at the paper's speed, over that of finite elements, and one that is torn.
 fn pictures(tier: Tier) -> Vec<Picture> {
-    let whole = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. Particles \
-                 of variant `seed`, spacing 0.2 L, are coloured by the largest principal stress σ₁ over the \
-                 bulk modulus K; tension is positive. Black lines are the faces of the ring in finite \
-                 elements.";
-    let torn = "The right one of two rubber rings after a collision at 0.12 c0 each without artificial stress, \
-                spacing 0.2 L. Colour is the largest principal stress σ₁ over the bulk modulus K. Rubber of \
-                this law does not break; the method does.";
+    let whole = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. \
+                 Particles of variant `seed`, spacing 0.2 L, are coloured by the largest principal stress \
+                 σ₁ over the bulk modulus K; tension is positive. Black lines are the faces of the ring in \
+                 finite elements.";
+    let torn = "The right one of two rubber rings after a collision at 0.12 c0 each without artificial \
+                stress, spacing 0.2 L. Colour is the largest principal stress σ₁ over the bulk modulus K. \
+                Rubber of this law does not break; the method does.";
     let table = table(tier);
     let picture = |group, texts, shares: &[f64], most: f64| {
         let panel = |row: &Row, share: f64| {
