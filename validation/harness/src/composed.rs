@@ -40,10 +40,16 @@ pub struct Composition<T> {
     pub lacks: Vec<&'static str>,
 }
 
+/// What runs any of some methods with settings.
+type RunBy<M, T> = dyn Fn(&M, &T, &Context) -> Result<Record, RunError>;
+
+/// What their rules choose from settings.
+type RulesBy<M, T> = dyn Fn(&M, &T) -> Result<Rules, RunError>;
+
 /// Variants that are run alike, one after another.
 pub struct Variants<T, M> {
-    run: Rc<dyn Fn(&M, &T, &Context) -> Result<Record, RunError>>,
-    rules: Rc<dyn Fn(&M, &T) -> Result<Rules, RunError>>,
+    run: Rc<RunBy<M, T>>,
+    rules: Rc<RulesBy<M, T>>,
     /// Those so far.
     pub all: Vec<Composition<T>>,
 }
