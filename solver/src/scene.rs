@@ -1,7 +1,5 @@
 //! A scene: the complete initial state and method of a simulation, checked before the first step.
 
-use std::ops::{Deref, DerefMut};
-
 use nalgebra::Vector2;
 use thiserror::Error;
 
@@ -46,7 +44,7 @@ pub enum Part {
     Wall(usize),
 }
 
-/// A scene whose method is the scheme `S`. It dereferences to its [`Setting`].
+/// A scene whose method is the scheme `S`.
 pub struct Scene<S: Scheme> {
     /// What does not depend on the scheme.
     pub setting: Setting<S::Extra>,
@@ -104,20 +102,6 @@ impl<S: Scheme> Scene<S> {
             engine: Engine::new(h, (forces, drift), walls.terms(), data),
             integrator: S::Integrator::default(),
         })
-    }
-}
-
-impl<S: Scheme> Deref for Scene<S> {
-    type Target = Setting<S::Extra>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.setting
-    }
-}
-
-impl<S: Scheme> DerefMut for Scene<S> {
-    fn deref_mut(&mut self) -> &mut Self::Target {
-        &mut self.setting
     }
 }
 

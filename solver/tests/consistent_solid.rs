@@ -189,7 +189,7 @@ fn the_work_of_the_forces_is_what_the_stress_stores() {
         }
         let open = balanced(scene::<Method>(cloud(seed), stress(()), Open));
         let mut periodic = scene::<Method>(cloud(seed), stress(()), Open);
-        periodic.domain = Domain::torus(1.0, 1.0);
+        periodic.setting.domain = Domain::torus(1.0, 1.0);
         let periodic = balanced(periodic);
         let mut particles = cloud(seed);
         for p in particles.iter_mut().filter(|p| p.position.x < 0.3) {
@@ -214,7 +214,7 @@ fn the_work_of_the_forces_is_what_the_stress_stores() {
 fn the_rates_of_the_terms_alone_are_those_of_a_step() {
     for domain in [Domain::open(), Domain::torus(1.0, 1.0)] {
         let mut scene = scene::<Method>(cloud(2), stress(()), Open);
-        scene.domain = domain;
+        scene.setting.domain = domain;
         let (simulation, rates) = begun(scene);
         let alone = simulation.rates(&stress(()));
         assert!(rates.iter().any(|rate| rate.velocity.norm() > 0.0));
@@ -238,7 +238,7 @@ where
         })
         .collect();
     let mut scene = scene::<S>(particles, stress(()), Open);
-    scene.parallel_from = parallel_from;
+    scene.setting.parallel_from = parallel_from;
     let mut simulation = scene.build().expect("a scene");
     let sums = |simulation: &Simulation<S>| {
         simulation.fluid().fold([0.0; 3], |[x, y, spin], (m, p)| {

@@ -33,7 +33,7 @@ fn run<W: Walls<()>>(
     let water = lattice(V2::repeat(0.5 * DX), DX, 20, 20).enumerate().map(place).collect();
     let pressure = Pressure::new(Tait { background: 0.2, ..Tait::new(1.0, 3.0) });
     let mut scene = Scene::<Method<W>>::new(H, domain, water, pressure, Continuity, walls);
-    (scene.skin, scene.skin_share) = (skin * H, share);
+    (scene.setting.skin, scene.setting.skin_share) = (skin * H, share);
     let mut simulation = scene.build().expect("a sound scene");
     assert_eq!(simulation.advance(STEPS * DT, DT, &mut ()), Outcome::Reached);
     let places = simulation.particles().into_iter().map(|p| p.position).collect();
@@ -90,7 +90,7 @@ fn met<W: Walls<()>>(walls: &W, count: usize, axis: usize, gap: f64, list: [f64;
     domain.period[1 - axis] = Some(8.0 * DX);
     let pressure = Pressure::new(Tait::new(1.0, 3.0));
     let mut scene = Scene::<Method<W>>::new(H, domain, blocks, pressure, Continuity, walls.clone());
-    [scene.skin, scene.skin_share] = [list[0] * H, list[1]];
+    [scene.setting.skin, scene.setting.skin_share] = [list[0] * H, list[1]];
     let mut simulation = scene.build().expect("a sound scene");
     let dt = 0.02 * H;
     assert_eq!(simulation.advance(100.0 * dt, dt, &mut ()), Outcome::Reached);

@@ -222,7 +222,7 @@ fn momentum(simulation: &impl Stepper<()>) -> Vector2<f64> {
 #[test]
 fn momentum_is_kept_to_round_off() {
     let scene = split(torus(), 0.0, disordered());
-    let scale: f64 = scene.particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
+    let scale: f64 = scene.setting.particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
     let mut simulation = scene.build().expect("a scene");
     let before = momentum(&simulation);
     let dt = 30.0 * EXPLICIT;
@@ -248,7 +248,7 @@ fn mixed() -> (Scene<Super<ExtrapolatingWall<Tait, NoSlip>>>, f64) {
 fn any_number_of_threads_gives_the_same_bits() {
     let run = |threads: usize| {
         let (mut scene, dt) = mixed();
-        scene.parallel_from = if threads == 0 { usize::MAX } else { 0 };
+        scene.setting.parallel_from = if threads == 0 { usize::MAX } else { 0 };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.max(1)).build();
         pool.expect("threads").install(|| bits(&advance(scene, 20.0 * dt, dt)))
     };
@@ -287,7 +287,7 @@ fn a_limit_that_is_stated_too_long_ends_as_a_divergence() {
     let run = |stated: f64| {
         let mut scene = split(torus(), 0.0, disordered());
         scene.forces.2 = stated * EXPLICIT;
-        scene.limits.speed = 10.0;
+        scene.setting.limits.speed = 10.0;
         let dt = 7.0 * stated * EXPLICIT;
         scene.build().expect("a scene").advance(400.0 * dt, dt, &mut ())
     };

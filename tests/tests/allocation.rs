@@ -61,7 +61,7 @@ fn forces() -> (Pressure<Tait>, Viscosity) {
 
 fn check<S: Scheme>(mut scene: Scene<S>) {
     // So that lists are built often, before the patch comes to rest.
-    scene.skin = 0.12 * H;
+    scene.setting.skin = 0.12 * H;
     let (h, mut simulation) = (H, scene.build().unwrap());
     // The patch orders itself while it warms up, so rows and images grow no more after it.
     assert_eq!(simulation.advance(1e3, 0.2 * h, &mut Builds(40)), Outcome::Stopped);

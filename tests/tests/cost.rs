@@ -78,7 +78,7 @@ fn flight<I: Integrator<Moving<()>>>(skin: f64, share: f64) -> (Vec<Particle>, u
     let forces = (Pressure::new(Tait::new(1.0, 1e-30)), Viscosity { mu: 0.0, eta2: 1e-8 });
     let domain = Domain::torus(1.0, 1.0);
     let mut scene = Scene::<Moving<I>>::new(h, domain, particles, forces, Continuity, Open);
-    (scene.skin, scene.skin_share) = (skin * h, share);
+    (scene.setting.skin, scene.setting.skin_share) = (skin * h, share);
     let mut simulation: Simulation<_> = scene.build().unwrap();
     assert_eq!(simulation.advance(1.0, 1.0 / 64.0, &mut ()), Outcome::Reached);
     (simulation.particles(), simulation.work().list_builds)

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, Leapfrog, Limits, Open,
     Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, SceneError,
-    Simulation, Stepper, Tait, Viscosity,
+    Simulation, Stepper, Tait, Viscosity, scene::Setting,
 };
 use touchstone_tests::{Random, assert_near, assert_small, difference, patch};
 
@@ -31,7 +31,7 @@ fn torus<I: Integrator<Scheme<()>>>() -> Scene<Scheme<I>> {
 fn check_divergence<I: Integrator<Scheme<()>>>(dt: f64) {
     let limits = Limits { density: [0.5, 2.0], speed: 5.0 * C };
     let mut scene = torus::<I>();
-    scene.limits = limits;
+    scene.setting.limits = limits;
     let mut simulation = scene.build().unwrap();
     let Outcome::Diverged(divergence) = simulation.advance(1000.0 * dt, dt, &mut ()) else {
         panic!("{} went through at {dt} s", I::NAME);
@@ -97,9 +97,9 @@ fn a_speed_that_overflows_at_the_end_is_a_divergence() {
     assert_eq!((divergence.fault.particle, divergence.fault.field), (0, "velocity"));
 }
 
-fn refused(change: impl Fn(&mut Scene<Scheme<Leapfrog>>)) -> SceneError {
+fn refused(change: impl Fn(&mut Setting)) -> SceneError {
     let mut scene = torus::<Leapfrog>();
-    change(&mut scene);
+    change(&mut scene.setting);
     let refused = scene.build().err();
     refused.expect("a scene that cannot be simulated was built")
 }
@@ -250,7 +250,7 @@ fn a_thousand_times_the_speed_of_sound_conserves_momentum_or_is_reported() {
     let dt = 0.1 * H / (1e3 * C);
     let scene = |limits| {
         let mut scene = scene::<Leapfrog>(Domain::open(), particles.clone());
-        (scene.forces.1.mu, scene.limits) = (0.0, limits);
+        (scene.forces.1.mu, scene.setting.limits) = (0.0, limits);
         scene.build().unwrap()
     };
     let mut simulation = scene(Limits { density: [-f64::MAX, f64::MAX], speed: f64::MAX });
@@ -283,8 +283,8 @@ fn each_limit_is_kept_from_the_first_step_on() {
     let limits = Limits { density: [0.5, 2.0], speed: 3.0 };
     let start = |change: fn(&mut Particle)| {
         let mut scene = torus::<Leapfrog>();
-        scene.limits = limits;
-        change(&mut scene.particles[40]);
+        scene.setting.limits = limits;
+        change(&mut scene.setting.particles[40]);
         match scene.build().unwrap().advance(1e-3, 1e-3, &mut ()) {
             Outcome::Diverged(d) => Some((d.step, d.fault.particle, d.fault.field, d.fault.value)),
             _ => None,

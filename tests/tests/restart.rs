@@ -66,7 +66,7 @@ fn scene_of<I: Integrator<Method<(), W>>, W: Walls<()>>(
     let drift = (Continuity, Shifting::new(0.5, H, w));
     // So that lists are built often.
     let mut scene = Scene::new(H, domain, particles, forces, drift, walls);
-    scene.skin = 0.06 * H;
+    scene.setting.skin = 0.06 * H;
     scene
 }
 

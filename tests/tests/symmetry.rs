@@ -147,10 +147,10 @@ type Flow = Compose<QuinticSpline, (Pressure<Tait>, Viscosity, Wrong), Continuit
 fn flawed<const KIND: char>() -> Method {
     Method::with::<Flow>(|parts| {
         let mut scene = scene::<Flow>(parts);
-        let (h, wrong) = (scene.h, &mut scene.forces.2);
+        let (h, wrong) = (scene.setting.h, &mut scene.forces.2);
         wrong.kind = KIND;
         wrong.size *= if KIND == ABSOLUTE { h * h } else { 1.0 };
-        for (k, p) in scene.particles.iter_mut().enumerate() {
+        for (k, p) in scene.setting.particles.iter_mut().enumerate() {
             match KIND {
                 DRAG => p.velocity *= 0.999_999,
                 ORIGIN => p.density *= 1.0 + 1e-7 * p.position.norm() / h,
@@ -159,7 +159,8 @@ fn flawed<const KIND: char>() -> Method {
             }
         }
         let factor = if KIND == BORDER { 1.000_001 } else { 1.0 };
-        scene.domain.period = scene.domain.period.map(|period| Some(period? * factor));
+        scene.setting.domain.period =
+            scene.setting.domain.period.map(|period| Some(period? * factor));
         Ok(Box::new(scene.build()?))
     })
 }

@@ -36,7 +36,7 @@ fn scene<W: Walls<()>, I: Integrator<Method<W, ()>>>(
 fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync) {
     let run = |parallel_from: usize| {
         let mut scene = scene();
-        scene.parallel_from = parallel_from;
+        scene.setting.parallel_from = parallel_from;
         let mut simulation = scene.build().unwrap();
         let outcome = simulation.advance(30.0 * 0.3 * DX, 0.3 * DX, &mut ());
         assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, 30));
@@ -50,7 +50,7 @@ fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync)
         assert!(parallel == serial, "{name} differs on {threads} threads");
     }
     let mut scene = scene();
-    scene.parallel_from = usize::MAX;
+    scene.setting.parallel_from = usize::MAX;
     let start = scene.build().unwrap();
     assert_ne!(bits(&start.particles()), serial.0, "{name}: something happened");
 }

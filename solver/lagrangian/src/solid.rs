@@ -55,7 +55,7 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
         check(&particles, &bodies, [moduli.bulk, moduli.shear, self.hourglass])?;
         let mut frame = Scene::<Frame<K, W>>::new(h, domain, particles, (), (), walls);
         // Rounding must not leave out a neighbour; a little more is found, and left out by its weight.
-        (frame.skin, frame.limits) = (1e-9 * h, limits);
+        (frame.setting.skin, frame.setting.limits) = (1e-9 * h, limits);
         let data = frame.build()?.into_particles();
         let of = |(id, _): &(u32, _)| bodies.get(*id as usize).copied().unwrap_or(0);
         let bodies: Vec<u32> = data.checkpoint().particles.iter().map(of).collect();

@@ -242,7 +242,7 @@ mod tests {
         let eos = Tait::new(1.0, 10.0);
         let (pressure, walls) = (Pressure::new(eos), ExtrapolatingWall::new(eos, Vector2::zeros()));
         let mut scene = Scene::new(DX, domain, particles, pressure, Continuity, walls);
-        scene.feet = feet;
+        scene.setting.feet = feet;
         let mut simulation = scene.build()?;
         simulation.advance(0.0, 1.0, &mut ());
         Ok(simulation)
@@ -308,7 +308,7 @@ mod tests {
             let mut scene = Scene::<Method<CurvedNoSlip>>::new(
                 DX, domain, particles, pressure, Continuity, walls,
             );
-            scene.feet = feet;
+            scene.setting.feet = feet;
             scene.build().map(|_| ()).map_err(|error| error.quantity)
         };
         assert_eq!(build(vec![]), Err("number of feet"));

@@ -33,7 +33,7 @@ pub fn scene<I: Integrator<Fluid<()>>>(side: usize, parallel: bool) -> Scene<Flu
         (Pressure::new(Tait::new(1000.0, 10.0)), Viscosity { mu: 1.0, eta2: 0.01 * h * h });
     let mut scene = Scene::new(h, Domain::torus(1.0, 1.0), particles, forces, Continuity, Open);
     if !parallel {
-        scene.parallel_from = usize::MAX;
+        scene.setting.parallel_from = usize::MAX;
     }
     scene
 }
