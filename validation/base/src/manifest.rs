@@ -104,6 +104,16 @@ impl Manifest {
         }
     }
 
+    /// The commit, and whether there were changes.
+    pub fn state(&self) -> String {
+        let changes = match self.dirty {
+            Known::Yes => " with uncommitted changes",
+            Known::No => "",
+            Known::Unknown => " (state of the sources unknown)",
+        };
+        format!("commit {:.12}{changes}", self.commit)
+    }
+
     /// Can the times of two runs be compared? Same processor, threads, compiler and optimisation.
     pub fn is_same_machine(&self, other: &Self) -> bool {
         let machine = |of: &Self| {

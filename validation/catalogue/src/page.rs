@@ -2,7 +2,7 @@
 
 use base::{
     gate::Verdict,
-    manifest::{Known, Manifest},
+    manifest::Manifest,
     record::Record,
     reference::Reference,
     spec::{RunSpec, Task},
@@ -100,16 +100,11 @@ fn reused(suite: &Suite) -> String {
 
 fn provenance(made_by: &Manifest) -> String {
     let Manifest { touchstone, profile, rustc, cpu, .. } = made_by;
-    let dirty = match made_by.dirty {
-        Known::Yes => " with uncommitted changes",
-        Known::No => "",
-        Known::Unknown => " (state of the sources unknown)",
-    };
-    let commit: String = made_by.commit.chars().take(12).collect();
+    let state = made_by.state();
     let cores = counted(made_by.cores, "core", "cores");
     let threads = counted(made_by.threads, "thread", "threads");
     format!(
-        "Made by touchstone {touchstone} at commit `{commit}`{dirty} ({profile} build, {rustc}) on {cpu}, \
+        "Made by touchstone {touchstone} at {state} ({profile} build, {rustc}) on {cpu}, \
          {cores}, {threads}."
     )
 }

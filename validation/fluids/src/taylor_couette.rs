@@ -85,10 +85,9 @@ impl Cylinders {
             let (what, setting) = ("the support over the inner radius", "ratio or layers");
             return Err(RunError::TooMuch { what, value: share, most: 1.0, setting });
         }
-        let cylinders = Self { settings: s.clone(), flow, medium, rules };
         let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
         simulate::check(method, &medium, &rules, area / (dx * dx), DECISIVE, context)?;
-        Ok(cylinders)
+        Ok(Self { settings: s.clone(), flow, medium, rules })
     }
 
     /// Fluid in layers about the axis, and rows behind both cylinders, all with the velocity of the
@@ -111,13 +110,9 @@ impl Cylinders {
     }
 }
 
-fn run(
-    method: &Method,
-    settings: &CylinderSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let cylinders = Cylinders::new(settings, method, context)?;
-    let common = cylinders.rules.numbers([settings.h_over_dx, cylinders.medium.dx]);
+fn run(method: &Method, s: &CylinderSettings, context: &Context) -> Result<Record, RunError> {
+    let cylinders = Cylinders::new(s, method, context)?;
+    let common = cylinders.rules.numbers([s.h_over_dx, cylinders.medium.dx]);
     let numbers = [&common[..], &[("V [m/s]", cylinders.flow.speed)]].concat();
     let particles = cylinders.particles(method);
     let parts = Parts::new(cylinders.medium, Domain::open(), particles, context);

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use base::files::OutputFolder;
-use base::manifest::{Known, Manifest};
+use base::manifest::Manifest;
 use base::reference::Reference;
 use harness::{case, context::Context};
 use schemes::bench;
@@ -43,15 +43,10 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
 }
 
 fn about(manifest: &Manifest) -> String {
-    let Manifest { touchstone, commit, rustc, profile, opt_level, target, .. } = manifest;
-    let dirty = match manifest.dirty {
-        Known::Yes => ", with changes that are not committed",
-        Known::No => "",
-        Known::Unknown => ", perhaps with changes",
-    };
+    let Manifest { touchstone, rustc, profile, opt_level, target, .. } = manifest;
     let advice = if profile == "release" { "" } else { " (cargo build --release is faster)" };
     let rows = [
-        ("touchstone", format!("{touchstone}, commit {commit}{dirty}")),
+        ("touchstone", format!("{touchstone}, {}", manifest.state())),
         ("compiler", rustc.clone()),
         ("build", format!("{profile}, opt-level {opt_level}{advice}")),
         ("target", format!("{target}, {}", manifest.features.join(" "))),

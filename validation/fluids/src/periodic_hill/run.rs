@@ -95,14 +95,10 @@ fn kinetic_energy(simulation: &dyn Driving) -> f64 {
 }
 
 /// One run of the flow over hills.
-pub fn run(
-    method: &HillMethod,
-    settings: &HillSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let setup = &Setup::new(settings, method, context)?;
+pub fn run(method: &HillMethod, s: &HillSettings, context: &Context) -> Result<Record, RunError> {
+    let setup = &Setup::new(s, method, context)?;
     let mut simulation = (method.build)(setup.parts(context))?;
-    let (s, flow) = (&setup.settings, &setup.flow);
+    let flow = &setup.flow;
     let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
     let mut record = simulate::begin(method, &numbers, context);
     let stretches = (s.end / (STRETCH * flow.rules.dt())).ceil().max(1.0) as usize;

@@ -28,12 +28,8 @@ pub const COSTLY: &[MetricKey] = &{
 };
 
 /// One run.
-pub fn run(
-    method: &WaterMethod,
-    settings: &DamSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let dam = &Dam::new(settings, method, context)?;
+pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<Record, RunError> {
+    let dam = &Dam::new(s, method, context)?;
     let mut simulation = (method.build)(dam.parts(method, context))?;
     let Dam { settings, medium, rules, .. } = dam;
     let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
