@@ -17,7 +17,8 @@ use crate::{
 pub enum Outcome {
     /// The time asked for was reached.
     Reached,
-    /// A particle exceeded [`Scene::limits`](crate::Scene::limits); the state that is left cannot be used.
+    /// A particle exceeded [`Setting::limits`](crate::scene::Setting::limits); the state that is left cannot
+    /// be used.
     Diverged(Divergence),
     /// The observer asked to stop.
     Stopped,

@@ -99,8 +99,8 @@ impl WallVelocity for NoSlip {
 
 /// u_w = u_wall − a + b/2 of the field u_wall + a η + b η²/2 + c ξ η that is fitted by least squares, with
 /// weights V W, to the fluid around the foot of the wall particle: η is the distance from the surface and ξ
-/// that along it, over the depth of the wall particle. Exact for every field of second degree that is
-/// u_wall on a plane surface. Each wall particle needs its foot, see [`crate::Scene::feet`]; where too few
+/// that along it, over the depth of the wall particle. Exact for every field of second degree that is u_wall
+/// on a plane surface. Each wall particle needs its foot, see [`crate::scene::Setting::feet`]; where too few
 /// particles are near to tell a from b, b and c are 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CurvedNoSlip;

@@ -24,7 +24,7 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
     /// what is added to its velocity, in the derived data.
     const EXTRAPOLATES: bool = false;
     /// Whether walls that extrapolate sum over the neighbours of the foot of each wall particle, the nearest
-    /// point of the surface, in place of its own: [`crate::Scene::feet`].
+    /// point of the surface, in place of its own: [`crate::scene::Setting::feet`].
     const FEET: bool = false;
     /// What [`Walls::Terms`] read of the vector from a wall particle to its foot \[m\], if it has one.
     fn foot(_: Option<&Vector2<f64>>) -> <Self::Terms as Term<X>>::Derived {

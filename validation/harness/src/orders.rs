@@ -69,7 +69,8 @@ pub fn study(
     })
 }
 
-/// Errors over what is refined, by the name of each line, and orders as grey lines.
+/// Errors over what is refined, by the name of each line, and orders as grey lines from the largest error of
+/// the coarsest level.
 pub fn plot<'a>(
     title: &str,
     [x, y]: [&str; 2],
@@ -91,7 +92,7 @@ pub fn plot<'a>(
     else {
         return plot;
     };
-    let start = ABOVE * coarsest.value;
+    let start = coarsest.value;
     slopes.iter().fold(plot, |plot, order| {
         let end = start * powf(finest.spacing / coarsest.spacing, *order);
         let ends = vec![(finest.spacing, end), (coarsest.spacing, start)];
@@ -99,9 +100,6 @@ pub fn plot<'a>(
         plot.layer(line.labels([format!("order {order}")]))
     })
 }
-
-/// A line of an order begins above the largest error of the coarsest level by this factor.
-const ABOVE: f64 = 1.5;
 
 /// Numbers with so many digits, one after the other.
 fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {

@@ -26,20 +26,14 @@ pub fn keep(
     record.profiles.insert(profile.into(), kept);
 }
 
-/// Places of the particles of a profile, each with its value of a column; none if there is no such profile.
-pub fn points(record: &Record, profile: &str, value: &str) -> Vec<(f64, f64, f64)> {
-    let [x, y, values] = ["x", "y", value].map(|name| record.column(profile, name));
-    x.iter().zip(y).zip(values).map(|((x, y), value)| (*x, *y, *value)).collect()
-}
-
 /// The runs that are there.
 pub(crate) fn study(of: &Picture, runs: &Runs) -> Study {
     let panel = |PicturePanel { title, spec, profile, spacing, lines }: &PicturePanel| {
         let record = runs.record(spec)?;
-        let [x, _, value] = &record.profiles.get(profile)?.columns[..] else { return None };
+        let [x, y, value] = &record.profiles.get(profile)?.columns[..] else { return None };
+        let points = x.values.iter().zip(&y.values).zip(&value.values);
+        let points = points.map(|((x, y), value)| (*x, *y, (of.shown)(*value))).collect();
         let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
-        let points = points(record, profile, &value.name).into_iter();
-        let points = points.map(|(x, y, value)| (x, y, (of.shown)(value))).collect();
         let (label, colours) = of.colours;
         let dots = Dots::new(label, colours, *spacing, points);
         let dots = of.range.into_iter().fold(dots, |dots, [low, high]| dots.values(low, high));

@@ -35,9 +35,9 @@ struct Mark<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    pub fn new(plot: &'a Plot, size: (f64, f64)) -> Self {
-        let (xs, ys) = extent(plot);
-        let (mut x, mut y) = (plot.x.mapping(xs.into_iter()), plot.y.mapping(ys.into_iter()));
+    pub fn new(plot: &'a Plot, size: (f64, f64), [xs, ys]: &[Vec<f64>; 2]) -> Self {
+        let (xs, ys) = (xs.iter().copied(), ys.iter().copied());
+        let (mut x, mut y) = (plot.x.mapping(xs), plot.y.mapping(ys));
         let mut area = Rect::of(size);
         let dots = plot.dots().map(|dots| {
             // A dot on the border is seen whole.
@@ -54,7 +54,6 @@ impl<'a> Prepared<'a> {
             Layer::Series(series) => Some(series),
             _ => None,
         });
-        let series: Vec<&Series> = series.collect();
         let frame = Frame {
             area,
             x: x_ruler(&plot.x, x, area.width),
@@ -62,7 +61,7 @@ impl<'a> Prepared<'a> {
             title: &plot.title,
             note: String::new(),
         };
-        let mut this = Self { plot, frame, series, marks: Vec::new(), dots };
+        let mut this = Self { plot, frame, series: series.collect(), marks: Vec::new(), dots };
         this.frame.note = this.dropped();
         this.place_marks();
         this
@@ -268,7 +267,7 @@ impl<'a> Prepared<'a> {
 }
 
 /// Every x and every y that an automatic range should show.
-fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn extent(plot: &Plot) -> [Vec<f64>; 2] {
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
     for layer in &plot.layers {
         match layer {
@@ -291,7 +290,7 @@ fn extent(plot: &Plot) -> (Vec<f64>, Vec<f64>) {
             Layer::Cells { .. } => {}
         }
     }
-    (xs, ys)
+    [xs, ys]
 }
 
 /// The x axis with as many ticks as have room for their labels.

@@ -6,7 +6,7 @@ use super::colour::Colour;
 use super::figure::Figure;
 use super::frame::Room;
 use super::legend::{self, Entry};
-use super::plot::Prepared;
+use super::plot::{Prepared, extent};
 use super::raster::Raster;
 use super::svg::{self, Svg};
 use base::files;
@@ -54,7 +54,14 @@ fn shared_bar(panels: &mut [Prepared]) -> Option<Bar> {
 fn layout(figure: &Figure) -> Layout<'_> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
-    let mut panels: Vec<_> = figure.panels.iter().map(|plot| Prepared::new(plot, room)).collect();
+    let mut extents: Vec<[Vec<f64>; 2]> = figure.panels.iter().map(extent).collect();
+    // Pictures side by side have the same axes.
+    if figure.panels.iter().all(|plot| plot.dots().is_some()) {
+        let all = [0, 1].map(|axis| extents.iter().flat_map(|of| of[axis].clone()).collect());
+        extents.fill(all);
+    }
+    let panels = figure.panels.iter().zip(&extents);
+    let mut panels: Vec<_> = panels.map(|(plot, of)| Prepared::new(plot, room, of)).collect();
     let legend = legend(&panels);
     let bar = shared_bar(&mut panels);
     let rooms: Vec<Room> = panels.iter().map(|panel| panel.room()).collect();

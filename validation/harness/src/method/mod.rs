@@ -44,7 +44,7 @@ pub struct Parts<X = ()> {
     /// Planes that mirror the fluid, if the walls are of mirror particles.
     pub mirrors: Vec<PlaneWall>,
     /// The point of the surface that is nearest to each particle, for walls that read it of wall particles
-    /// ([`solver::Scene::feet`]); else empty.
+    /// ([`Setting::feet`]); else empty.
     pub surface: Vec<Vector2<f64>>,
     /// The number of the body of each particle, for methods of solids that keep bodies apart; empty if there
     /// is one body.

@@ -92,9 +92,8 @@ fn pictures(tier: Tier) -> Vec<Picture> {
             let lines = reference::outlines(speed, share * end);
             PicturePanel { profile: format!("particles@{share}"), lines, ..panel }
         };
-        let panels = |row: &Row| match row.group == group {
-            true => shares.iter().map(|share| panel(row, *share)).collect(),
-            false => Vec::new(),
+        let panels = |row: &Row| {
+            shares.iter().filter(|_| row.group == group).map(|share| panel(row, *share)).collect()
         };
         let colours = ("σ₁ [K]", ColourMap::Diverging);
         let picture = table.picture(texts, colours, [185.0, 170.0], panels);
