@@ -92,10 +92,9 @@ pub fn plot<'a>(
     else {
         return plot;
     };
-    let start = coarsest.value;
     slopes.iter().fold(plot, |plot, order| {
-        let end = start * powf(finest.spacing / coarsest.spacing, *order);
-        let ends = vec![(finest.spacing, end), (coarsest.spacing, start)];
+        let end = coarsest.value * powf(finest.spacing / coarsest.spacing, *order);
+        let ends = vec![(finest.spacing, end), size(&coarsest)];
         let line = Series::line("", ends).colour(Colour::GREY).width(1.0);
         plot.layer(line.labels([format!("order {order}")]))
     })

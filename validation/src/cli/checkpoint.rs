@@ -92,8 +92,7 @@ fn parse(
     })?;
     let ours = sources(&asked.spec.case);
     if asked.sources != ours {
-        let theirs = asked.sources;
-        let words = format!("was made by another build, of the sources {theirs}");
+        let words = format!("was made by another build, of the sources {}", asked.sources);
         return Err(format!("the checkpoint {path:?} {words}; this one is of {ours}"));
     }
     let mut simulations = Vec::new();

@@ -91,8 +91,8 @@ fn carry_out(
     if let Status::Interrupted { step, time } = record.status {
         return Err(interrupted(folder.as_ref(), asked.vtk.is_some(), step, time));
     }
-    folder.iter().for_each(|folder| remove_earlier(folder, asked.vtk.unwrap_or_default()));
-    let written = folder.as_ref().map(|folder| write(&record, last, folder)).transpose();
+    let frames = asked.vtk.unwrap_or_default();
+    let written = folder.as_ref().map(|folder| write(&record, last, folder, frames)).transpose();
     let is_asked = |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| why != NOT_ASKED);
     let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
         plan::gates_of(case, &asked.spec).into_iter().partition(is_asked);
@@ -103,8 +103,7 @@ fn carry_out(
     let mut table = judged::shown(&verdicts, arguments.all);
     if !unasked.is_empty() {
         let count = unasked.len();
-        table +=
-            &format!("more gates, on metrics that were not asked for (--metrics all): {count}\n\n");
+        table += &format!("more gates on metrics not asked for (--metrics all): {count}\n\n");
     }
     let end = outcome(case, &asked.spec, &record, &verdicts);
     let text = format!("{}\n{table}{end}", summary(&record));
@@ -302,32 +301,37 @@ fn record_in(folder: &Path) -> Value {
 /// Name of the file of the record.
 const RECORD: &str = "record.json";
 
+/// Name of the index of frames.
+const INDEX: &str = "vtk/particles.pvd";
+
 /// Name of the table of a curve.
 fn table_of(curve: &str) -> String {
     format!("{}.csv", curve.replace([' ', '/', '\\'], "-"))
 }
 
-/// Removes what an earlier run left beside its record, but for so many frames, which are of this run.
-fn remove_earlier(folder: &Folder, mut frames: u16) {
-    let (path, record) = (folder.output.path(), record_in(folder.output.path()));
+/// What an earlier run left beside its record, but for so many frames, which are of this run.
+fn left_by_earlier(folder: &Path, frames: u16) -> Vec<String> {
+    let record = record_in(folder);
     if record.is_null() {
-        return;
+        return Vec::new();
     }
     let curves = record["profiles"].as_object().into_iter().flat_map(|of| of.keys());
-    let index = (frames == 0).then_some("vtk/particles.pvd");
-    let others = ["profile.csv", "profile.png"].into_iter().chain(index).map(String::from);
-    let all = curves.map(|curve| table_of(curve)).chain(others);
-    all.for_each(|name| drop(fs::remove_file(path.join(name))));
-    while fs::remove_file(folder.vtk().join(format!("particles_{frames:04}.vtu"))).is_ok() {
-        frames += 1;
-    }
-    let _ = fs::remove_dir(folder.vtk()); // refused by the system unless empty
+    let others = ["profile.csv", "profile.png", INDEX].map(String::from);
+    let frames = (frames..).map(|k| format!("vtk/particles_{k:04}.vtu"));
+    let frames = frames.take_while(|name| folder.join(name).exists());
+    curves.map(|curve| table_of(curve)).chain(others).chain(frames).collect()
 }
 
-/// Writes the record, what can be drawn from it, and the particles at the end, in place of those of an
-/// earlier run; returns the names.
-fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<String>, Failure> {
+/// Writes the record, what can be drawn from it, and the particles at the end, beside so many frames, and then
+/// removes what is left of an earlier run; returns the names.
+fn write(
+    record: &Record,
+    last: Option<Profile>,
+    folder: &Folder,
+    frames: u16,
+) -> Result<Vec<String>, Failure> {
     let Folder { output, .. } = folder;
+    let earlier = left_by_earlier(output.path(), frames);
     output.write(RECORD, record.to_json().map_err(Failure::bug)?.as_bytes())?;
     let mut names = vec![RECORD.to_string()];
     if let Some(shown) = velocities(record).or(last) {
@@ -342,9 +346,13 @@ fn write(record: &Record, last: Option<Profile>, folder: &Folder) -> Result<Vec<
             names.push(file);
         }
     }
-    if folder.vtk().exists() {
-        names.push("vtk/particles.pvd".into());
+    if frames > 0 {
+        names.push(INDEX.into());
     }
+    for name in earlier.iter().filter(|name| !names.contains(name)) {
+        drop(fs::remove_file(output.path().join(name)));
+    }
+    let _ = fs::remove_dir(folder.vtk()); // refused by the system unless empty
     Ok(names)
 }
 

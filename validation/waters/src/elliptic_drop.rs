@@ -137,8 +137,7 @@ harness::observed! { History: changes(rows, free_fall), stays() }
 impl History {
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
         let (t, g) = (simulation.time(), drop.medium.acceleration);
-        let particles = simulation.particles();
-        let now = shape(&particles);
+        let now = shape(&simulation.particles());
         let exact = drop.exact.after(t);
         self.rows.push([t, now.axes[0], now.axes[1], exact.a, exact.b]);
         let scale = drop.exact.strain * drop.exact.a + g.norm() * t;

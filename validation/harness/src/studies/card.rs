@@ -69,8 +69,7 @@ pub fn cost(record: &Record) -> String {
         true => words(number),
         false => "unknown".into(),
     };
-    let alone = record.cost.alone_median();
-    let time = known(alone.unwrap_or(record.cost.cpu_s), seconds);
+    let time = known(record.cost.alone_median().unwrap_or(record.cost.cpu_s), seconds);
     let pairs = known(record.cost.pair_interactions as f64, |pairs| sci(pairs, 2));
     format!("{time} on one core, {pairs} pairs")
 }
