@@ -322,8 +322,8 @@ fn left_by_earlier(folder: &Path, frames: u16) -> Vec<String> {
     curves.map(|curve| table_of(curve)).chain(others).chain(frames).collect()
 }
 
-/// Writes the record, what can be drawn from it, and the particles at the end, beside so many frames, and then
-/// removes what is left of an earlier run; returns the names.
+/// Writes the record, what can be drawn from it, and the particles at the end, beside so many frames, and
+/// then removes what is left of an earlier run; returns the names.
 fn write(
     record: &Record,
     last: Option<Profile>,
