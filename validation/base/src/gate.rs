@@ -357,7 +357,7 @@ impl fmt::Display for Verdict {
             Verdict::Pass => f.write_str("pass"),
             Verdict::Fail => f.write_str("FAIL"),
             Verdict::Limitation => f.write_str("known limitation"),
-            Verdict::ExpectedFailure => f.write_str("fails, as it must"),
+            Verdict::ExpectedFailure => f.write_str("expected failure"),
         }
     }
 }
