@@ -8,8 +8,10 @@ use nalgebra::Vector2;
 
 use lanes::{Each, Lane};
 
-/// A number for each of the particles whose rates are buffered: few enough to stay in the nearest cache.
-pub type Many = [f64; 64];
+/// Particles whose numbers and rates are buffered: few enough to stay in the nearest cache.
+pub const MANY: usize = 64;
+/// A number for each of them.
+pub type Many = [f64; MANY];
 
 /// A fixed set of numbers.
 pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 'static {

@@ -129,7 +129,6 @@ impl<X: Numbers> Evolved<X> {
 
 /// What every term may ask of a particle, or of one a lane.
 #[derive(Clone, Copy, Debug)]
-#[repr(C)] // mass and density side by side
 pub struct Common<V = f64> {
     /// Mass per unit depth \[kg/m\].
     pub mass: V,

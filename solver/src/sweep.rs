@@ -16,14 +16,11 @@ use nalgebra::Vector2;
 use crate::{
     kernel::{Kernel, Smoothing},
     neighbours::{BLOCK, Block, GROUP, Lists},
-    numbers::{In, Many, Numbers},
+    numbers::{In, MANY, Many, Numbers},
     parallel,
     particles::{Column, Common, Evolved, Rate},
     terms::{Pair, Term},
 };
-
-/// Particles whose rates are buffered.
-const BUFFER: usize = size_of::<Many>() / size_of::<f64>();
 
 /// Where cache lines begin. Elsewhere, which depends on who calls, a sweep takes up to half as long again.
 #[repr(align(64))]
@@ -66,8 +63,8 @@ pub(crate) fn run<X: Numbers, T: Send>(
 
 /// Compiled for itself, for it is long.
 #[inline(never)]
-fn zeros<X: Numbers>() -> Aligned<[Rate<X>; BUFFER]> {
-    Aligned([Rate::default(); BUFFER])
+fn zeros<X: Numbers>() -> Aligned<[Rate<X>; MANY]> {
+    Aligned([Rate::default(); MANY])
 }
 
 /// The rates of the particles that the lists are of.
@@ -135,8 +132,8 @@ impl<K, T, S, C> Sweep<'_, K, T, S, C> {
         let mut rates = zeros();
         let mut own = Aligned(Seen::<T::Derived>::default().spread::<Many>());
         let mut sums = Aligned(T::Sum::default().spread::<Many>());
-        for first in of.clone().step_by(BUFFER) {
-            let end = (first + BUFFER).min(of.end);
+        for first in of.clone().step_by(MANY) {
+            let end = (first + MANY).min(of.end);
             if !T::IS_EMPTY {
                 // The last group may lack some.
                 for k in 0..(end - first).next_multiple_of(GROUP) {
@@ -192,7 +189,7 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> On
 {
     #[inline(always)]
     fn run<V: Lane>(self) {
-        const { assert!(BUFFER.is_multiple_of(GROUP) && GROUP.is_multiple_of(V::LANES)) };
+        const { assert!(MANY.is_multiple_of(GROUP) && GROUP.is_multiple_of(V::LANES)) };
         let &Sweep { kernel, terms, columns, ref select, .. } = self.sweep;
         let support2 = kernel.support() * kernel.support() * (1.0 + 1e-12);
         for start in (0..self.of.len()).step_by(V::LANES) {
