@@ -93,7 +93,7 @@ macro_rules! by_way_of {
 
 /// A document as its JSON, which has no loss either.
 fn json(document: &impl Serialize) -> String {
-    serde_json::to_string(document).unwrap_or_default()
+    serde_json::to_string_pretty(document).unwrap_or_default()
 }
 
 by_way_of! {

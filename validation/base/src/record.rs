@@ -510,11 +510,11 @@ impl Record {
 
     /// The document, indented, with its digest and a newline at its end.
     pub fn to_json(&self) -> Result<String, RecordError> {
-        let value = serde_json::to_value(self)?;
-        if let Some(path) = find_null(&value) {
+        let text = serde_json::to_string_pretty(self)?;
+        if let Some(path) = find_null(&serde_json::from_str(&text)?) {
             return Err(RecordError::Null { path });
         }
-        Ok(sealed(&(serde_json::to_string_pretty(self)? + "\n")))
+        Ok(sealed(&(text + "\n")))
     }
 
     /// Reads a document of this [`SCHEMA`] that is as [`Record::to_json`] wrote it.

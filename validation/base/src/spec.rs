@@ -247,10 +247,16 @@ impl RunSpec {
         self
     }
 
+    /// The document that serde reads back.
+    pub fn to_value(&self) -> Value {
+        // By way of the text, as records are written: a second serialiser of all types would be compiled.
+        let text = serde_json::to_string_pretty(self).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    }
+
     /// One line of JSON with sorted keys, which serde reads back: equal lines are equal runs.
     pub fn canonical(&self) -> String {
-        // Objects of `serde_json::Value` are sorted by key.
-        serde_json::to_value(self).unwrap_or_default().to_string()
+        self.to_value().to_string() // objects of `serde_json::Value` are sorted by key
     }
 
     /// Checks what a document may state and no case checks: all but the names and the settings.

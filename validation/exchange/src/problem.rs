@@ -132,7 +132,7 @@ impl Problem {
         let column = |column: &Column| json!({ "name": column.name, "unit": column.unit });
         let mut document = json!({
             "schema": SCHEMA,
-            "spec": self.spec,
+            "spec": self.spec.to_value(),
             "about": self.about,
             "dimensions": 2,
             "equations": self.equations().map(|(name, text)| json!({ "name": name, "text": text })),

@@ -86,7 +86,7 @@ fn parse(
         return Err(damaged());
     }
     let (head, mut rest) = split_line(rest);
-    let head: Result<(Asked, Vec<usize>), _> = serde_json::from_slice(head);
+    let head: Result<(Asked, Vec<usize>), _> = serde_json::from_str(&String::from_utf8_lossy(head));
     let (asked, lengths) = head.map_err(|reason| {
         format!("what was asked for cannot be read from the checkpoint {path:?}: {reason}")
     })?;
