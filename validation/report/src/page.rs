@@ -80,6 +80,12 @@ impl Section {
         self.children.push(section);
         self
     }
+
+    /// Adds its drawings.
+    fn figures<'a>(&'a self, to: &mut Vec<&'a Figure>) {
+        add_figures(&self.blocks, to);
+        self.children.iter().for_each(|child| child.figures(to));
+    }
 }
 
 /// One piece of a section.
@@ -171,8 +177,7 @@ impl Page {
             // What a report that was killed left there goes, too.
             let images = files::OutputFolder::create(&folder.join(&self.png_folder));
             let images = images.map_err(io::Error::other)?;
-            let sections = self.sections.par_iter();
-            sections.try_for_each(|section| write_images(section, images.path()))?;
+            write_images(&self.sections, images.path())?;
         }
         files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
     }
@@ -180,22 +185,22 @@ impl Page {
 
 const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
-/// Writes the PNG files of the drawings of a section.
-fn write_images(section: &Section, folder: &Path) -> io::Result<()> {
-    section.blocks.par_iter().try_for_each(|block| write_image(block, folder))?;
-    section.children.par_iter().try_for_each(|child| write_images(child, folder))
+/// Writes the PNG files of the drawings of sections.
+fn write_images(sections: &[Section], folder: &Path) -> io::Result<()> {
+    let mut all = Vec::new();
+    sections.iter().for_each(|section| section.figures(&mut all));
+    let write = |figure: &&Figure| render::png(figure, &folder.join(format!("{}.png", figure.id)));
+    all.par_iter().try_for_each(write)
 }
 
-fn write_image(block: &Block, folder: &Path) -> io::Result<()> {
-    let path = |id: &str| folder.join(format!("{id}.png"));
-    match block {
-        Block::Figure(figure) if !figure.panels.is_empty() => {
-            render::png(figure, &path(&figure.id))
+/// Adds the drawings of blocks, those behind a click with them.
+fn add_figures<'a>(blocks: &'a [Block], to: &mut Vec<&'a Figure>) {
+    for block in blocks {
+        match block {
+            Block::Figure(figure) if !figure.panels.is_empty() => to.push(figure),
+            Block::Details { blocks, .. } => add_figures(blocks, to),
+            _ => {}
         }
-        Block::Details { blocks, .. } => {
-            blocks.par_iter().try_for_each(|block| write_image(block, folder))
-        }
-        _ => Ok(()),
     }
 }
 
@@ -308,7 +313,7 @@ mod tests {
         let section = Section::new("s", "S").prose("See [it](#empty).");
         let section = section.block(Figure::new("empty", "What is shown where there are runs"));
         let folder = tempfile::tempdir().unwrap();
-        write_images(&section, folder.path()).unwrap();
+        write_images(std::slice::from_ref(&section), folder.path()).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         let html = Page { sections: vec![section], ..Page::default() }.html();
         crate::check_page(&html).expect("a page that opens");

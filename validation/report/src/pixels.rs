@@ -3,7 +3,7 @@
 use base::text::{base64, escaped};
 use color_quant::NeuQuant;
 use maud::{Markup, PreEscaped};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::io;
 
 use super::{figure::Figure, render};
@@ -47,9 +47,12 @@ fn encode(pixels: &[u8], (width, height): (u32, u32)) -> io::Result<Vec<u8>> {
     let all = || coarse_colours(pixels);
     let opaque: Vec<u8> = all().flat_map(|[r, g, b]| [r, g, b, u8::MAX]).collect();
     let chosen = NeuQuant::new(SAMPLED, COLOURS, &opaque);
-    let place = |[r, g, b]: Rgb| ([r, g, b], chosen.index_of(&[r, g, b, u8::MAX]) as u8);
-    let distinct: BTreeSet<Rgb> = all().collect();
-    let index: BTreeMap<Rgb, u8> = distinct.into_iter().map(place).collect();
+    let mut known: BTreeMap<Rgb, u8> = BTreeMap::new();
+    let index = |[r, g, b]: Rgb| {
+        let place = || chosen.index_of(&[r, g, b, u8::MAX]) as u8;
+        *known.entry([r, g, b]).or_insert_with(place)
+    };
+    let indices: Vec<u8> = all().map(index).collect();
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
@@ -58,7 +61,6 @@ fn encode(pixels: &[u8], (width, height): (u32, u32)) -> io::Result<Vec<u8>> {
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::NoFilter); // flat colours: every filter makes it larger
     let mut writer = encoder.write_header()?;
-    let indices: Vec<u8> = all().map(|colour| index[&colour]).collect();
     writer.write_image_data(&indices)?;
     writer.finish()?;
     Ok(bytes)

@@ -6,7 +6,7 @@ use super::canvas::{Point, Sheet};
 use super::colour::Colour;
 use super::figure::Dash;
 use super::font::{self, Align, Type};
-use plotters::prelude::{BitMapBackend, Color, DrawingBackend, RGBColor, TextStyle};
+use plotters::prelude::{BitMapBackend, Color, DrawingBackend, RGBColor, ShapeStyle, TextStyle};
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -41,7 +41,7 @@ impl Raster<'_> {
 impl Sheet for Raster<'_> {
     fn area(&mut self, corners: &[Point], colour: Colour) {
         let pixels: Vec<_> = corners.iter().map(|&p| self.pixel(p)).collect();
-        self.backend.fill_polygon(pixels, &rgb(colour)).expect(DRAWN);
+        self.backend.fill_polygon(pixels, &filled(colour)).expect(DRAWN);
     }
 
     fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash) {
@@ -74,7 +74,7 @@ impl Sheet for Raster<'_> {
 
     fn disc(&mut self, centre: Point, radius: f64, colour: Colour) {
         let radius = (radius * self.scale).round().max(1.0) as u32;
-        self.backend.draw_circle(self.pixel(centre), radius, &rgb(colour), true).expect(DRAWN);
+        self.backend.draw_circle(self.pixel(centre), radius, &filled(colour), true).expect(DRAWN);
     }
 
     fn text(&mut self, text: &str, (x, y): Point, how: Type) {
@@ -111,4 +111,9 @@ impl Dash {
 
 fn rgb(colour: Colour) -> RGBColor {
     RGBColor(colour.0, colour.1, colour.2)
+}
+
+/// Of the type of strokes: the rasteriser is compiled once a type.
+fn filled(colour: Colour) -> ShapeStyle {
+    rgb(colour).filled()
 }

@@ -19,7 +19,10 @@ use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
-    let mut judged: Vec<&Judged> = all.into_iter().collect();
+    table_of(all.into_iter().collect())
+}
+
+fn table_of<'a>(mut judged: Vec<&'a Judged>) -> String {
     judged.sort_by_key(|judged| judged.judgement.verdict);
     let mut notes = Notes::default();
     let mut words = |judged: &'a Judged| match judged.limitation() {
@@ -50,7 +53,7 @@ pub fn shown<'a>(judged: impl IntoIterator<Item = &'a Judged>, all: bool) -> Str
     let judged =
         judged.into_iter().filter(|judged| all || judged.judgement.verdict != Verdict::Pass);
     let judged: Vec<&Judged> = judged.collect();
-    if judged.is_empty() { String::new() } else { table(judged) + "\n" }
+    if judged.is_empty() { String::new() } else { table_of(judged) + "\n" }
 }
 
 /// Name of the file of the verdicts in the folder of a report.

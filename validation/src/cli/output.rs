@@ -69,7 +69,10 @@ pub fn report_bug(info: &PanicHookInfo) {
 
 /// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.
 pub fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let rows: Vec<Vec<String>> = rows.into_iter().collect();
+    laid_out(heads, &rows.into_iter().collect::<Vec<_>>())
+}
+
+fn laid_out(heads: &[&str], rows: &[Vec<String>]) -> String {
     let width = |text: &str| text.chars().count();
     let cells = |k: usize| rows.iter().filter_map(move |row| row.get(k)).map(String::as_str);
     let widths: Vec<usize> = (0..heads.len())
@@ -85,7 +88,7 @@ pub fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Str
         .collect();
     let mut text = String::new();
     let heads: Vec<String> = heads.iter().map(ToString::to_string).collect();
-    for row in std::iter::once(&heads).chain(&rows) {
+    for row in std::iter::once(&heads).chain(rows) {
         let mut line = String::new();
         for (k, cell) in row.iter().enumerate() {
             let padding = " ".repeat(widths[k].saturating_sub(width(cell)));
