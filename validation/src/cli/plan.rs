@@ -47,7 +47,8 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
     if arguments.estimates.is_some() || arguments.tier == Tier::Deep {
         let making = world.making(Tier::Quick);
         let of = |job: &Job| if making.is_interrupted() { None } else { size(job, true) };
-        let sizes: Vec<Option<Size>> = jobs.par_iter().map(of).collect();
+        let mut sizes: Vec<Option<Size>> = Vec::new();
+        jobs.par_iter().map(of).collect_into_vec(&mut sizes);
         world.go_on("no plan is printed")?;
         if let Some(path) = &arguments.estimates {
             files::write_atomically(path, table(&jobs, &sizes).to_csv().as_bytes())?;

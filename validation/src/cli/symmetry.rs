@@ -34,18 +34,21 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
             specs.push((case, case::spec(case, variant.name, &arguments.set)?));
         }
     }
-    let all: Vec<_> = on_threads(None, || {
-        let battery = |(case, spec): &(&dyn Case, _)| symmetry::battery(*case, spec);
-        Ok(specs.par_iter().filter(|_| !world.is_interrupted()).map(battery).collect())
+    let mut all = Vec::new();
+    let battery = |(case, spec): &(&dyn Case, _)| {
+        world.go_on("nothing is told").map(|()| symmetry::battery(*case, spec))
+    };
+    on_threads(None, || {
+        specs.par_iter().map(battery).collect_into_vec(&mut all);
+        Ok(())
     })?;
-    world.go_on("nothing is told")?;
     let (mut rows, mut exit) = (Vec::new(), Exit::Pass);
     for ((case, spec), found) in specs.iter().zip(all) {
         let none = |why: RunError| {
             let names = [case.name(), &spec.variant, "", "–", "", ""].map(String::from);
             [names.to_vec(), vec![why.to_string()]].concat()
         };
-        match found {
+        match found? {
             Err(why) => rows.push(none(why)),
             Ok(found) => rows.extend(found.into_iter().map(|(by, found)| match found {
                 Err(why) => none(why),
