@@ -29,11 +29,11 @@ pub fn frames(
     let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
     let columns: Vec<Head> = once(("t", "s", false)).chain(columns).collect();
     let rows = table::rows(CURVE, text, renamed, &columns)?;
-    if rows.columns.is_empty() {
+    if rows.len() == 0 {
         return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]);
     }
-    let (times, ascending) = (&rows.columns["t"], curve.columns[0].0);
-    let first = &rows.columns[ascending];
+    let (times, ascending) = (rows.column("t"), curve.columns[0].0);
+    let first = rows.column(ascending);
     let line = |k: usize| rows.first_line + k as u64;
     let (settings, mut flaws) = (&problem.spec.settings, Vec::new());
     for (name, ..) in &columns {
@@ -69,7 +69,7 @@ pub fn frames(
         if !flaws.is_empty() || time == 0.0 && !problem.outline.times.contains(&0.0) {
             continue;
         }
-        let row = |k: usize| curve.columns.iter().map(|(name, _)| rows.columns[name][k]).collect();
+        let row = |k: usize| curve.columns.iter().map(|(name, _)| rows.column(name)[k]).collect();
         let at: Vec<Vec<f64>> = (start..k).map(row).collect();
         let placed = moving.iter().zip((curve.place)(settings, &at, &from));
         let placed = placed.map(|(id, [position, velocity])| Placed {

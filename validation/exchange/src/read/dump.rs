@@ -1,7 +1,5 @@
 //! Dumps of LAMMPS: one or more snapshots a file, each with its time (`dump_modify time yes`).
 
-use std::collections::BTreeMap;
-
 use super::{COLUMNS, MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
 use crate::flaw::Flaw;
 
@@ -83,8 +81,7 @@ fn snapshot<'a>(
     (places, width): (&[(&'static str, usize)], usize),
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
 ) -> Result<Rows, Vec<Flaw>> {
-    let mut columns = BTreeMap::from([("t", Vec::new())]);
-    let mut flaws = Vec::new();
+    let (mut rows, mut flaws) = (Rows::new(file, first_line, places), Vec::new());
     for k in 0..atoms {
         let Some((line, text)) = lines.next().filter(|(_, text)| !text.starts_with("ITEM")) else {
             let what = format!("{k} atoms follow; expected {atoms}");
@@ -95,20 +92,13 @@ fn snapshot<'a>(
             let what = format!("it has {} values; expected {width}", values.len());
             flaws.push(Flaw::of(file, what).at(line as u64 + 1));
         }
-        columns.entry("t").or_default().push(time);
-        for (name, place) in places {
-            let text = values.get(*place).copied().unwrap_or_default();
-            let value = text.parse().unwrap_or_else(|_| {
-                let what = format!("it is {text:?}; expected a number");
-                flaws.push(Flaw::of(file, what).at(line as u64 + 1).in_column(*name));
-                f64::NAN
-            });
-            let first = if *name == "id" { 1.0 } else { 0.0 };
-            columns.entry(name).or_default().push(value - first);
-        }
+        rows.add(line as u64 + 1, places, &values, &mut flaws);
         if flaws.len() >= MOST_FLAWS {
             break;
         }
     }
-    if flaws.is_empty() { Ok(Rows { file: file.into(), first_line, columns }) } else { Err(flaws) }
+    let ids = rows.columns.iter_mut().filter(|(name, _)| *name == "id");
+    ids.flat_map(|(_, ids)| ids).for_each(|id| *id -= 1.0);
+    rows.columns.push(("t", vec![time; rows.len()]));
+    if flaws.is_empty() { Ok(rows) } else { Err(flaws) }
 }

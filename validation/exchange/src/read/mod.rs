@@ -61,8 +61,8 @@ pub struct Rows {
     file: String,
     /// Line of the first row.
     first_line: u64,
-    /// Values by the names of [`COLUMNS`], all of one length.
-    columns: BTreeMap<&'static str, Vec<f64>>,
+    /// Names, such as those of [`COLUMNS`], and values, all of one length.
+    columns: Vec<(&'static str, Vec<f64>)>,
 }
 
 /// Particles at times as they were read.
@@ -209,21 +209,22 @@ fn of_arrays(
     mut array: impl FnMut(usize) -> Result<Vec<f64>, String>,
 ) -> Result<Rows, Vec<Flaw>> {
     let flaw = |name: &str, what: String| vec![Flaw::of(file, what).in_column(name)];
-    let mut columns = BTreeMap::new();
-    for (name, place) in places(file, 1, heads, renamed, &COLUMNS)? {
-        columns.insert(name, array(place).map_err(|what| flaw(name, what))?);
+    let places = places(file, 1, heads, renamed, &COLUMNS)?;
+    let mut rows = Rows::new(file, 1, &places);
+    for ((name, values), (_, place)) in rows.columns.iter_mut().zip(places) {
+        *values = array(place).map_err(|what| flaw(name, what))?;
     }
-    let rows = columns.get("x").map_or(0, Vec::len);
-    if let Some(times) = columns.get_mut("t").filter(|times| times.len() == 1) {
-        *times = vec![times[0]; rows];
-    }
-    match columns.iter().find(|(_, column)| column.len() != rows) {
-        Some((name, column)) => {
-            let what = format!("it has {} numbers; expected {rows}, as many as x", column.len());
-            Err(flaw(name, what))
+    let count = rows.column("x").len();
+    for (name, values) in &mut rows.columns {
+        if *name == "t" && values.len() == 1 {
+            values.resize(count, values[0]);
         }
-        None => Ok(Rows { file: file.into(), first_line: 1, columns }),
+        if values.len() != count {
+            let what = format!("it has {} numbers; expected {count}, as many as x", values.len());
+            return Err(flaw(name, what));
+        }
     }
+    Ok(rows)
 }
 
 /// A regular file that is not too long.
@@ -234,8 +235,37 @@ fn open(file: &str, path: &Path) -> Result<std::fs::File, Vec<Flaw>> {
 }
 
 impl Rows {
+    /// No rows yet, of a file that has these columns.
+    fn new(file: &str, first_line: u64, places: &[(&'static str, usize)]) -> Self {
+        let columns = places.iter().map(|(name, _)| (*name, Vec::new())).collect();
+        Self { file: file.into(), first_line, columns }
+    }
+
+    /// Adds a row: of each column the number that stands at its place, with a flaw where none does.
+    fn add(
+        &mut self,
+        line: u64,
+        places: &[(&'static str, usize)],
+        cells: &[&str],
+        flaws: &mut Vec<Flaw>,
+    ) {
+        for ((name, values), (_, place)) in self.columns.iter_mut().zip(places) {
+            let text = cells.get(*place).copied().unwrap_or_default();
+            values.push(text.parse().unwrap_or_else(|_| {
+                let what = format!("it is {text:?}; expected a number");
+                flaws.push(Flaw::of(&self.file, what).at(line).in_column(*name));
+                f64::NAN
+            }));
+        }
+    }
+
     fn len(&self) -> usize {
-        self.columns.get("x").map_or(0, Vec::len)
+        self.columns.first().map_or(0, |(_, values)| values.len())
+    }
+
+    /// The values of a column, none if it is not there.
+    fn column(&self, name: &str) -> &[f64] {
+        self.columns.iter().find(|(of, _)| *of == name).map_or(&[], |(_, values)| values)
     }
 
     /// The value of a column in row k, if the column is there; a flaw unless it is right.
@@ -246,7 +276,7 @@ impl Rows {
         is_right: fn(f64) -> bool,
         expected: &str,
     ) -> Result<Option<f64>, Flaw> {
-        let value = self.columns.get(name).and_then(|column| column.get(k)).copied();
+        let value = self.column(name).get(k).copied();
         match value.filter(|value| !is_right(*value)) {
             Some(wrong) => {
                 let what = format!("it is {wrong}; expected {expected}");

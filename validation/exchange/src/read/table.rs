@@ -1,7 +1,5 @@
 //! Tidy tables of comma-separated values: one line a particle and time.
 
-use std::collections::BTreeMap;
-
 use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
 use crate::flaw::Flaw;
 
@@ -20,30 +18,17 @@ pub fn rows(
     // Of a byte order mark, which some programs put before a table, nothing is said.
     let heads: Vec<&str> = heads.iter().map(|head| head.trim_start_matches('\u{feff}')).collect();
     let places = places(file, 1, &heads, renamed, columns)?;
-    let mut columns: BTreeMap<&'static str, Vec<f64>> = BTreeMap::new();
-    let mut flaws = Vec::new();
+    let (mut rows, mut flaws) = (Rows::new(file, 2, &places), Vec::new());
     for record in reader.records() {
         let record = record.map_err(unread)?;
         let line = record.position().map_or(0, csv::Position::line);
-        for (name, place) in &places {
-            let text = record.get(*place).unwrap_or_default();
-            let value = text.parse().unwrap_or_else(|_| {
-                let what = format!("it is {text:?}; expected a number");
-                flaws.push(Flaw::of(file, what).at(line).in_column(*name));
-                f64::NAN
-            });
-            columns.entry(name).or_default().push(value);
-        }
-        if columns.values().any(|column| column.len() > MOST_ROWS) {
+        rows.add(line, &places, &record.iter().collect::<Vec<_>>(), &mut flaws);
+        if rows.len() > MOST_ROWS {
             return Err(vec![too_many(file)]);
         }
         if flaws.len() >= MOST_FLAWS {
             break;
         }
     }
-    if flaws.is_empty() {
-        Ok(Rows { file: file.into(), first_line: 2, columns })
-    } else {
-        Err(flaws)
-    }
+    if flaws.is_empty() { Ok(rows) } else { Err(flaws) }
 }

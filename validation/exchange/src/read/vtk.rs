@@ -1,7 +1,6 @@
 //! Particles of ParaView, `.vtu` and `.vtp`: arrays as text or base64, plain or compressed by zlib. The time
 //! is the array `TimeValue` of the field data.
 
-use std::collections::BTreeMap;
 use std::io::Read;
 
 use base::text::from_base64;
@@ -29,7 +28,7 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
         .map_err(|error| vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())])?;
     let root = document.root_element();
     let line = |node: Node| u64::from(document.text_pos_at(node.range().start).row);
-    let mut arrays: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    let mut arrays: Vec<(String, Vec<f64>)> = Vec::new();
     for node in root.descendants().filter(|node| node.has_tag_name("DataArray")) {
         let parent = node.parent().map_or("", |parent| parent.tag_name().name());
         if !["PointData", "Points", "FieldData"].contains(&parent) {
@@ -38,28 +37,29 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>
         let name = node.attribute("Name").unwrap_or("Points");
         let flaw = |what: String| vec![Flaw::of(file, what).at(line(node)).in_column(name)];
         let values = values(root, node).map_err(flaw)?;
-        if arrays.values().map(Vec::len).sum::<usize>() > COLUMNS.len() * MOST_NUMBERS {
+        if arrays.iter().map(|(_, of)| of.len()).sum::<usize>() > COLUMNS.len() * MOST_NUMBERS {
             return Err(flaw("the arrays before it have too many numbers".into()));
         }
         let components: usize =
             node.attribute("NumberOfComponents").and_then(|n| n.parse().ok()).unwrap_or(1);
         if components < 2 {
-            arrays.insert(name.into(), values);
+            arrays.push((name.into(), values));
             continue;
         }
         for (k, axis) in ["x", "y"].iter().enumerate() {
             let values = values.iter().skip(k).step_by(components).copied().collect();
             let name = if parent == "Points" { axis.to_string() } else { format!("{name}.{axis}") };
-            arrays.insert(name, values);
+            arrays.push((name, values));
         }
     }
-    let count = arrays.get("x").map_or(0, Vec::len);
     // Without numbers, particles are in the order of the problem.
-    if !arrays.contains_key("id") && !renamed.values().any(|ours| ours == "id") {
-        arrays.insert("id".into(), (0..count).map(|k| k as f64).collect());
+    let has_ids = arrays.iter().any(|(name, _)| name == "id");
+    if !has_ids && !renamed.values().any(|ours| ours == "id") {
+        let count = arrays.iter().find(|(name, _)| name == "x").map_or(0, |(_, x)| x.len());
+        arrays.push(("id".into(), (0..count).map(|k| k as f64).collect()));
     }
-    let heads: Vec<&str> = arrays.keys().map(String::as_str).collect();
-    of_arrays(file, &heads, &renamed, |place| Ok(arrays[heads[place]].clone()))
+    let heads: Vec<&str> = arrays.iter().map(|(name, _)| name.as_str()).collect();
+    of_arrays(file, &heads, &renamed, |place| Ok(arrays[place].1.clone()))
 }
 
 /// The numbers of an array.
