@@ -260,7 +260,7 @@ fn dump(folder: &Path, atoms: &str, rows: &str) {
 }
 
 /// What is done to a whole submission, and what the message names.
-const DAMAGES: [(&str, Damage, &[&str]); 37] = [
+const DAMAGES: [(&str, Damage, &[&str]); 38] = [
     (
         "no method",
         |f| fs::remove_file(f.join("method.json")).unwrap(),
@@ -408,6 +408,16 @@ const DAMAGES: [(&str, Damage, &[&str]); 37] = [
             fs::write(f.join("a.vtu"), text).unwrap()
         },
         &["a.vtu, line 1, column rho", "within its head"],
+    ),
+    (
+        "a grid in two pieces, of which the second would be taken for all",
+        |f| {
+            fs::remove_file(f.join("results.csv")).unwrap();
+            let piece = "<Piece><Points><DataArray NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray>\
+                         </Points></Piece>";
+            fs::write(f.join("a.vtu"), format!("<VTKFile>{piece}{piece}</VTKFile>")).unwrap()
+        },
+        &["a.vtu, line 1, column x", "there twice; expected once"],
     ),
     (
         "another case",

@@ -265,6 +265,9 @@ fn material(m: &Medium, is_solid: bool) -> Value {
             ("artificial_viscosity_alpha", with_unit(m.alpha, "-")),
         ],
     };
-    let all = common.into_iter().chain(own).map(|(name, value)| (name.to_string(), value));
-    Value::Object(all.collect())
+    let mut all = serde_json::Map::new();
+    for (name, value) in common.into_iter().chain(own) {
+        all.insert(name.into(), value);
+    }
+    all.into()
 }

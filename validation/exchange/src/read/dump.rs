@@ -1,6 +1,6 @@
 //! Dumps of LAMMPS: one or more snapshots a file, each with its time (`dump_modify time yes`).
 
-use super::{COLUMNS, MOST_FLAWS, MOST_ROWS, Renamed, Rows, places, too_many};
+use super::{COLUMNS, MOST_FLAWS, MOST_ROWS, Renamed, Rows, known_too, places, too_many};
 use crate::flaw::Flaw;
 
 /// Names of LAMMPS that need no `--map`. Its numbers of atoms begin at 1, ours at 0.
@@ -8,8 +8,7 @@ const KNOWN: [(&str, &str); 3] = [("vx", "u"), ("vy", "v"), ("c_rho", "density")
 
 /// The rows of the snapshots of a file.
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
-    let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
-    let renamed: Renamed = known.chain(renamed.clone()).collect();
+    let renamed = known_too(&KNOWN, renamed);
     if !text.is_empty() && !text.ends_with('\n') {
         let what = "the last line does not end; the file was cut short";
         return Err(vec![Flaw::of(file, what).at(text.lines().count() as u64)]);

@@ -158,6 +158,15 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
     }
 }
 
+/// The new names, and those of names that a format is known for.
+fn known_too(known: &[(&str, &str)], renamed: &Renamed) -> Renamed {
+    let mut all = renamed.clone();
+    for (theirs, ours) in known {
+        all.entry(theirs.to_string()).or_insert_with(|| ours.to_string());
+    }
+    all
+}
+
 /// Where each column of ours is among these heads.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use super::{
     COLUMNS, Renamed, Rows,
     binary::{MOST_NUMBERS, too_long},
-    of_arrays,
+    known_too, of_arrays,
 };
 use crate::flaw::Flaw;
 
@@ -21,8 +21,7 @@ const KNOWN: [(&str, &str); 4] =
     [("rho", "density"), ("velocity.x", "u"), ("velocity.y", "v"), ("TimeValue", "t")];
 
 pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
-    let known = KNOWN.iter().map(|(theirs, ours)| (theirs.to_string(), ours.to_string()));
-    let renamed: Renamed = known.chain(renamed.clone()).collect();
+    let renamed = known_too(&KNOWN, renamed);
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(text, options)
         .map_err(|error| vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())])?;
