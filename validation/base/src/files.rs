@@ -18,12 +18,12 @@
 
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use tempfile::{Builder, TempPath};
 use thiserror::Error;
 
 /// Why a file was not written.
@@ -116,8 +116,6 @@ pub fn check_regular(path: &Path, most: u64) -> io::Result<()> {
 
 /// Begins the name of every temporary file; random letters and digits, a hyphen and the final name follow.
 const PREFIX: &str = ".unfinished-";
-/// Letters and digits that are random.
-const RANDOM: usize = 12;
 /// A temporary file that nobody has written to for so long was left behind: writing one takes seconds.
 const ORPHANED_AFTER: Duration = Duration::from_secs(3600);
 
@@ -146,39 +144,43 @@ fn remove_orphans(folder: &Path) {
     }
 }
 
-/// An entry of [`UNFINISHED`].
-struct Registered(PathBuf);
-
-impl Drop for Registered {
-    fn drop(&mut self) {
-        unfinished().remove(&self.0);
-    }
-}
-
 /// A temporary file that goes away unless it is renamed to its final name.
-struct Temporary {
-    path: TempPath, // dropped, and so removed, before it is taken from the register
-    _registered: Registered,
-}
+struct Temporary(PathBuf);
 
 impl Temporary {
     /// A new file beside `path`. If its random name is taken, another one is tried.
     fn beside(path: &Path) -> io::Result<(Self, File)> {
         let no_name = || io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name");
         let name = path.file_name().ok_or_else(no_name)?.to_string_lossy();
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        let suffix = format!("-{name}");
-        let mut names = Builder::new();
-        names.prefix(PREFIX).suffix(&suffix).rand_bytes(RANDOM);
-        let open = |path: &Path| {
+        loop {
+            let random = RandomState::new().build_hasher().finish(); // its keys are random
+            let path = path.with_file_name(format!("{PREFIX}{random:016x}-{name}"));
             let mut paths = unfinished(); // held, so that no interruption comes in between
-            let file = OpenOptions::new().write(true).create_new(true).open(path)?;
-            paths.insert(path.into());
-            Ok(file)
-        };
-        let (file, path) = names.make_in(folder.unwrap_or(Path::new(".")), open)?.into_parts();
-        let _registered = Registered(path.to_path_buf());
-        Ok((Temporary { path, _registered }, file))
+            match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => {}
+                opened => {
+                    let file = opened?;
+                    paths.insert(path.clone());
+                    return Ok((Temporary(path), file));
+                }
+            }
+        }
+    }
+
+    fn persist(self, path: &Path) -> io::Result<()> {
+        fs::rename(&self.0, path)?;
+        unfinished().remove(&self.0);
+        Ok(())
+    }
+}
+
+impl Drop for Temporary {
+    fn drop(&mut self) {
+        let mut paths = unfinished();
+        if paths.contains(&self.0) {
+            let _ = fs::remove_file(&self.0);
+            paths.remove(&self.0);
+        }
     }
 }
 
@@ -188,7 +190,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
         let (temporary, mut file) = Temporary::beside(path)?;
         file.write_all(bytes)?;
         file.sync_all()?;
-        temporary.path.persist(path)?;
+        temporary.persist(path)?;
         if let Some(Ok(folder)) = path.parent().map(File::open) {
             let _ = folder.sync_all(); // makes the rename last; not every system can
         }
@@ -439,7 +441,7 @@ mod tests {
         assert_eq!(names(folder.path()).len(), 1);
         assert_eq!(remove_all(&mut unfinished()), 1);
         assert!(names(folder.path()).is_empty());
-        assert!(temporary.path.persist(&path).is_err(), "a write under way cannot finish");
+        assert!(temporary.persist(&path).is_err(), "a write under way cannot finish");
         assert!(names(folder.path()).is_empty());
         assert_eq!(remove_all(&mut unfinished()), 0);
     }

@@ -1,9 +1,10 @@
 //! Arrays of NumPy: what is read, and archives that are damaged or much larger than they look.
 
-use std::io::{Cursor, Write};
+use std::io::Write;
 
 use exchange::read::{Renamed, read};
-use zip::{ZipWriter, write::SimpleFileOptions};
+use flate2::{Compression, write::DeflateEncoder};
+use rawzip::{CompressionMethod, ZipArchiveWriter};
 
 /// An array of floats with a head that says what it likes.
 fn array(order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {
@@ -15,17 +16,38 @@ fn array(order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {
     bytes
 }
 
-/// What is said of an archive with three particles, of which one array is another one; nothing if it is read.
-fn said(changed: &str, bytes: &[u8]) -> String {
-    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+/// An archive with three particles, of which one array is another one.
+fn archive(changed: &str, bytes: &[u8], method: CompressionMethod) -> Vec<u8> {
+    let mut all = Vec::new();
+    let mut archive = ZipArchiveWriter::new(&mut all);
     for name in ["t", "id", "x", "y", "u", "v"] {
-        archive.start_file(format!("{name}.npy"), SimpleFileOptions::default()).unwrap();
         let numbers = if name == "t" { &[0.5][..] } else { &[0.0, 1.0, 2.0] };
         let whole = array("False", &format!("{},", numbers.len()), numbers);
-        archive.write_all(if name == changed { bytes } else { &whole }).unwrap();
+        let bytes = if name == changed { bytes } else { &whole };
+        let name = format!("{name}.npy");
+        let file = archive.new_file(&name).compression_method(method);
+        let (mut entry, config) = file.start().unwrap();
+        let descriptor = if method == CompressionMethod::STORE {
+            let mut writer = config.wrap(&mut entry);
+            writer.write_all(bytes).unwrap();
+            writer.finish().unwrap().1
+        } else {
+            let encoder = DeflateEncoder::new(&mut entry, Compression::default());
+            let mut writer = config.wrap(encoder);
+            writer.write_all(bytes).unwrap();
+            let (encoder, descriptor) = writer.finish().unwrap();
+            encoder.finish().unwrap();
+            descriptor
+        };
+        entry.finish(descriptor).unwrap();
     }
+    archive.finish().unwrap();
+    all
+}
+
+/// What is said of an archive; nothing if it is read.
+fn said(archive: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
-    let archive = archive.finish().unwrap().into_inner();
     std::fs::write(folder.path().join("a.npz"), archive).unwrap();
     match read(folder.path(), &Renamed::new()) {
         Ok(results) => {
@@ -38,10 +60,28 @@ fn said(changed: &str, bytes: &[u8]) -> String {
     }
 }
 
+/// `savez` stores arrays as they are, `savez_compressed` deflates them. Every byte counts: of an archive that
+/// was cut, or of whose array a byte was changed, nothing is read.
+#[test]
+fn an_archive_is_read_whole_or_not_at_all() {
+    for method in [CompressionMethod::STORE, CompressionMethod::DEFLATE] {
+        let whole = archive("", &[], method);
+        assert_eq!(said(&whole), "", "{method:?}");
+        for length in [0, 10, whole.len() / 2, whole.len() - 1] {
+            assert!(said(&whole[..length]).starts_with("a.npz"), "{method:?}, {length}");
+        }
+    }
+    let mut changed = archive("", &[], CompressionMethod::STORE);
+    let place = changed.windows(4).position(|bytes| bytes == b"PK\x07\x08").unwrap();
+    changed[place - 1] ^= 1; // the last byte of the first array
+    assert!(said(&changed).contains("column t"), "{}", said(&changed));
+    let unknown = said(&archive("", &[], CompressionMethod::ZSTD));
+    assert!(unknown.contains("expected none or deflate"), "{unknown}");
+}
+
 #[test]
 fn damaged_arrays_are_refused_by_name() {
     let three = [0.0, 1.0, 2.0];
-    assert_eq!(said("", &[]), "");
     for (what, changed, bytes, expected) in [
         ("columns first", "x", array("True", "3,", &three), "order of Fortran"),
         ("cut", "y", array("False", "3,", &three[..2]), "it has 2 numbers; its head says (3,)"),
@@ -51,7 +91,7 @@ fn damaged_arrays_are_refused_by_name() {
         // 30 million zeros take 0.2 MB of the archive.
         ("a bomb", "x", array("False", "30000000,", &vec![0.0; 30_000_000]), "more than 3000000"),
     ] {
-        let words = said(changed, &bytes);
+        let words = said(&archive(changed, &bytes, CompressionMethod::DEFLATE));
         assert!(words.starts_with(&format!("a.npz, column {changed}: ")), "{what}: {words}");
         assert!(words.contains(expected), "{what}: expected {expected:?} in {words}");
     }

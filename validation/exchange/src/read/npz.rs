@@ -4,7 +4,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use zip::ZipArchive;
+use flate2::bufread::DeflateDecoder;
+use rawzip::{CompressionMethod, ZipArchive};
 
 use super::{MOST_ROWS, Renamed, Rows, of_arrays, open};
 use crate::flaw::Flaw;
@@ -13,17 +14,34 @@ use crate::flaw::Flaw;
 const MAGIC: &[u8] = b"\x93NUMPY";
 
 pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
-    let archive = ZipArchive::new(open(file, path)?);
-    let mut archive = archive.map_err(|reason| vec![Flaw::of(file, reason.to_string())])?;
-    let names: Vec<String> = archive.file_names().map(String::from).collect();
-    let heads: Vec<&str> = names.iter().map(|name| name.trim_end_matches(".npy")).collect();
+    let unread = |reason: rawzip::Error| vec![Flaw::of(file, reason.to_string())];
+    let mut bytes = Vec::new();
+    let read = open(file, path)?.read_to_end(&mut bytes);
+    read.map_err(|reason| vec![Flaw::of(file, reason.to_string())])?;
+    let archive = ZipArchive::from_slice(&bytes).map_err(unread)?;
+    let (mut heads, mut arrays) = (Vec::new(), Vec::new());
+    let mut entries = archive.entries();
+    while let Some(entry) = entries.next_entry().map_err(unread)? {
+        let name = String::from_utf8_lossy(entry.file_path().as_bytes());
+        heads.push(name.trim_end_matches(".npy").to_string());
+        arrays.push((entry.compression_method(), entry.wayfinder()));
+    }
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     of_arrays(file, &heads, renamed, |place| {
-        numbers(archive.by_name(&names[place]).map_err(|error| error.to_string())?)
+        let (method, place) = arrays[place];
+        let entry = archive.get_entry(place).map_err(|reason| reason.to_string())?;
+        match method {
+            CompressionMethod::STORE => numbers(&mut entry.verifying_reader(entry.data())),
+            CompressionMethod::DEFLATE => {
+                numbers(&mut entry.verifying_reader(DeflateDecoder::new(entry.data())))
+            }
+            other => Err(format!("its compression is {other:?}; expected none or deflate")),
+        }
     })
 }
 
 /// The numbers of an array of floats or of whole numbers: magic, version, length of the head, head, data.
-fn numbers(array: impl Read) -> Result<Vec<f64>, String> {
+fn numbers(array: &mut dyn Read) -> Result<Vec<f64>, String> {
     let mut bytes = Vec::new();
     let most = 8 * MOST_ROWS as u64 + (1 << 16); // numbers and head
     array.take(most + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
