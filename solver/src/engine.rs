@@ -1,14 +1,17 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
-//! a state and then makes the pair sweeps.
+//! a state and then makes the pair sweeps. What does not depend on the equations of the scene knows them as
+//! [`Equations`], and is compiled once, not for each scheme.
+
+use std::mem::take;
 
 use nalgebra::Vector2;
 
 use crate::{
     kernel::Smoothing,
-    neighbours::{BLOCK, Neighbours},
-    numbers::Symmetric,
+    neighbours::{BLOCK, Lists, Neighbours},
+    numbers::{Numbers, Symmetric},
     parallel,
-    particle_data::{Extent, Fault, ParticleData, Phase},
+    particle_data::{Checkpoint, Extent, Fault, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
     sweep::{self, BlockUpdate, PairSweep, Select, Sweep, first, nothing, second, whole},
@@ -20,57 +23,31 @@ use crate::{
 pub trait Update<X>: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {}
 impl<X, F: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync> Update<X> for F {}
 
-/// Terms and particles of a scene.
-pub struct Engine<P: Physics> {
-    pub(crate) kernel: Smoothing<P::Kernel>,
-    /// Of the forces, and of the drift.
-    pub(crate) terms: (P::Forces, P::Drift),
-    pub(crate) wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
-    /// Boxed, for it is moved by code that is compiled for each scheme.
-    pub(crate) data: Box<ParticleData<P::Extra>>,
-    /// Of the particles, of their images, and the sentinel.
-    pub(crate) columns: Vec<Column<Derived<P>>>,
-    /// What was found in each block while filling columns, and of what was not filled.
-    pub(crate) extents: Vec<Extent>,
-    /// What was found of particles that need not be filled again until lists are built: those of walls that
-    /// extrapolate, which do not move.
-    pub(crate) still: Option<Extent>,
-    /// What wall particles extrapolate: empty where they do not.
-    pub(crate) extrapolated: Vec<Evolved<P::Extra>>,
-    /// Inverses of moments: empty where no force needs them.
-    pub(crate) inverses: Vec<Rate<Symmetric>>,
+/// Terms of a scene, and the columns that they derive, without their types.
+pub(crate) trait Equations<X>: Sync {
+    /// Tells the terms the largest speed \[m/s\].
+    fn prepare(&mut self, speed: f64);
+    /// Makes room for so many columns, the last of them the sentinel. Returns their memory \[bytes\].
+    fn make_room(&mut self, count: usize) -> usize;
+    /// Derives the columns of these particles, the first ones, and what is found in each block of them.
+    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [Extent]);
+    /// Refills the images of particles from `first` on, with this share of the walls' own motion.
+    fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64);
+    /// Derives the columns of wall particles from these.
+    fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]);
+    /// The pair sweep over wall particles, if their terms are any.
+    fn wall_sweep<'a>(&'a self, of: &'a ParticleData<X>) -> Option<Box<dyn PairSweep<X> + 'a>>;
 }
 
-impl<P: Physics> Engine<P> {
-    /// The engine of particles that have no lists yet.
-    pub(crate) fn new(
-        h: f64,
-        terms: (P::Forces, P::Drift),
-        wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
-        mut data: Box<ParticleData<P::Extra>>,
-    ) -> Self {
-        let state = std::mem::take(&mut data.state);
-        let mut engine = Self {
-            kernel: Smoothing::new(h),
-            terms,
-            wall_terms,
-            data,
-            columns: vec![],
-            extents: vec![],
-            still: None,
-            extrapolated: vec![],
-            inverses: vec![],
-        };
-        engine.build_lists(&mut places(&state));
-        engine.data.state = state;
-        engine
-    }
+/// What an engine does that does not depend on its equations.
+pub(crate) struct Core<'a, X> {
+    data: &'a mut ParticleData<X>,
+    equations: &'a mut dyn Equations<X>,
+}
 
-    /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
-    /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
-    /// that is derived from the state.
-    pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
-        if P::Walls::SLIPS {
+impl<X: Numbers> Core<'_, X> {
+    fn begin(&mut self, state: &mut [Evolved<X>]) -> Result<(), Fault> {
+        if self.data.slips {
             for wall in self.data.neighbours.mirrors() {
                 let fluid = &mut state[..self.data.counts[0]];
                 fluid.iter_mut().for_each(|particle| wall.put_back(particle));
@@ -83,13 +60,12 @@ impl<P: Physics> Engine<P> {
             self.data.progress.built_inside_a_step = false;
             extent = self.fill(state)?;
         }
-        self.terms.prepare(extent.speed());
+        self.equations.prepare(extent.speed());
         self.refresh_walls(state, 1.0);
         Ok(())
     }
 
-    /// Refreshes everything that is derived from a state inside a step.
-    pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
+    fn refresh(&mut self, state: &[Evolved<X>]) -> Result<(), Fault> {
         let extent = self.fill(state)?;
         if self.data.is_stale(extent) {
             self.build_lists(&mut places(state));
@@ -101,111 +77,149 @@ impl<P: Physics> Engine<P> {
         Ok(())
     }
 
-    /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
-    /// 0 for wall particles: walls are at rest, and images have the differences that follow.
-    pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
-        self.fill(state)?;
-        self.refresh_walls(state, 0.0);
+    /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
+    fn build_lists(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
+        let data = &mut *self.data;
+        data.enter(Phase::Search);
+        data.neighbours.place(positions);
+        data.neighbours.build(data.counts, data.extrapolates, data.parallel);
+        data.progress.work.list_builds += 1;
+        data.still = None;
+        let columns = data.fixed.len() + data.neighbours.images.len();
+        data.column_bytes = self.equations.make_room(columns + 1);
+    }
+
+    /// Goes back or on to a checkpoint.
+    pub fn restore(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
+        self.data.replace(from)?;
+        self.build_lists(&mut from.built_at.iter().copied());
+        self.data.progress = from.progress;
         Ok(())
     }
 
-    /// Sums the forces: `update(i, target, rate)` with dv/dt, for fluid particles.
-    pub fn sweep_forces(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
-        self.normalise();
-        self.sweep_part(targets, &self.terms.0.clone(), first(), update);
+    fn build_first_lists(&mut self) {
+        let state = take(&mut self.data.state);
+        self.build_lists(&mut places(&state));
+        self.data.state = state;
     }
 
-    /// Sums a part of the forces, whose derived numbers `select` reads: `update(i, target, rate)` with dv/dt,
-    /// for fluid particles.
-    pub fn sweep_part<T: Term<P::Extra>>(
-        &mut self,
-        targets: &mut State<P>,
-        part: &T,
-        select: impl Select<Derived<P>, T::Derived>,
-        update: impl Update<P::Extra>,
-    ) {
-        self.data.count(Phase::Forces);
-        let sweep = self.sweep(part, select, true);
-        sweep::run(&sweep, &self.data.neighbours.lists, targets, &by_blocks(update));
+    /// Derives the columns of the particles, and finds out how far they moved since the neighbour lists
+    /// were built.
+    fn fill(&mut self, state: &[Evolved<X>]) -> Result<Extent, Fault> {
+        let data = &mut *self.data;
+        data.enter(Phase::Refresh);
+        let [fluid, walls] = data.counts;
+        let filled = if data.still.is_some() { fluid } else { state.len() };
+        let count = filled.div_ceil(BLOCK);
+        let mut extents = take(&mut data.extents);
+        extents.resize(count + 1, Extent::NIL);
+        extents[count] = data.still.unwrap_or(Extent::NIL);
+        self.equations.derive(data, &state[..filled], &mut extents);
+        // Columns of interface particles, if there are any, are filled by nobody else.
+        if data.extrapolates && fluid + walls == state.len() && data.still.is_none() {
+            data.still = Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
+        }
+        let checked = data.check(state, &extents);
+        data.extents = extents;
+        checked
+    }
+
+    /// Refreshes images, and what wall particles extrapolate, with this share of the walls' own motion.
+    fn refresh_walls(&mut self, state: &[Evolved<X>], motion: f64) {
+        self.equations.fill_images(&self.data.neighbours, 0, motion);
+        if self.data.extrapolates && self.data.counts[1] > 0 {
+            self.extrapolate(state, motion);
+        }
         self.data.enter(Phase::Rest);
     }
 
-    /// Sums the drift: `update(i, target, rate)` with dx/dt, dρ/dt and the terms' own rates.
-    pub fn sweep_drift(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
-        self.data.count(Phase::Drift);
-        self.sweep_both(&self.sweep(&self.terms.1, second(), true), targets, &by_blocks(update));
-    }
-
-    /// Sums forces and drift in one pair sweep: `update(i, target, rate)` with the whole rate.
-    pub fn sweep_all(&mut self, targets: &mut State<P>, update: impl Update<P::Extra>) {
-        self.normalise();
-        self.data.count(Phase::Both);
-        self.sweep_both(&self.sweep(&self.terms, whole(), true), targets, &by_blocks(update));
-    }
-
-    /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
-    /// the state that the columns were refreshed for last. dx/dt is without v.
-    pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
-        let (data, neighbours) = (&self.data, &self.data.neighbours);
-        let own = |(k, c): (usize, &Column<Derived<P>>)| {
-            let Column { position, velocity, common, .. } = *c;
-            let extra = data.state.get(k).map_or(P::Extra::default(), |e| e.extra);
-            let role = data.fixed.get(k).map_or(Role::Fluid, |fixed| fixed.role);
-            Column { position, velocity, common, derived: derived(terms, role, &common, &extra) }
-        };
-        let mut columns: Vec<_> = self.columns.iter().enumerate().map(own).collect();
-        fill_images::<P, T>(neighbours, 0, 1.0, &mut columns);
-        if T::NORMALISES {
-            normalise::<P, T>(&self.kernel, neighbours, &mut columns, &mut Vec::new());
+    /// Gives the columns of wall particles that extrapolate what the fluid before them implies, and
+    /// their images too.
+    fn extrapolate(&mut self, state: &[Evolved<X>], motion: f64) {
+        let Self { data, equations } = self;
+        let own = &state[data.neighbours.wall_lists.of.clone()];
+        let mut implied = take(&mut data.extrapolated);
+        implied.clear();
+        implied.extend_from_slice(own);
+        // Sums are made at the foot of a wall particle, if it has one; its column is derived again below.
+        for (wall, foot) in implied.iter_mut().zip(&data.neighbours.feet) {
+            wall.position += foot;
         }
-        let (kernel, select) = (&self.kernel, whole());
-        let sweep = Sweep { kernel, terms, columns: &columns, select, moving: false };
-        sweep::rates(&sweep, &neighbours.lists)
+        // They read what wall particles have, and their columns hold what was extrapolated last.
+        equations.derive_walls(data, &implied);
+        let update = each(|_, target: &mut Evolved<X>, rate: &Rate<X>| {
+            target.velocity += rate.velocity;
+            target.density = rate.density;
+        });
+        data.sweep_walls(*equations, &mut implied, &update);
+        data.enter(Phase::Refresh);
+        for (wall, own) in implied.iter_mut().zip(own) {
+            wall.position = own.position;
+        }
+        equations.derive_walls(data, &implied);
+        data.extrapolated = implied;
+        equations.fill_images(&data.neighbours, data.counts[0], motion);
+    }
+}
+
+impl<X: Numbers> ParticleData<X> {
+    /// Updates fluid particles by this sweep, and wall particles by that of the walls' own terms, if these
+    /// give rates and not only forces are summed.
+    fn sweep(
+        &mut self,
+        phase: Phase,
+        sweep: &dyn PairSweep<X>,
+        equations: &dyn Equations<X>,
+        targets: &mut [Evolved<X>],
+        update: &BlockUpdate<X>,
+    ) {
+        self.count(phase);
+        sweep::run(sweep, &self.neighbours.lists, targets, update);
+        if phase != Phase::Forces && !self.extrapolates {
+            self.sweep_walls(equations, &mut targets[self.counts[0]..], update);
+        }
+        self.enter(Phase::Rest);
     }
 
-    /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
-    pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
-        sweep::rates(&self.sweep(&self.terms, whole(), false), &self.data.neighbours.lists)
-    }
-
-    /// The same with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
-    /// [`Engine::sweep_drift`].
-    pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
-        let lists = &self.data.neighbours.lists;
-        let forces = sweep::rates(&self.sweep(&self.terms.0, first(), false), lists);
-        let drift = sweep::rates(&self.sweep(&self.terms.1, second(), false), lists);
-        together(forces, drift)
+    fn sweep_walls(
+        &self,
+        equations: &dyn Equations<X>,
+        targets: &mut [Evolved<X>],
+        update: &BlockUpdate<X>,
+    ) {
+        let sweep = equations.wall_sweep(self).filter(|_| self.counts[1] > 0);
+        let Some(sweep) = sweep else { return };
+        self.enter(Phase::Walls);
+        sweep::run(&*sweep, &self.neighbours.wall_lists, targets, update);
     }
 
     /// The rates of wall particles by the terms of the walls, for the state that the columns were
     /// refreshed for last; none where these do not give rates but extrapolate.
-    pub(crate) fn wall_rates(&self) -> Vec<Rate<P::Extra>> {
-        if P::Walls::EXTRAPOLATES {
-            return Vec::new();
-        }
-        sweep::rates(&self.wall_sweep(), &self.data.neighbours.wall_lists)
+    pub(crate) fn wall_rates(&self, equations: &dyn Equations<X>) -> Vec<Rate<X>> {
+        let sweep = equations.wall_sweep(self).filter(|_| !self.extrapolates);
+        sweep.map_or(Vec::new(), |sweep| sweep::rates(&*sweep, &self.neighbours.wall_lists))
     }
 
-    /// Memory held \[bytes\].
-    pub(crate) fn bytes(&self) -> usize {
-        self.data.bytes()
-            + self.columns.capacity() * size_of::<Column<Derived<P>>>()
-            + self.extents.capacity() * size_of::<Extent>()
-            + self.extrapolated.capacity() * size_of::<Evolved<P::Extra>>()
-            + self.inverses.capacity() * size_of::<Rate<Symmetric>>()
+    /// The role and the extra fields of a particle, in the fluid without any of images.
+    fn own(&self, k: usize) -> (Role, X) {
+        let extra = self.state.get(k).map_or(X::default(), |evolved| evolved.extra);
+        (self.fixed.get(k).map_or(Role::Fluid, |fixed| fixed.role), extra)
     }
+}
 
-    /// Tells the forces the inverses of the moments, if they need them.
-    pub(crate) fn normalise(&mut self) {
-        const { assert!(!(P::Forces::NORMALISES && P::Walls::EXTRAPOLATES), "moments of fluid alone") };
-        const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
-        if P::Forces::NORMALISES {
-            self.data.count(Phase::Forces);
-            let Self { kernel, data, columns, inverses, .. } = self;
-            normalise::<P, (P::Forces, P::Drift)>(kernel, &data.neighbours, columns, inverses);
-        }
-    }
+/// Terms and columns of a scene.
+pub(crate) struct Typed<P: Physics> {
+    pub kernel: Smoothing<P::Kernel>,
+    /// Of the forces, and of the drift.
+    pub terms: (P::Forces, P::Drift),
+    wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
+    /// Of the particles, of their images, and the sentinel.
+    pub columns: Vec<Column<Derived<P>>>,
+    /// Inverses of moments: empty where no force needs them.
+    inverses: Vec<Rate<Symmetric>>,
+}
 
+impl<P: Physics> Typed<P> {
     fn sweep<'a, T: Term<P::Extra>>(
         &'a self,
         terms: &'a T,
@@ -214,131 +228,202 @@ impl<P: Physics> Engine<P> {
     ) -> impl PairSweep<P::Extra> {
         Sweep { kernel: &self.kernel, terms, columns: &self.columns, select, moving }
     }
+}
 
-    /// Updates fluid particles by this sweep, and wall particles by that of the walls' own terms, if these
-    /// give rates.
-    fn sweep_both(
-        &self,
-        sweep: &dyn PairSweep<P::Extra>,
+impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for Typed<P> {
+    fn prepare(&mut self, speed: f64) {
+        self.terms.prepare(speed);
+    }
+
+    fn make_room(&mut self, count: usize) -> usize {
+        self.columns.resize(count, Column::sentinel());
+        self.columns[count - 1] = Column::sentinel();
+        size_of_val(&self.columns[..])
+    }
+
+    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [Extent]) {
+        let terms = &self.terms;
+        derive_blocks(&mut self.columns, of, state, extents, &|columns, state, fixed| {
+            derive_all(terms, fixed, state, columns);
+        });
+    }
+
+    fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64) {
+        fill_images(neighbours, first, P::Walls::SLIPS, motion, &mut self.columns);
+    }
+
+    fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]) {
+        let at = of.neighbours.wall_lists.of.clone();
+        derive_all(&self.terms, &of.fixed[at.clone()], walls, &mut self.columns[at]);
+    }
+
+    fn wall_sweep<'a>(&'a self, of: &'a ParticleData<X>) -> Option<Box<dyn PairSweep<X> + 'a>> {
+        if <P::Walls as Walls<X>>::Terms::IS_EMPTY {
+            return None;
+        }
+        let select = at_feet::<X, P::Walls, _>(of.counts[0], &of.neighbours.feet);
+        Some(Box::new(self.sweep(&self.wall_terms, select, false)))
+    }
+}
+
+/// What terms of walls read of the feet of wall particles, of which this is the number of the first.
+fn at_feet<X, W: Walls<X>, S>(
+    first: usize,
+    feet: &[Vector2<f64>],
+) -> impl Select<S, <W::Terms as Term<X>>::Derived> {
+    // Fluid has numbers below those of walls, and images have numbers above, for which there are no feet.
+    move |k: usize, _: &S| W::foot(feet.get(k.wrapping_sub(first)))
+}
+
+/// Terms and particles of a scene.
+pub struct Engine<P: Physics> {
+    pub(crate) typed: Typed<P>,
+    /// Boxed, for it is moved by code that is compiled for each scheme.
+    pub(crate) data: Box<ParticleData<P::Extra>>,
+}
+
+impl<P: Physics> Engine<P> {
+    /// The engine of particles that have no lists yet.
+    pub(crate) fn new(
+        h: f64,
+        terms: (P::Forces, P::Drift),
+        walls: &P::Walls,
+        mut data: Box<ParticleData<P::Extra>>,
+    ) -> Self {
+        let (kernel, wall_terms) = (Smoothing::new(h), walls.terms());
+        let typed = Typed { kernel, terms, wall_terms, columns: vec![], inverses: vec![] };
+        [data.slips, data.extrapolates] = [P::Walls::SLIPS, P::Walls::EXTRAPOLATES];
+        let mut engine = Self { typed, data };
+        engine.core().build_first_lists();
+        engine
+    }
+
+    pub(crate) fn core(&mut self) -> Core<'_, P::Extra> {
+        Core { data: &mut self.data, equations: &mut self.typed }
+    }
+
+    /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
+    /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
+    /// that is derived from the state.
+    pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
+        self.core().begin(state)
+    }
+
+    /// Refreshes everything that is derived from a state inside a step.
+    pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
+        self.core().refresh(state)
+    }
+
+    /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
+    /// 0 for wall particles: walls are at rest, and images have the differences that follow.
+    pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
+        self.core().fill(state)?;
+        self.core().refresh_walls(state, 0.0);
+        Ok(())
+    }
+
+    /// Sums the forces: `update` with dv/dt, for fluid particles.
+    pub fn sweep_forces(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+        self.normalise();
+        let sweep = self.typed.sweep(&self.typed.terms.0, first(), true);
+        self.data.sweep(Phase::Forces, &sweep, &self.typed, targets, update);
+    }
+
+    /// Sums a part of the forces, whose derived numbers `select` reads: `update` with dv/dt, for fluid
+    /// particles.
+    pub fn sweep_part<T: Term<P::Extra>>(
+        &mut self,
         targets: &mut State<P>,
+        part: &T,
+        select: impl Select<Derived<P>, T::Derived>,
         update: &BlockUpdate<P::Extra>,
     ) {
-        let fluid = self.data.fluid_count();
-        sweep::run(sweep, &self.data.neighbours.lists, targets, update);
-        if self.swept() > fluid {
-            self.sweep_walls(&mut targets[fluid..], update);
-        }
-        self.data.enter(Phase::Rest);
+        let sweep = self.typed.sweep(part, select, true);
+        self.data.sweep(Phase::Forces, &sweep, &self.typed, targets, update);
     }
 
-    /// Number of particles that have rates, the first of a state: those of the fluid, and of walls that do
-    /// not extrapolate.
+    /// Sums the drift: `update` with dx/dt, dρ/dt and the terms' own rates.
+    pub fn sweep_drift(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+        let sweep = self.typed.sweep(&self.typed.terms.1, second(), true);
+        self.data.sweep(Phase::Drift, &sweep, &self.typed, targets, update);
+    }
+
+    /// Sums forces and drift in one pair sweep: `update` with the whole rate.
+    pub fn sweep_all(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+        self.normalise();
+        let sweep = self.typed.sweep(&self.typed.terms, whole(), true);
+        self.data.sweep(Phase::Both, &sweep, &self.typed, targets, update);
+    }
+
+    /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
+    /// the state that the columns were refreshed for last. dx/dt is without v.
+    pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
+        let (kernel, neighbours) = (&self.typed.kernel, &self.data.neighbours);
+        let mut columns = vec![Column::sentinel(); self.typed.columns.len()];
+        for (k, column) in columns.iter_mut().enumerate() {
+            let Column { position, velocity, common, .. } = self.typed.columns[k];
+            let (role, extra) = self.data.own(k);
+            let derived = derived(terms, role, &common, &extra);
+            *column = Column { position, velocity, common, derived };
+        }
+        fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, &mut columns);
+        if T::NORMALISES {
+            normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
+        }
+        let sweep = Sweep { kernel, terms, columns: &columns, select: whole(), moving: false };
+        sweep::rates(&sweep, &neighbours.lists)
+    }
+
+    /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
+    pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
+        let sweep = self.typed.sweep(&self.typed.terms, whole(), false);
+        sweep::rates(&sweep, &self.data.neighbours.lists)
+    }
+
+    /// The same with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
+    /// [`Engine::sweep_drift`].
+    pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
+        let forces = self.typed.sweep(&self.typed.terms.0, first(), false);
+        let drift = self.typed.sweep(&self.typed.terms.1, second(), false);
+        together(&forces, &drift, &self.data.neighbours.lists)
+    }
+
+    /// Number of particles that have rates, the first of a state: those of the fluid, and of walls whose
+    /// terms give rates.
     pub(crate) fn swept(&self) -> usize {
         let [fluid, walls] = self.data.counts;
-        if P::Walls::EXTRAPOLATES { fluid } else { fluid + walls }
+        let only = P::Walls::EXTRAPOLATES || <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
+        if only { fluid } else { fluid + walls }
     }
 
-    fn sweep_walls(&self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
-        self.data.enter(Phase::Walls);
-        sweep::run(&self.wall_sweep(), &self.data.neighbours.wall_lists, targets, update);
+    /// Memory held \[bytes\].
+    pub(crate) fn bytes(&self) -> usize {
+        self.data.bytes()
+            + self.typed.columns.capacity() * size_of::<Column<Derived<P>>>()
+            + self.typed.inverses.capacity() * size_of::<Rate<Symmetric>>()
     }
 
-    fn wall_sweep(&self) -> impl PairSweep<P::Extra> {
-        let (fluid, feet) = (self.data.counts[0], &self.data.neighbours.feet);
-        // Fluid has numbers below those of walls, and images have numbers above, for which there are no feet.
-        let foot = move |k: usize, _: &_| {
-            <P::Walls as Walls<P::Extra>>::foot(feet.get(k.wrapping_sub(fluid)))
-        };
-        self.sweep(&self.wall_terms, foot, false)
-    }
-
-    /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
-    pub(crate) fn build_lists(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
-        self.data.enter(Phase::Search);
-        self.data.neighbours.place(positions);
-        let Self { data, .. } = self;
-        data.neighbours.build(data.counts, P::Walls::EXTRAPOLATES, data.parallel);
-        data.progress.work.list_builds += 1;
-        self.still = None;
-        let columns = self.data.fixed.len() + self.data.neighbours.images.len();
-        self.columns.resize(columns + 1, Column::sentinel());
-        self.columns[columns] = Column::sentinel();
-        self.data.column_bytes = size_of_val(&self.columns[..]);
-    }
-
-    /// Derives the columns of the particles, and finds out how far they moved since the neighbour lists
-    /// were built.
-    fn fill(&mut self, state: &State<P>) -> Result<Extent, Fault> {
-        self.data.enter(Phase::Refresh);
-        let Self { terms, data, columns, extents, still, .. } = self;
-        let [fluid, walls] = data.counts;
-        let filled = if still.is_some() { fluid } else { state.len() };
-        let count = filled.div_ceil(BLOCK);
-        extents.resize(count + 1, Extent::NIL);
-        extents[count] = still.unwrap_or(Extent::NIL);
-        let blocks = columns[..filled].chunks_mut(BLOCK).zip(&mut *extents).enumerate();
-        parallel::for_each(blocks, data.parallel, &|(b, (columns, extent))| {
-            let particles = b * BLOCK..b * BLOCK + columns.len();
-            let (state, fixed) = (&state[particles.clone()], &data.fixed[particles.clone()]);
-            // A copy, which no write can change: what does not depend on the particle leaves the loop.
-            let terms = &terms.clone();
-            for ((column, evolved), fixed) in columns.iter_mut().zip(state).zip(fixed) {
-                derive(terms, fixed, evolved, column);
-            }
-            *extent = data.extent(state, &data.neighbours.built_at[particles]);
-        });
-        // Columns of interface particles, if there are any, are filled by nobody else.
-        if P::Walls::EXTRAPOLATES && fluid + walls == state.len() && still.is_none() {
-            *still = Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
+    /// Tells the forces the inverses of the moments, if they need them.
+    pub(crate) fn normalise(&mut self) {
+        const { assert!(!(P::Forces::NORMALISES && P::Walls::EXTRAPOLATES), "moments of fluid alone") };
+        const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
+        if P::Forces::NORMALISES {
+            self.data.count(Phase::Forces);
+            let Typed { kernel, columns, inverses, .. } = &mut self.typed;
+            let neighbours = &self.data.neighbours;
+            normalise::<P, (P::Forces, P::Drift)>(kernel, neighbours, columns, inverses);
         }
-        data.check(state, extents)
-    }
-
-    /// Refreshes images, and what wall particles extrapolate, with this share of the walls' own motion.
-    fn refresh_walls(&mut self, state: &State<P>, motion: f64) {
-        let neighbours = &self.data.neighbours;
-        fill_images::<P, (P::Forces, P::Drift)>(neighbours, 0, motion, &mut self.columns);
-        if P::Walls::EXTRAPOLATES && self.data.counts[1] > 0 {
-            self.extrapolate(state, motion);
-        }
-        self.data.enter(Phase::Rest);
-    }
-
-    /// Gives the columns of wall particles that extrapolate what the fluid before them implies, and
-    /// their images too.
-    fn extrapolate(&mut self, state: &State<P>, motion: f64) {
-        let (walls, fluid) = (self.data.neighbours.wall_lists.of.clone(), self.data.counts[0]);
-        let mut implied = std::mem::take(&mut self.extrapolated);
-        implied.clear();
-        implied.extend_from_slice(&state[walls]);
-        // The sums read what wall particles have, and their columns hold what was extrapolated last.
-        for (column, own) in self.columns[fluid..].iter_mut().zip(&implied) {
-            (column.velocity, column.common.density) = (own.velocity, own.density);
-        }
-        // Sums are made at the foot of a wall particle, if it has one; its column is derived again below.
-        for (column, foot) in self.columns[fluid..].iter_mut().zip(&self.data.neighbours.feet) {
-            column.position += foot;
-        }
-        let update = |_, target: &mut Evolved<P::Extra>, rate: &Rate<P::Extra>| {
-            target.velocity += rate.velocity;
-            target.density = rate.density;
-        };
-        self.sweep_walls(&mut implied, &by_blocks(update));
-        self.data.enter(Phase::Refresh);
-        let fixed = &self.data.fixed[fluid..];
-        for ((column, implied), fixed) in self.columns[fluid..].iter_mut().zip(&implied).zip(fixed)
-        {
-            derive(&self.terms, fixed, implied, column);
-        }
-        self.extrapolated = implied;
-        let neighbours = &self.data.neighbours;
-        fill_images::<P, (P::Forces, P::Drift)>(neighbours, fluid, motion, &mut self.columns);
     }
 }
 
 /// The rates of velocities by the forces, and the others by the drift.
-fn together<X>(forces: Vec<Rate<X>>, mut drift: Vec<Rate<X>>) -> Vec<Rate<X>> {
-    for (rate, forces) in drift.iter_mut().zip(forces) {
+fn together<X: Numbers>(
+    forces: &dyn PairSweep<X>,
+    drift: &dyn PairSweep<X>,
+    lists: &Lists,
+) -> Vec<Rate<X>> {
+    let mut drift = sweep::rates(drift, lists);
+    for (rate, forces) in drift.iter_mut().zip(sweep::rates(forces, lists)) {
         rate.velocity = forces.velocity;
     }
     drift
@@ -351,18 +436,19 @@ pub(crate) fn places<X>(state: &[Evolved<X>]) -> impl Iterator<Item = Vector2<f6
 
 /// Refills the images among these columns of the particles from `first` on; an image of an image belongs to
 /// both. `motion` is the share of the walls' own motion that they have.
-fn fill_images<P: Physics, T: Term<P::Extra>>(
+fn fill_images<D: Numbers>(
     neighbours: &Neighbours,
     first: usize,
+    slips: bool,
     motion: f64,
-    columns: &mut [Column<T::Derived>],
+    columns: &mut [Column<D>],
 ) {
     let real = columns.len() - 1 - neighbours.images.len();
     for (k, image) in neighbours.images.iter().enumerate() {
         let source = image.source as usize;
         if source >= first {
             let (map, source) = (&neighbours.maps[image.map as usize], &columns[source]);
-            columns[real + k] = map.apply(source, P::Walls::SLIPS, motion);
+            columns[real + k] = map.apply(source, slips, motion);
         }
     }
 }
@@ -384,7 +470,42 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     for (column, inverse) in columns.iter_mut().zip(inverses) {
         T::tell(&mut column.derived, News::Inverse(inverse.extra));
     }
-    fill_images::<P, T>(neighbours, 0, 1.0, columns);
+    fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
+}
+
+/// What derives columns of particles.
+type Derives<'a, X, D> = dyn Fn(&mut [Column<D>], &[Evolved<X>], &[Fixed]) + Sync + 'a;
+
+/// [`Equations::derive`], block by block.
+fn derive_blocks<X: Numbers, D: Numbers>(
+    columns: &mut [Column<D>],
+    of: &ParticleData<X>,
+    state: &[Evolved<X>],
+    extents: &mut [Extent],
+    derive: &Derives<X, D>,
+) {
+    let blocks = columns[..state.len()].chunks_mut(BLOCK).zip(extents).enumerate();
+    parallel::for_each(blocks, of.parallel, &|(b, (columns, extent))| {
+        let particles = b * BLOCK..b * BLOCK + columns.len();
+        let state = &state[particles.clone()];
+        derive(columns, state, &of.fixed[particles.clone()]);
+        *extent = of.extent(state, &of.neighbours.built_at[particles]);
+    });
+}
+
+/// Writes the columns of particles.
+fn derive_all<X, T: Term<X>>(
+    terms: &T,
+    fixed: &[Fixed],
+    state: &[Evolved<X>],
+    columns: &mut [Column<T::Derived>],
+) {
+    // A copy, which no write can change: what does not depend on the particle leaves the loop.
+    let terms = &terms.clone();
+    let (fixed, state) = (&fixed[..columns.len()], &state[..columns.len()]);
+    for k in 0..columns.len() {
+        derive(terms, &fixed[k], &state[k], &mut columns[k]);
+    }
 }
 
 /// Writes the column of a particle, field by field: as a value it is put together on the stack first, from
@@ -414,7 +535,7 @@ fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common, extra: &X) -> T::
 }
 
 /// An update of one particle as that of a block: called once for so many, it costs no time to call.
-fn by_blocks<X>(update: impl Update<X>) -> impl Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync {
+pub fn each<X>(update: impl Update<X>) -> impl Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync {
     move |first, targets, rates| {
         for (k, (target, rate)) in (first..).zip(targets.iter_mut().zip(rates)) {
             update(k, target, rate);

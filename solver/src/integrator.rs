@@ -5,7 +5,7 @@ use std::mem::swap;
 use nalgebra::Vector2;
 
 use crate::{
-    engine::Engine,
+    engine::{Engine, Update, each},
     kernel::Kernel,
     numbers::Numbers,
     particle_data::{Fault, Past},
@@ -68,6 +68,31 @@ pub type PhysicsOf<S> = Compose<
     <S as Physics>::Extra,
 >;
 
+// What becomes of particles: compiled once for all schemes, for no closure below is one of a scheme.
+
+/// All of them advanced by dt.
+fn advance<X: Numbers>(dt: f64) -> impl Update<X> {
+    move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| *evolved = evolved.advanced(dt, rate)
+}
+
+/// Velocities advanced by the first of these times, and places with them by the second.
+fn kick<X: Numbers>(dt: [f64; 2]) -> impl Update<X> {
+    move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| {
+        evolved.kick(dt[0], rate);
+        evolved.position += evolved.velocity * dt[1];
+    }
+}
+
+/// All but velocities advanced by dt, from the middle of this time for the first so many, which move.
+fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Update<X> {
+    move |i, evolved: &mut Evolved<X>, rate: &Rate<X>| {
+        evolved.drift(dt, rate);
+        if i < fluid {
+            evolved.position -= evolved.velocity * (0.5 * dt);
+        }
+    }
+}
+
 /// The predictor-corrector of the paper, taken to be the explicit midpoint rule (inferred; the paper does
 /// not specify it): y' = yⁿ + dt/2 f(yⁿ), yⁿ⁺¹ = yⁿ + dt f(y'). Of second order in dt.
 ///
@@ -85,11 +110,9 @@ impl<P: Physics> Integrator<P> for PredictorCorrector<P::Extra> {
         engine.begin(state)?;
         self.midpoint.clear();
         self.midpoint.extend_from_slice(state);
-        engine.sweep_all(&mut self.midpoint, |_, half, rate| {
-            *half = half.advanced(0.5 * dt, rate);
-        });
+        engine.sweep_all(&mut self.midpoint, &each(advance(0.5 * dt)));
         engine.refresh(&self.midpoint)?;
-        engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(dt, rate));
+        engine.sweep_all(state, &each(advance(dt)));
         Ok(())
     }
 
@@ -134,10 +157,7 @@ impl<P: Physics> Kick<P> for ForwardKick {
     const NAME: &'static str = "leapfrog";
 
     fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
-        engine.sweep_forces(state, |_, evolved, rate| {
-            evolved.kick(dt[0], rate);
-            evolved.position += evolved.velocity * dt[1];
-        });
+        engine.sweep_forces(state, &each(kick(dt)));
         Ok(())
     }
 }
@@ -152,13 +172,8 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         self.kick.kick(engine, state, [lag + half, half])?;
         engine.refresh(state)?;
         // Wall particles have a velocity too, but do not move.
-        let fluid = engine.data.fluid_count();
-        engine.sweep_drift(state, |i, evolved, rate| {
-            evolved.drift(dt, rate);
-            if i < fluid {
-                evolved.position -= evolved.velocity * half;
-            }
-        });
+        let update = drift(dt, engine.data.fluid_count());
+        engine.sweep_drift(state, &each(update));
         engine.data.lag = half;
         Ok(())
     }
@@ -217,17 +232,18 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
 
     fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
         const { assert!(!T::NORMALISES, "moments are not summed for a part") };
-        let Split(_, stiff, limit) = engine.terms.0.clone();
+        let Split(_, stiff, limit) = engine.typed.terms.0.clone();
         let count = stages(dt[0] / limit);
         let s = f64::from(count);
         let length = 4.0 * dt[0] / (s * s + s - 2.0);
         for stage in &mut self.stages {
-            let at_rest = |e: &Evolved<_>| Evolved { velocity: Vector2::zeros(), ..*e };
             stage.clear();
-            stage.extend(state.iter().map(at_rest));
+            stage.extend_from_slice(state);
+            stage.iter_mut().for_each(|evolved| evolved.velocity = Vector2::zeros());
         }
         let [start, older, newer] = &mut self.stages;
-        engine.sweep_forces(start, |_, start, rate| start.velocity = rate.velocity);
+        let take = |_, start: &mut Evolved<_>, rate: &Rate<_>| start.velocity = rate.velocity;
+        engine.sweep_forces(start, &each(take));
         for (newer, start) in newer.iter_mut().zip(&*start) {
             newer.velocity = start.velocity * (weight(1) * length);
         }
@@ -240,7 +256,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
                 let advanced = newer[i].velocity + rate * length;
                 older.velocity = advanced * last - older.velocity * before;
             };
-            engine.sweep_part(older, &stiff, |_, derived| derived.0.1, update);
+            engine.sweep_part(older, &stiff, |_, derived| derived.0.1, &each(update));
             swap(older, newer);
         }
         let fluid = engine.data.fluid_count();
@@ -288,7 +304,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
             engine.data.past.clear();
             engine.data.past.extend(state[..swept].iter().map(start));
         }
-        engine.sweep_all(state, |i, evolved, rate| {
+        let update = |i: usize, evolved: &mut Evolved<_>, rate: &Rate<_>| {
             if i < fluid {
                 // Beyond v, which the sweep has added as it was before.
                 let shift = rate.position - evolved.velocity;
@@ -296,7 +312,8 @@ impl<P: Physics> Integrator<P> for SingleSweep {
                 evolved.position += (evolved.velocity + shift) * dt;
             }
             (evolved.density, evolved.extra) = (rate.density, rate.extra);
-        });
+        };
+        engine.sweep_all(state, &each(update));
         // A rate is that of the middle of the last step; it is extrapolated to the middle of this one.
         let ahead = if known > 0.0 { kick / known } else { 0.0 };
         for (evolved, past) in state.iter_mut().zip(&mut engine.data.past) {
@@ -314,8 +331,8 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         if engine.data.is_staggered() {
             engine.begin(state)?;
             engine.data.hold(state);
-            let lag = engine.data.lag;
-            engine.sweep_forces(state, |_, evolved, rate| evolved.kick(lag, rate));
+            let update = kick([engine.data.lag, 0.0]);
+            engine.sweep_forces(state, &each(update));
         }
         Ok(())
     }
@@ -330,7 +347,7 @@ impl<P: Physics> Integrator<P> for Euler {
 
     fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
-        engine.sweep_all(state, |_, evolved, rate| *evolved = evolved.advanced(dt, rate));
+        engine.sweep_all(state, &each(advance(dt)));
         Ok(())
     }
 }

@@ -10,14 +10,11 @@ pub fn for_each<T>(
     parallel: bool,
     work: &(dyn Fn(T) + Sync),
 ) {
-    if !parallel {
-        return items.for_each(work);
-    }
     let items = Mutex::new(items);
-    on_threads(rayon::current_num_threads(), &|| {
-        loop {
-            let next = items.lock().expect("taking an item does not panic").next();
-            let Some(item) = next else { break };
+    let count = if parallel { rayon::current_num_threads() } else { 1 };
+    on_threads(count, &|| {
+        let next = || items.lock().expect("taking an item does not panic").next();
+        while let Some(item) = next() {
             work(item);
         }
     });

@@ -23,7 +23,7 @@ pub struct Work {
     pub list_builds: u64,
 }
 
-/// A part of a step. Only that one begins is told, to whom [`crate::Stepper::watch`] names: the solver itself
+/// A part of a step. Only that one begins is told, to whom [`ParticleData::watch`] names: the solver itself
 /// reads no clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
@@ -183,6 +183,9 @@ pub struct ParticleData<X = ()> {
     pub(crate) fixed: Vec<Fixed>,
     /// Fluid and wall particles; interface particles follow them.
     pub(crate) counts: [usize; 2],
+    /// Those of the walls, [`crate::Walls::SLIPS`] and [`crate::Walls::EXTRAPOLATES`].
+    pub(crate) slips: bool,
+    pub(crate) extrapolates: bool,
     pub(crate) neighbours: Neighbours,
     pub(crate) limits: Limits,
     /// Half of what particles may come nearer to each other while neighbour lists stay exact \[m\].
@@ -199,9 +202,16 @@ pub struct ParticleData<X = ()> {
     pub(crate) held: Vec<Vector2<f64>>,
     /// In the order of `state`; empty for integrators that keep nothing.
     pub(crate) past: Vec<Past<X>>,
+    /// What was found in each block while filling columns, and of what was not filled.
+    pub(crate) extents: Vec<Extent>,
+    /// What was found of particles that need not be filled again until lists are built: those of walls that
+    /// extrapolate, which do not move.
+    pub(crate) still: Option<Extent>,
+    /// What wall particles extrapolate: empty where they do not.
+    pub(crate) extrapolated: Vec<Evolved<X>>,
     /// Memory of the columns that a pair sweep reads \[bytes\].
     pub column_bytes: usize,
-    /// Who is told of phases.
+    /// Who is told of phases; `None` is nobody.
     pub watch: Option<PhaseWatch>,
 }
 
@@ -365,6 +375,8 @@ impl<X: Numbers> ParticleData<X> {
             + self.order.capacity() * size_of::<u32>()
             + self.held.capacity() * size_of::<Vector2<f64>>()
             + self.past.capacity() * size_of::<Past<X>>()
+            + self.extents.capacity() * size_of::<Extent>()
+            + self.extrapolated.capacity() * size_of::<Evolved<X>>()
             + self.neighbours.bytes()
     }
 

@@ -176,8 +176,11 @@ impl<S: Numbers> Column<S> {
     }
 
     /// The same without derived numbers.
-    pub(crate) fn plain(&self) -> Column {
-        let Self { position, velocity, common, .. } = *self;
-        Column { position, velocity, common, derived: () }
+    pub(crate) fn plain(columns: &[Self]) -> Vec<Column> {
+        let mut plain = Vec::with_capacity(columns.len());
+        for &Self { position, velocity, common, .. } in columns {
+            plain.push(Column { position, velocity, common, derived: () });
+        }
+        plain
     }
 }

@@ -95,13 +95,10 @@ impl<S: Scheme> Scene<S> {
 
     /// Checks the scene, and builds a simulation that is ready to step.
     pub fn build(self) -> Result<Simulation<S>, SceneError> {
-        let Self { setting, forces, drift, walls } = self;
-        let h = setting.h;
-        let data = setting.ready(S::Kernel::SUPPORT, walls.mirrors(), S::Walls::FEET)?;
-        Ok(Simulation {
-            engine: Engine::new(h, (forces, drift), walls.terms(), data),
-            integrator: S::Integrator::default(),
-        })
+        let (h, mirrors) = (self.setting.h, self.walls.mirrors());
+        let data = self.setting.ready(S::Kernel::SUPPORT, mirrors, S::Walls::FEET)?;
+        let engine = Engine::new(h, (self.forces, self.drift), &self.walls, data);
+        Ok(Simulation { engine, integrator: S::Integrator::default() })
     }
 }
 
@@ -149,8 +146,8 @@ impl<X: Numbers> Setting<X> {
         stored.sort_by_key(|(_, particle)| particle.role);
         let mut neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);
         neighbours.feet = feet;
-        let mut data =
-            Box::new(ParticleData { neighbours, limits, parallel, ..Default::default() });
+        let data = ParticleData { neighbours, limits, parallel, ..Default::default() };
+        let mut data = Box::new(data);
         data.put(&stored);
         check_feet(reads, &data.neighbours.feet, data.counts[1])?;
         [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];

@@ -6,7 +6,7 @@ use crate::{
     engine::Engine,
     integrator::{Integrator, PhysicsOf, Scheme, Stepped},
     numbers::Numbers,
-    particle_data::{Checkpoint, Fault, ParticleData, PhaseWatch},
+    particle_data::{Checkpoint, Fault, ParticleData},
     particles::{Column, Rate},
     physics::Derived,
     terms::Term,
@@ -103,8 +103,8 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     }
     /// Memory that the simulation occupies \[bytes\].
     fn bytes(&self) -> usize;
-    /// Tells this watch of the phases of steps from now on; `None` tells nobody.
-    fn watch(&mut self, watch: Option<PhaseWatch>);
+    /// Its particles, and [`ParticleData::watch`], who is told of the phases of steps from now on.
+    fn data_mut(&mut self) -> &mut ParticleData<X>;
     /// Shows the present state to an observer, without a step.
     fn show(&self, observer: &mut dyn Observer<X>);
     /// The energies that its forces derive from, if they do \[J/m\].
@@ -128,8 +128,6 @@ pub struct Potential {
 
 /// A simulation by its time step, for [`advance`].
 pub trait Steps<X>: Stepper<X> {
-    /// Its particles.
-    fn data_mut(&mut self) -> &mut ParticleData<X>;
     /// One time step by dt \[s\].
     fn step(&mut self, dt: f64) -> Stepped;
     /// Brings every quantity to the same time, and refreshes the derived data.
@@ -188,36 +186,31 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         observer.after_step(self);
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
-        self.engine.data.replace(from)?;
-        self.engine.build_lists(&mut from.built_at.iter().copied());
-        self.engine.data.progress = from.progress;
+        self.engine.core().restore(from)?;
         self.integrator = S::Integrator::default();
         Ok(())
     }
     fn weight(&self, r2: f64) -> f64 {
-        self.engine.kernel.w(r2)
+        self.engine.typed.kernel.w(r2)
     }
     fn plain_columns(&self) -> Vec<Column> {
-        self.columns().iter().map(Column::plain).collect()
+        Column::plain(self.columns())
     }
     fn total_rates(&self) -> Vec<Rate<S::Extra>> {
         S::Integrator::rates(&self.engine)
     }
     fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
-        self.engine.wall_rates()
+        self.engine.data.wall_rates(&self.engine.typed)
     }
     fn bytes(&self) -> usize {
         self.engine.bytes() + self.integrator.bytes()
     }
-    fn watch(&mut self, watch: Option<PhaseWatch>) {
-        self.engine.data.watch = watch;
+    fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
+        &mut self.engine.data
     }
 }
 
 impl<S: Scheme> Steps<S::Extra> for Simulation<S> {
-    fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
-        &mut self.engine.data
-    }
     fn step(&mut self, dt: f64) -> Stepped {
         let mut state = take(&mut self.engine.data.state);
         let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
@@ -271,7 +264,7 @@ impl<S: Scheme> Simulation<S> {
     /// The forces and the drift, which may be changed between two calls of [`Stepper::advance`], for
     /// example a body force that drives the flow. They are not part of a checkpoint.
     pub fn terms_mut(&mut self) -> &mut (S::Forces, S::Drift) {
-        &mut self.engine.terms
+        &mut self.engine.typed.terms
     }
 
     /// Rates of each particle of [`ParticleData::fluid`] by the given terms alone, after
@@ -286,7 +279,7 @@ impl<S: Scheme> Simulation<S> {
     /// The derived data of particles and of their images, as pair sweeps read them, after
     /// [`Stepper::advance`].
     pub fn columns(&self) -> &[Column<Derived<S>>] {
-        let columns = &self.engine.columns;
+        let columns = &self.engine.typed.columns;
         &columns[..columns.len() - 1]
     }
 }

@@ -34,8 +34,7 @@ static APART: [f64; 2 * GROUP] = {
 };
 
 /// What becomes of some particles: the number of the first, the particles, and their rates.
-pub(crate) type BlockUpdate<'a, X, T = Evolved<X>> =
-    dyn Fn(usize, &mut [T], &[Rate<X>]) + Sync + 'a;
+pub type BlockUpdate<'a, X, T = Evolved<X>> = dyn Fn(usize, &mut [T], &[Rate<X>]) + Sync + 'a;
 
 /// Gives the rates of particles.
 pub(crate) trait PairSweep<X>: Sync {

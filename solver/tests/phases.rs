@@ -38,9 +38,10 @@ fn phases<W: Walls<()>, I: Integrator<Method<W, ()>>>(
 ) -> Vec<Phase> {
     let told: Arc<Mutex<Vec<Phase>>> = Arc::default();
     let log = Arc::clone(&told);
-    simulation.watch(Some(Box::new(move |phase| log.lock().expect("one thread").push(phase))));
+    let push = move |phase| log.lock().expect("one thread").push(phase);
+    simulation.data_mut().watch = Some(Box::new(push));
     assert_eq!(simulation.advance(1e-3, 1e-3, &mut ()), Outcome::Reached);
-    simulation.watch(None);
+    simulation.data_mut().watch = None;
     assert_eq!(simulation.advance(2e-3, 1e-3, &mut ()), Outcome::Reached);
     let mut phases = told.lock().expect("one thread").clone();
     phases.dedup();

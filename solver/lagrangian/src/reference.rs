@@ -79,6 +79,17 @@ pub struct Reference {
     fours: Vec<Four>,
 }
 
+fn determinant(m: &Matrix2<f64>) -> f64 {
+    m.m11 * m.m22 - m.m21 * m.m12
+}
+
+/// The inverse of two by two numbers; that of nalgebra is compiled with what inverts any size.
+pub fn inverse(m: &Matrix2<f64>) -> Option<Matrix2<f64>> {
+    let determinant = determinant(m);
+    let inverse = || Matrix2::new(m.m22, -m.m12, -m.m21, m.m11).map(|x| x / determinant);
+    (determinant != 0.0).then(inverse)
+}
+
 impl Reference {
     /// The reference of these particles, whose lists reach at least the support of the kernel. Particles of
     /// different bodies are no neighbours.
@@ -139,8 +150,8 @@ impl Reference {
             self.fours.push(four);
         }
         self.starts.push(self.fours.len() as u32);
-        let determinant = moments.determinant() / (volume * volume);
-        let inverse = moments.try_inverse().filter(|_| determinant > SINGULAR);
+        let determinant = determinant(&moments) / (volume * volume);
+        let inverse = inverse(&moments).filter(|_| determinant > SINGULAR);
         self.inverse.extend(inverse);
         let quantity = "determinant of the moments of its neighbourhood";
         let allowed = format!("above {SINGULAR}: neighbours on both axes within the support");
@@ -150,7 +161,7 @@ impl Reference {
     /// Σ V F X² of each particle, the mean of both axes.
     fn factors(&self) -> impl Iterator<Item = f64> {
         let of = |(inverse, volume): (&Matrix2<f64>, &f64)| {
-            0.5 * inverse.trace() / inverse.determinant() / volume
+            0.5 * inverse.trace() / determinant(inverse) / volume
         };
         self.inverse.iter().zip(&self.volumes).map(of)
     }

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use solver::{
     Checkpoint, Domain, Kernel, Leapfrog, Limits, Observer, Outcome, Particle, ParticleData, Phase,
-    PhaseWatch, Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
+    Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
     particles::{Column, Common},
     scene::{Part, require},
@@ -122,9 +122,6 @@ impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
 }
 
 impl<K: Kernel, L: Law, C: Load> Steps<Symmetric> for Solid<K, L, C> {
-    fn data_mut(&mut self) -> &mut ParticleData<Symmetric> {
-        &mut self.data
-    }
     fn step(&mut self, dt: f64) -> Stepped {
         let half = 0.5 * dt;
         for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
@@ -180,8 +177,8 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     fn bytes(&self) -> usize {
         self.data.bytes() + self.body.bytes() + size_of_val(&self.accelerations[..])
     }
-    fn watch(&mut self, watch: Option<PhaseWatch>) {
-        self.data.watch = watch;
+    fn data_mut(&mut self) -> &mut ParticleData<Symmetric> {
+        &mut self.data
     }
     fn potential(&self) -> Option<Potential> {
         let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };

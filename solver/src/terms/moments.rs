@@ -2,6 +2,8 @@
 //! field f is ∇f = M⁻¹ Σⱼ Vⱼ (fᵢ − fⱼ) F rᵢⱼ with the moments M = Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ of the particle's own
 //! neighbours, the unit matrix in the continuum (Bonet & Lok 1999).
 
+use nalgebra::Matrix3;
+
 use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Symmetric, Term, Vector2};
 
 /// Least determinant of the moments: 1 inside a body of particles, 0 on a line.
@@ -22,6 +24,20 @@ pub fn inverse(moments: Symmetric) -> Option<Symmetric> {
     let determinant = xx * yy - xy * xy;
     let inverse = || Symmetric::new(yy / determinant, xx / determinant, -xy / determinant);
     (determinant > SINGULAR).then(inverse)
+}
+
+/// Determinant and inverse of three by three numbers, for each size has a function of its own: that of nalgebra
+/// is compiled with what inverts any size.
+#[inline]
+pub fn inverse_of_three(m: &Matrix3<f64>) -> (f64, Matrix3<f64>) {
+    let [[a, d, g], [b, e, h], [c, f, i]] = m.data.0;
+    let adjugate = [
+        [e * i - h * f, g * f - d * i, d * h - g * e],
+        [c * h - i * b, a * i - g * c, b * g - h * a],
+        [b * f - e * c, c * d - f * a, a * e - d * b],
+    ];
+    let determinant = a * adjugate[0][0] + b * adjugate[0][1] + c * adjugate[0][2];
+    (determinant, Matrix3::from(adjugate).map(|x| x / determinant))
 }
 
 /// M⁻¹ in the place of the rate of extra fields, 0 where there are too few neighbours: what

@@ -2,7 +2,7 @@
 //! from the fluid (Adami, Hu & Adams 2012).
 
 use lanes::Lane;
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Matrix3, Vector2};
 
 use super::Walls;
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     kernel::Kernel,
     numbers::{In, Numbers, Symmetric},
     particles::{Common, Rate},
-    terms::{Pair, Term},
+    terms::{Pair, Term, moments::inverse_of_three},
 };
 
 /// Walls represented by layers of boundary particles, [`crate::Role::Wall`], behind the surface, the first
@@ -144,14 +144,12 @@ impl WallVelocity for CurvedNoSlip {
         let Symmetric { xx, yy, xy } = kk;
         let moments = Matrix3::new(xx, xy, k3.x, xy, yy, k3.y, k3.x, k3.y, m33);
         // The field at η = −1, ξ = 0; the sums have the opposite sign.
-        let inverse = (moments.determinant() > SINGULAR * xx * yy * m33)
-            .then(|| moments.try_inverse())
-            .flatten();
-        match inverse.map(|inverse| inverse * Vector3::new(1.0, -0.5, 0.0)) {
-            Some(weights) => a * weights.x + b * weights.y + c * weights.z,
-            None if xx > 0.0 => a / xx,
-            None => Vector2::zeros(),
+        let (determinant, inverse) = inverse_of_three(&moments);
+        let weight = |k| inverse[(k, 0)] - 0.5 * inverse[(k, 1)];
+        if determinant > SINGULAR * xx * yy * m33 {
+            return a * weight(0) + b * weight(1) + c * weight(2);
         }
+        if xx > 0.0 { a / xx } else { Vector2::zeros() }
     }
 }
 

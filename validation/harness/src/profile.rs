@@ -102,7 +102,8 @@ impl Profiler {
         let (part, since) = (AtomicUsize::new(PHASES.len() + observers.len()), AtomicU64::new(0));
         let clock = Arc::new(Clock { start: Instant::now(), part, since, parts });
         let watch = Arc::clone(&clock);
-        simulation.watch(Some(Box::new(move |phase| watch.enter(phase as usize))));
+        let enter = move |phase| watch.enter(phase as usize);
+        simulation.data_mut().watch = Some(Box::new(enter));
         let work = simulation.work();
         let before = [work.steps, work.list_builds];
         Self { clock, observers, earlier, lists: Lists::default(), sampled: 0, before }

@@ -7,8 +7,10 @@ use solver::{lane::Lane, particles::Common, terms::Pair, *};
 
 use crate::{Method, methods, stepped};
 
-/// Forces of a channel flow: pressure, viscosity, and the driving force `B`, `()` for Couette flow.
+/// Forces of a flow that the force `B` drives: pressure, viscosity, and this force.
 pub type Fluid<B, R = ()> = (Pressure<Tait, R>, Viscosity, B);
+/// Forces of a flow that no force drives.
+pub type Pairs = (Pressure<Tait>, Viscosity);
 /// What stabilises the modern variants.
 pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
 /// The same with a continuity that is exact for linear fields.
@@ -17,11 +19,9 @@ pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
 pub type Seed<F, D, W = Ghosts> = Compose<CubicSpline, F, D, W, PredictorCorrector>;
 /// Quintic spline and, as a rule, leapfrog.
 pub type Modern<F, D, W = Ghosts, I = Leapfrog> = Compose<QuinticSpline, F, D, W, I>;
-/// Quintic spline, leapfrog and super-time-stepping of viscosity.
-pub type Stiff<B> =
-    Modern<Split<(Pressure<Tait>, B), Viscosity>, Stabilised, Ghosts, Leapfrog<SuperSteps>>;
+/// Quintic spline, leapfrog and super-time-stepping of viscosity beside the forces `E`.
+pub type Stiff<E> = Modern<Split<E, Viscosity>, Stabilised, Ghosts, Leapfrog<SuperSteps>>;
 
-type Pairs = (Pressure<Tait>, Viscosity);
 type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);
 /// Wall particles have minus the mean velocity of the fluid in reach.
@@ -51,24 +51,25 @@ pub struct OfChannels {
     pub stiff: Method,
 }
 
-fn of_channels<B: FromMedium + Term<()>>() -> OfChannels {
+/// With the forces `F`, which with stiff viscosity are `E` and this.
+fn of_channels<F: FromMedium + Term<()>, E: FromMedium + Term<()>>() -> OfChannels {
     OfChannels {
-        seed: Method::of::<Seed<Fluid<B>, Continuity>>(),
-        interface_wall: Method::of::<Seed<Fluid<B>, Continuity, InterfaceWall>>(),
-        wendland: Method::of::<Compose<WendlandC2, Fluid<B>, Continuity, Ghosts, Leapfrog>>(),
-        plain: Method::of::<Modern<Fluid<B>, Continuity>>(),
-        extrapolating: Method::of::<Modern<Fluid<B>, Continuity, Mean>>(),
-        modern: Method::of::<Modern<Fluid<B>, Stabilised>>(),
-        single_sweep: Method::of::<Modern<Fluid<B>, Stabilised, Ghosts, SingleSweep>>(),
-        stiff: Method::of::<Stiff<B>>(),
+        seed: Method::of::<Seed<F, Continuity>>(),
+        interface_wall: Method::of::<Seed<F, Continuity, InterfaceWall>>(),
+        wendland: Method::of::<Compose<WendlandC2, F, Continuity, Ghosts, Leapfrog>>(),
+        plain: Method::of::<Modern<F, Continuity>>(),
+        extrapolating: Method::of::<Modern<F, Continuity, Mean>>(),
+        modern: Method::of::<Modern<F, Stabilised>>(),
+        single_sweep: Method::of::<Modern<F, Stabilised, Ghosts, SingleSweep>>(),
+        stiff: Method::of::<Stiff<E>>(),
     }
 }
 
 methods! { of_channels => OfChannels:
     /// Those of a flow that a plate drives.
-    couette: ();
+    couette: Pairs, Pressure<Tait>;
     /// Those of a flow that a body force drives.
-    poiseuille: BodyForce;
+    poiseuille: Fluid<BodyForce>, (Pressure<Tait>, BodyForce);
 }
 methods! { stepped => Method:
     /// The seed's with artificial stress.

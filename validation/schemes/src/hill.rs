@@ -4,7 +4,7 @@ use harness::method::{self, Standard};
 use nalgebra::Vector2;
 use solver::*;
 
-use crate::flow::{ConsistentDrift, Mean, Modern, Stabilised};
+use crate::flow::{ConsistentDrift, Fluid, Mean, Modern, Stabilised};
 use crate::{Method, methods};
 
 /// A simulation with a body force that can be set.
@@ -13,23 +13,38 @@ pub trait Driving: Stepper<()> {
     fn drive(&mut self, force: f64);
 }
 
-impl<S: Scheme<Extra = (), Forces = (A, B, BodyForce, C)>, A, B, C> Driving for Simulation<S> {
+/// Forces of which one drives.
+pub trait Driven {
+    /// The one that does.
+    fn driving(&mut self) -> &mut BodyForce;
+}
+
+impl<A, B> Driven for (A, B, BodyForce) {
+    fn driving(&mut self) -> &mut BodyForce {
+        &mut self.2
+    }
+}
+
+impl<A, B, C> Driven for (A, B, BodyForce, C) {
+    fn driving(&mut self) -> &mut BodyForce {
+        &mut self.2
+    }
+}
+
+impl<S: Scheme<Extra = (), Forces: Driven>> Driving for Simulation<S> {
     fn drive(&mut self, force: f64) {
-        self.terms_mut().0.2 = BodyForce(Vector2::new(force, 0.0));
+        *self.terms_mut().0.driving() = BodyForce(Vector2::new(force, 0.0));
     }
 }
 
 /// A method whose force can be set.
 pub type HillMethod = Method<(), dyn Driving>;
 
-fn driven<S: Standard<Extra = ()>>() -> HillMethod
-where
-    Simulation<S>: Driving,
-{
+fn driven<S: Standard<Extra = (), Forces: Driven>>() -> HillMethod {
     Method::with::<S>(|parts| Ok(Box::new(method::scene::<S>(parts).build()?)))
 }
 
-type Pairs = (Pressure<Tait>, Viscosity, BodyForce, ());
+type Pairs = Fluid<BodyForce>;
 type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
 /// Wall particles know how the velocity bends across the wall.

@@ -20,13 +20,13 @@ fn stepped<S: Standard>() -> Method<S::Extra> {
     Method::of::<S>()
 }
 
-/// Functions that give methods, each by this function that is generic over the scheme.
+/// Functions that give methods, each by this function that is generic over what names the scheme.
 macro_rules! methods {
-    ($of:ident => $Method:ty: $($(#[doc = $doc:literal])+ $name:ident: $Scheme:ty;)+) => {$(
+    ($of:ident => $Method:ty: $($(#[doc = $doc:literal])+ $name:ident: $($Scheme:ty),+;)+) => {$(
         $(#[doc = $doc])+
         #[inline(never)] // it would be compiled anew where it is called
         pub fn $name() -> $Method {
-            $of::<$Scheme>()
+            $of::<$($Scheme),+>()
         }
     )+};
 }

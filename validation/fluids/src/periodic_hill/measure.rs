@@ -1,7 +1,7 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
-use solver::{EquationOfState, Particle, Role, Stepper};
+use solver::{EquationOfState, Particle, Role, Stepper, terms::moments::inverse_of_three};
 
 use super::{Setup, reference::KNOWN_SETTINGS};
 use base::functions::hypot;
@@ -109,9 +109,10 @@ impl<'a> Field<'a> {
                 }
             }
         }
-        match moments.try_inverse() {
-            Some(inverse) => sums.map(|sum| inverse.row(0).transpose().dot(&sum)),
-            None => [f64::NAN; N],
+        let (determinant, inverse) = inverse_of_three(&moments);
+        match determinant {
+            0.0 => [f64::NAN; N],
+            _ => sums.map(|sum| inverse.row(0).transpose().dot(&sum)),
         }
     }
 

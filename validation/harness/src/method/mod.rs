@@ -152,6 +152,10 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
 impl<X: Numbers, D: ?Sized> Method<X, D> {
     /// The method of a scheme; `build` is `|parts| Ok(Box::new(scene::<S>(parts).build()?))`.
     pub fn with<S: Standard<Extra = X>>(build: fn(Parts<X>) -> Result<Box<D>, SceneError>) -> Self {
+        let mut uses = Vec::new();
+        S::Forces::uses(&mut uses);
+        S::Drift::uses(&mut uses);
+        uses.extend(S::Walls::USES);
         Self {
             kernel: S::Kernel::NAME,
             integrator: S::Integrator::NAME,
@@ -162,7 +166,7 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,
             limit: None,
-            uses: [&*S::Forces::uses(), &*S::Drift::uses(), S::Walls::USES].concat(),
+            uses,
             build,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
             lattice: SquareLattice::of::<S::Kernel>,

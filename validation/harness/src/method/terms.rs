@@ -15,10 +15,8 @@ use crate::medium::{Knob, Medium};
 pub trait FromMedium: Sized {
     /// Its value.
     fn new(medium: &Medium) -> Self;
-    /// The settings that only some terms read and this one does, including those of the terms inside it.
-    fn uses() -> Vec<Knob> {
-        Vec::new()
-    }
+    /// Adds the settings that only some terms read and this one does, including those of the terms inside it.
+    fn uses(_: &mut Vec<Knob>) {}
 }
 
 /// `Type [generics] (settings that it reads; the terms inside it) = |medium| value`.
@@ -29,9 +27,9 @@ macro_rules! from_medium {
                 let new: fn(&Medium) -> Self = $new;
                 new(medium)
             }
-            fn uses() -> Vec<Knob> {
-                let own = vec![$(Knob::$knob),*];
-                [own $(, $($inner::uses()),+)?].concat()
+            fn uses(knobs: &mut Vec<Knob>) {
+                knobs.extend_from_slice(&[$(Knob::$knob),*]);
+                $($($inner::uses(knobs);)+)?
             }
         }
     )+};

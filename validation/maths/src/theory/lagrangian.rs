@@ -10,7 +10,7 @@
 //! [`fastest_of_block`] finds them by power iteration.
 
 use base::functions::sin;
-use lagrangian::body::hourglass;
+use lagrangian::{body::hourglass, reference::inverse};
 use nalgebra::{Matrix2, Vector2};
 use solver::kernel::{Kernel, Smoothing};
 
@@ -49,7 +49,7 @@ impl Block {
         let moments = |near: &Neighbours| {
             near.iter().fold(Matrix2::zeros(), |sum, (_, x, g)| sum + x * x.transpose() * *g)
         };
-        let inverse = neighbours.iter().map(|near| moments(near).try_inverse().unwrap_or_default());
+        let inverse = neighbours.iter().map(|near| inverse(&moments(near)).unwrap_or_default());
         let factor = SquareLattice::of::<K>(h_over_dx, 0.0).gradient_factor();
         let moduli = [longitudinal - 2.0 * shear, shear, hourglass(shear, HOURGLASS, factor)];
         Self { inverse: inverse.collect(), neighbours, moduli }
