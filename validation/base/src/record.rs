@@ -26,7 +26,7 @@ use thiserror::Error;
 use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::reference::sha256;
-use crate::settings::Settings;
+use crate::settings::{self, Settings};
 use crate::spec::{Measure, RunSpec, is_default};
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
@@ -443,7 +443,7 @@ impl Record {
     /// Its settings with their types; the defaults of the case if they are of another case, which a caller
     /// that asked for a run of its own case does not meet.
     pub fn settings_as<T: Settings>(&self) -> T {
-        serde_json::from_value(self.settings.clone()).unwrap_or_default()
+        settings::of_json(&self.settings).unwrap_or_default()
     }
 
     /// A record of one simulation of this process that is yet to be filled: completed, nothing measured.

@@ -233,6 +233,14 @@ pub struct Ladder {
     pub order: Option<Gate>,
 }
 
+impl Ladder {
+    /// Adds a run before those that are finer; its spacing, and its resolution in words.
+    pub fn add(&mut self, run: &Planned, (spacing, label): (f64, String)) {
+        let place = self.levels.partition_point(|level| level.spacing >= spacing);
+        self.levels.insert(place, Level { run: run.clone(), spacing, label });
+    }
+}
+
 /// A run at a resolution, such as one of a ladder.
 #[derive(Clone)]
 pub struct Level {

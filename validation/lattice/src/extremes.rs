@@ -69,27 +69,12 @@ base::metrics! {
 /// Makes the scene of a variant.
 type Scene = fn(&Method, &ExtremeSettings) -> Parts;
 
-/// A variant that uses some of the settings.
-fn variant(
-    [name, about]: [&'static str; 2],
-    uses: &[&str],
-    adjust: fn(&mut ExtremeSettings),
-    (method, scene): (Method, Scene),
-) -> Composition<ExtremeSettings> {
-    let rules = |_: &ExtremeSettings| Err(RunError::NoRules { case: EXTREMES.name.into() });
-    let fields = ExtremeSettings::FIELDS.iter().map(|field| field.name);
-    let lacks = fields.filter(|name| !uses.contains(name)).collect();
-    let run = move |s: &ExtremeSettings, context: &Context| run((&method, scene), s, context);
-    let (run, rules, variant) = (Box::new(run), Box::new(rules), Variant { name, about });
-    Composition { variant, adjust, run, rules, lacks }
-}
-
 const REST: &str = "rest";
 const PRESSED: &str = "pressed";
 const COINCIDENT: &str = "coincident";
 const BULLET: &str = "bullet";
 
-fn variants() -> Vec<Composition<ExtremeSettings>> {
+fn variants() -> Compositions<ExtremeSettings> {
     const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
     let cubic = schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
@@ -97,32 +82,42 @@ fn variants() -> Vec<Composition<ExtremeSettings>> {
     let pressed = "does it under pressure? Wendland function";
     let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
     let bullet = "does a block that hits another keep the momentum?";
-    vec![
-        variant(
+    let rules = |_: &_, _: &_| Err(RunError::NoRules { case: EXTREMES.name.into() });
+    let all_but = |uses: &[&str]| {
+        let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
+        names.filter(|name| !uses.contains(name)).collect()
+    };
+    Variants::<_, (Method, Scene)>::of(run, rules)
+        .lacking(
             [REST, rest],
-            AT_REST,
-            |s| (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7),
             (cubic(), at_rest),
-        ),
-        variant(
+            |s| (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7),
+            all_but(AT_REST),
+        )
+        .lacking(
             [PRESSED, pressed],
-            AT_REST,
-            |s| (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05),
             (schemes::lattice::wendland(), at_rest),
-        ),
-        variant([COINCIDENT, coincident], &["distance", "steps", "dt"], |_| (), (cubic(), stirred)),
-        variant(
+            |s| (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05),
+            all_but(AT_REST),
+        )
+        .lacking(
+            [COINCIDENT, coincident],
+            (cubic(), stirred),
+            |_| (),
+            all_but(&["distance", "steps", "dt"]),
+        )
+        .lacking(
             [BULLET, bullet],
-            &["speed", "steps", "dt"],
-            |s| (s.steps, s.dt) = (200, 0.3),
             (cubic(), blocks),
-        ),
-    ]
+            |s| (s.steps, s.dt) = (200, 0.3),
+            all_but(&["speed", "steps", "dt"]),
+        )
+        .all
 }
 
 /// One run of any variant.
 fn run(
-    (method, scene): (&Method, Scene),
+    (method, scene): &(Method, Scene),
     s: &ExtremeSettings,
     context: &Context,
 ) -> Result<Record, RunError> {

@@ -95,7 +95,7 @@ fn method(variant: &str) -> Method {
     }
 }
 
-fn variants() -> Vec<Composition<BoxSettings>> {
+fn variants() -> Compositions<BoxSettings> {
     let cubic =
         "what sound and viscosity allow together: the kernel and the viscous term of the seed";
     let midpoint = "what the predictor-corrector allows, which amplifies sound that nothing damps";

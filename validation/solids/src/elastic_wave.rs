@@ -50,7 +50,7 @@ base::metrics! {
          mu^(1/2) across, over rho^(1/2)";
 }
 
-fn variants() -> Vec<Composition<WaveSettings>> {
+fn variants() -> Compositions<WaveSettings> {
     Variants::of(run, |method, settings| Ok(settings.rules(method)))
         .with(
             CubicSpline::NAME,

@@ -100,7 +100,7 @@ const fn error(name: &'static str) -> MetricKey {
 /// The total Lagrangian variant of another law.
 const SAINT_VENANT: &str = "lagrangian-saint-venant";
 
-fn variants() -> Vec<Composition<CantileverSettings>> {
+fn variants() -> Compositions<CantileverSettings> {
     solid::no_variants()
         .with(
             "seed",
@@ -113,14 +113,14 @@ fn variants() -> Vec<Composition<CantileverSettings>> {
             LAGRANGIAN,
             TOTAL,
             total::hencky(),
-            lagrangian::choose,
+            |s| lagrangian::choose(s),
         )
         .with(
             SAINT_VENANT,
             "the same with the stored energy of St. Venant and Kirchhoff, the law of the test CSM3: does the \
              law matter?",
             total::saint_venant_kirchhoff(),
-            lagrangian::choose,
+            |s| lagrangian::choose(s),
         )
         .all
 }

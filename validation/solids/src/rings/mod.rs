@@ -85,7 +85,7 @@ pub const CORRECTED: &str = "corrected";
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
 
-fn variants() -> Vec<Composition<RingSettings>> {
+fn variants() -> Compositions<RingSettings> {
     use schemes::solid::{componentwise, corrected, leapfrog, seed};
     solid::no_variants::<RingSettings>()
         .with(

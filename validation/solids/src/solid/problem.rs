@@ -7,11 +7,11 @@ use super::{Energy, Material, clamp, lagrangian, limits};
 use base::{
     bits::Bits,
     record::{self, Record},
-    settings::Settings,
+    settings::{self, Settings, Values},
 };
 use harness::{
     case::{Rules, RunError, Step},
-    composed::{Composition, Variants},
+    composed::Variants,
     context::Context,
     method::{Medium, Method, Parts},
     outline::Sink,
@@ -108,13 +108,16 @@ pub trait Watch: Observer<Symmetric> + Bits {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
 
+/// Variants of a problem.
+type Alike<P> = Variants<P, Method<Symmetric>>;
+
 /// No variants yet, of a problem that any method runs.
-pub fn no_variants<P: Problem>() -> Variants<P, Method<Symmetric>> {
+pub fn no_variants<P: Problem>() -> Alike<P> {
     Variants::of(run, |method, s| Ok(rules(method, s)))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
-pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composition<P>> {
+pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
     no_variants()
         .with(
             "seed",
@@ -134,9 +137,8 @@ pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composi
             lagrangian::LAGRANGIAN,
             lagrangian::TOTAL,
             schemes::total::hencky(),
-            lagrangian::choose,
+            |s| lagrangian::choose(s),
         )
-        .all
 }
 
 /// Refuses a body of less than two columns of particles.
@@ -152,9 +154,9 @@ pub fn check_length(dx: f64, length: f64) -> Result<(), RunError> {
 }
 
 /// Sets the strengths of terms that a method lacks to 0.
-pub fn leave_out(settings: &mut impl Settings, names: &[&str]) {
+pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
     for name in names {
-        let _is_in_range = settings.set(name, "0");
+        let _is_in_range = settings::set(settings, name, "0");
     }
 }
 
