@@ -488,7 +488,7 @@ impl Record {
     }
 
     /// Takes out every metric that is to go, and states why it is absent.
-    pub fn take_out(&mut self, is_to_go: impl Fn(&str, &Metric) -> bool, reason: &str) {
+    pub fn take_out(&mut self, is_to_go: &dyn Fn(&str, &Metric) -> bool, reason: &str) {
         let taken = self.metrics.extract_if(.., |name, metric| is_to_go(name, metric));
         self.absent.extend(taken.map(|(name, _)| (name, reason.to_string())));
     }

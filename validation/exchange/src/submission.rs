@@ -263,7 +263,7 @@ impl Entry {
             return;
         };
         let why = "it follows from particles, and the submission is a profile or a series";
-        record.take_out(|name, _| !record::is_of(&curve.metrics, name), why);
+        record.take_out(&|name, _| !record::is_of(&curve.metrics, name), why);
         let (begins, columns) = curve.shown;
         record.profiles.retain(|name, _| name.starts_with(begins));
         for profile in record.profiles.values_mut() {
@@ -405,7 +405,7 @@ impl Entry {
         record.run.submission = Some(Box::new(self.submission()));
         record.run.settings = problem.spec.settings.clone();
         let why = "the particles of the submission do not determine it";
-        record.take_out(|_, metric| !metric.value.is_finite(), why);
+        record.take_out(&|_, metric| !metric.value.is_finite(), why);
         suite::leave_out_ours(case, &mut record);
         for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
             *reason = "it needs the sums of this program's own terms".into();

@@ -3,7 +3,7 @@
 //! all of them, so that a change of the machine's speed affects every variant alike. If somebody waits for
 //! the first complete case, one case is made in this way before all others.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,7 +23,7 @@ use crate::{
     case::{self, Case, RunError},
     context::{self, Context},
     detect,
-    runs::{Planned, Tier},
+    runs::{ByKey, Planned, Tier},
     store::{Begun, Store},
 };
 
@@ -114,11 +114,11 @@ pub struct Made {
     pub of_other_sources: usize,
     /// Why the store could not keep some of the records, which are among `records` all the same: what was
     /// computed is not lost with a disk that is full.
-    pub not_kept: BTreeMap<RunKey, FileError>,
+    pub not_kept: ByKey<FileError>,
     /// Why records that the store had could not be read; these runs were made again.
-    pub unsound: BTreeMap<RunKey, FileError>,
+    pub unsound: ByKey<FileError>,
     /// Why runs have no record. None of them costs another its record.
-    pub failed: BTreeMap<RunKey, RunError>,
+    pub failed: ByKey<RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
     /// Why files that say that they are such runs could not be read.
@@ -187,9 +187,14 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
             stored.missing.push(job.clone());
         }
     }
-    let cases: BTreeSet<&str> = jobs.iter().map(|job| job.case.name()).collect();
-    let of_case = |(case, store): (&str, &Store)| store.submissions(case);
-    for read in cases.into_iter().zip(making.store.into_iter().cycle()).flat_map(of_case) {
+    let mut cases: Vec<&str> = Vec::new();
+    for job in jobs {
+        if let Err(place) = cases.binary_search(&job.case.name()) {
+            cases.insert(place, job.case.name());
+        }
+    }
+    let submissions = |case| making.store.map(|store| store.submissions(case)).unwrap_or_default();
+    for read in cases.into_iter().flat_map(submissions) {
         match read {
             Ok(record) => stored.made.submissions.push(record),
             Err(error) => stored.made.unread.push(error),
@@ -225,13 +230,15 @@ pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
 
 /// Of the main cases, which have a card, the one whose runs take the least time.
 fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
-    let mut cases: BTreeMap<&'static str, (&'static dyn Case, f64)> = BTreeMap::new();
-    for job in missing {
-        cases.entry(job.case.name()).or_insert((job.case, 0.0)).1 += job.planned.seconds;
+    let mut cases: Vec<(&'static dyn Case, f64)> = Vec::new();
+    for Job { case, planned } in missing {
+        match cases.binary_search_by(|(other, _)| other.name().cmp(case.name())) {
+            Ok(place) => cases[place].1 += planned.seconds,
+            Err(place) => cases.insert(place, (*case, planned.seconds)),
+        }
     }
-    cases.retain(|_, (case, _)| case.declaration(tier).card.is_some());
-    let least = cases.into_iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
-    least.map(|(name, _)| name)
+    cases.retain(|(case, _)| case.declaration(tier).card.is_some());
+    cases.iter().min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(case, _)| case.name())
 }
 
 /// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine
@@ -276,7 +283,7 @@ struct Run {
 /// How much of a batch is done.
 #[derive(Debug, Default)]
 struct Tally {
-    runs: BTreeMap<RunKey, Run>,
+    runs: ByKey<Run>,
     /// Runs that have a record.
     done: usize,
     /// Name of the last of them.
@@ -291,11 +298,14 @@ impl Tally {
     }
 
     /// The times of all runs, and by case: what is expected is wrong by another factor for each.
-    fn times(&self) -> (Times, BTreeMap<&'static str, Times>) {
-        let (mut all, mut cases) = (Times::default(), BTreeMap::<_, Times>::new());
+    fn times(&self) -> (Times, Vec<(&'static str, Times)>) {
+        let (mut all, mut cases) = (Times::default(), Vec::<(&str, Times)>::new());
         for run in self.runs.values() {
             all += run.times;
-            *cases.entry(run.case).or_default() += run.times;
+            match cases.binary_search_by(|(case, _)| (*case).cmp(run.case)) {
+                Ok(place) => cases[place].1 += run.times,
+                Err(place) => cases.insert(place, (run.case, run.times)),
+            }
         }
         (all, cases)
     }
@@ -310,11 +320,11 @@ impl Tally {
     fn left(&self) -> Option<f64> {
         let (all, cases) = self.times();
         let weight = OF_ALL_CASES * all.expected;
-        let of_case = |times: &Times| {
+        let of_case = |(_, times): &(&str, Times)| {
             let factor = (times.took + weight * all.took / all.done) / (times.done + weight);
             factor * (times.expected - times.done).max(0.0)
         };
-        (self.share() >= FIRST_ESTIMATE).then(|| cases.values().map(of_case).sum())
+        (self.share() >= FIRST_ESTIMATE).then(|| cases.iter().map(of_case).sum())
     }
 
     /// So much of a run is done, after so long; that a run is made again counts no more.
@@ -358,7 +368,7 @@ impl Batch<'_> {
         change(&mut tally);
         if let Some(progress) = self.making.progress {
             let (share, left) = (tally.share(), tally.left());
-            let (runs, all) = (tally.done, tally.runs.len());
+            let (runs, all) = (tally.done, tally.runs.0.len());
             progress(Done { runs, all, share, left, last: &tally.last });
         }
     }
@@ -617,7 +627,7 @@ mod tests {
         let whole = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, whole.replace("1.0", "1e-12")).unwrap();
         let again = made(&jobs, &making);
-        assert_eq!((again.reused, again.unsound.len(), again.records.len()), (1, 1, 2));
+        assert_eq!((again.reused, again.unsound.0.len(), again.records.len()), (1, 1, 2));
         let words = again.unsound.values().next().unwrap().to_string();
         assert!(words.contains("quick-v-") && words.contains("damaged"), "{words}");
         assert_eq!(made(&jobs, &making).reused, 2);
@@ -636,11 +646,12 @@ mod tests {
         let alone = made(&jobs, &Making::new(Tier::Quick, &sources));
         std::panic::set_hook(hook);
         for made in [beside, alone] {
-            let failed: Vec<_> = [1, 3].map(|k| &made.failed[&jobs[k].planned.spec.key()]).into();
+            let failed: Vec<_> =
+                [1, 3].map(|k| made.failed.get(&jobs[k].planned.spec.key()).unwrap()).into();
             assert!(matches!(failed[..], [RunError::Bug, RunError::Reference(_)]), "{failed:?}");
             let refused = &made.records[&jobs[5].planned.spec.key()].status;
             assert!(matches!(refused, Status::Refused { .. }), "{refused:?}");
-            assert_eq!((made.records.len(), made.failed.len()), (4, 2));
+            assert_eq!((made.records.len(), made.failed.0.len()), (4, 2));
         }
     }
 
@@ -759,7 +770,7 @@ mod tests {
         let suite = suite::run(&[&Quick], &making);
         let values = suite.cases[0].runs.all.iter().map(|run| run.record.value(ERROR));
         assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
-        assert_eq!(suite.made.not_kept.len(), 3);
+        assert_eq!(suite.made.not_kept.0.len(), 3);
         for error in suite.made.not_kept.values() {
             let words = error.to_string();
             assert!(words.contains("cannot write") && words.contains("records"), "{words}");
@@ -826,7 +837,7 @@ mod tests {
         let jobs = jobs(suite::plans(&[&Quick], Tier::Quick));
         let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &|_| "abc".into()) };
         let made = make(stored(&jobs, &making), &making);
-        assert_eq!((made.records.len(), made.not_kept.len()), (3, 0));
+        assert_eq!((made.records.len(), made.not_kept.0.len()), (3, 0));
         assert_eq!(Store::all(store.path()).unwrap().len(), 3);
     }
 }

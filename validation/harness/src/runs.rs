@@ -1,7 +1,6 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 pub use base::gate::Judged;
@@ -104,14 +103,58 @@ pub fn by_cause<'a, T>(
     judged: impl Fn(&T) -> &'a Judged,
 ) -> Vec<(&'a Cause, Vec<T>)> {
     static UNSTATED: Cause = Cause::new("No cause is stated.", "Stating one.");
-    let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
-    for one in all.into_iter().filter(|one| judged(one).limitation().is_some()) {
+    let mut causes: Vec<(&Cause, Vec<T>)> = Vec::new();
+    for one in all {
+        if judged(&one).limitation().is_none() {
+            continue;
+        }
         let cause = judged(&one).gate.cause.as_ref().unwrap_or(&UNSTATED);
-        causes.entry(cause).or_default().push(one);
+        match causes.binary_search_by(|(other, _)| other.cmp(&cause)) {
+            Ok(place) => causes[place].1.push(one),
+            Err(place) => causes.insert(place, (cause, vec![one])),
+        }
     }
-    let mut causes: Vec<_> = causes.into_iter().collect();
     causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
     causes
+}
+
+/// What belongs to runs, in the order of their keys.
+#[derive(Debug)]
+pub struct ByKey<T>(pub Vec<(RunKey, T)>);
+
+impl<T> Default for ByKey<T> {
+    fn default() -> Self {
+        Self(Vec::new())
+    }
+}
+
+impl<T> ByKey<T> {
+    fn place(&self, key: &RunKey) -> Result<usize, usize> {
+        self.0.binary_search_by(|(other, _)| other.cmp(key))
+    }
+
+    /// Puts what belongs to a run in place of what did before.
+    pub fn insert(&mut self, key: RunKey, value: T) {
+        match self.place(&key) {
+            Ok(place) => self.0[place].1 = value,
+            Err(place) => self.0.insert(place, (key, value)),
+        }
+    }
+
+    /// What belongs to a run.
+    pub fn get(&self, key: &RunKey) -> Option<&T> {
+        self.place(key).ok().map(|place| &self.0[place].1)
+    }
+
+    /// The same, to be changed.
+    pub fn get_mut(&mut self, key: &RunKey) -> Option<&mut T> {
+        self.place(key).ok().map(|place| &mut self.0[place].1)
+    }
+
+    /// What belongs to all of them.
+    pub fn values(&self) -> impl Iterator<Item = &T> {
+        self.0.iter().map(|(_, value)| value)
+    }
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not
@@ -121,17 +164,19 @@ pub fn by_cause<'a, T>(
 pub struct Runs {
     /// All of them in the order of the plan.
     pub all: Vec<JudgedRun>,
-    by_key: BTreeMap<RunKey, usize>,
+    by_key: ByKey<usize>,
     /// The runs that other codes made.
     pub submissions: Vec<JudgedRun>,
-    unplanned: Mutex<BTreeSet<String>>,
+    unplanned: Mutex<Vec<String>>,
 }
 
 impl Runs {
     /// Runs in the order of the plan.
     pub fn new(all: Vec<JudgedRun>) -> Self {
-        let key = |(k, run): (usize, &JudgedRun)| (run.planned.spec.key(), k);
-        let by_key = all.iter().enumerate().map(key).collect();
+        let mut by_key = ByKey::default();
+        for (k, run) in all.iter().enumerate() {
+            by_key.insert(run.planned.spec.key(), k);
+        }
         Self { all, by_key, ..Self::default() }
     }
 
@@ -141,7 +186,10 @@ impl Runs {
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
             let mut unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
-            unplanned.insert(spec.canonical());
+            let asked = spec.canonical();
+            if let Err(place) = unplanned.binary_search(&asked) {
+                unplanned.insert(place, asked);
+            }
         }
         found
     }
@@ -168,7 +216,7 @@ impl Runs {
 
     /// Runs that were asked for and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
-        self.unplanned.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+        self.unplanned.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 }
 

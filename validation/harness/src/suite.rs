@@ -157,7 +157,7 @@ pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
         let named =
             record.absent.iter_mut().filter(|(name, why)| *why == STEPWISE && is_ours(name));
         named.for_each(|(_, reason)| *reason = why.into());
-        record.take_out(|name, _| is_ours(name), why);
+        record.take_out(&|name, _| is_ours(name), why);
     }
 }
 

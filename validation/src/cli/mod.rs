@@ -217,8 +217,8 @@ fn tell_trouble(made: &Made) {
     tell(&made.unsound.values().map(again).collect::<Vec<_>>());
     let lost = |error: &FileError| format!("a record could not be stored: {error}");
     tell(&made.not_kept.values().map(lost).collect::<Vec<_>>());
-    let failed = |(key, failed): (&RunKey, &RunError)| format!("run {key} has no record: {failed}");
-    tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
+    let failed = |(key, failed): &(RunKey, RunError)| format!("run {key} has no record: {failed}");
+    tell(&made.failed.0.iter().map(failed).collect::<Vec<_>>());
     let unread = |error: &FileError| format!("{error}; the submission does not count");
     tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
 }
@@ -227,7 +227,7 @@ fn tell_trouble(made: &Made) {
 fn trouble(made: &Made) -> Option<Exit> {
     match made.failed.values().any(|failed| matches!(failed, RunError::Bug)) {
         true => Some(Exit::Bug),
-        false => (!made.failed.is_empty() || !made.not_kept.is_empty()).then_some(Exit::Usage),
+        false => (!made.failed.0.is_empty() || !made.not_kept.0.is_empty()).then_some(Exit::Usage),
     }
 }
 
