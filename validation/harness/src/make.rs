@@ -23,7 +23,7 @@ use crate::{
     case::{self, Case, RunError},
     context::{self, Context},
     detect,
-    runs::{ByKey, Planned, Tier},
+    runs::{Planned, Sorted, Tier, entry},
     store::{Begun, Store},
 };
 
@@ -114,11 +114,11 @@ pub struct Made {
     pub of_other_sources: usize,
     /// Why the store could not keep some of the records, which are among `records` all the same: what was
     /// computed is not lost with a disk that is full.
-    pub not_kept: ByKey<FileError>,
+    pub not_kept: Sorted<RunKey, FileError>,
     /// Why records that the store had could not be read; these runs were made again.
-    pub unsound: ByKey<FileError>,
+    pub unsound: Sorted<RunKey, FileError>,
     /// Why runs have no record. None of them costs another its record.
-    pub failed: ByKey<RunError>,
+    pub failed: Sorted<RunKey, RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
     /// Why files that say that they are such runs could not be read.
@@ -172,7 +172,7 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
         };
         let made = &mut stored.made;
         let record = found.unwrap_or_else(|error| {
-            made.unsound.insert(spec.key(), error);
+            entry(&mut made.unsound, spec.key(), || error);
             None
         });
         let sources = (making.sources)(&spec.case);
@@ -187,13 +187,10 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
             stored.missing.push(job.clone());
         }
     }
-    let mut cases: Vec<&str> = Vec::new();
-    for job in jobs {
-        if let Err(place) = cases.binary_search(&job.case.name()) {
-            cases.insert(place, job.case.name());
-        }
-    }
-    let submissions = |case| making.store.map(|store| store.submissions(case)).unwrap_or_default();
+    let mut cases = Vec::new();
+    jobs.iter().for_each(|job| *entry(&mut cases, job.case.name(), || ()) = ());
+    let submissions =
+        |(case, ())| making.store.map(|store| store.submissions(case)).unwrap_or_default();
     for read in cases.into_iter().flat_map(submissions) {
         match read {
             Ok(record) => stored.made.submissions.push(record),
@@ -230,15 +227,13 @@ pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
 
 /// Of the main cases, which have a card, the one whose runs take the least time.
 fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
-    let mut cases: Vec<(&'static dyn Case, f64)> = Vec::new();
-    for Job { case, planned } in missing {
-        match cases.binary_search_by(|(other, _)| other.name().cmp(case.name())) {
-            Ok(place) => cases[place].1 += planned.seconds,
-            Err(place) => cases.insert(place, (*case, planned.seconds)),
-        }
+    let mut cases = Vec::new();
+    for job in missing {
+        entry(&mut cases, job.case.name(), || (job.case, 0.0)).1 += job.planned.seconds;
     }
-    cases.retain(|(case, _)| case.declaration(tier).card.is_some());
-    cases.iter().min_by(|(_, a), (_, b)| a.total_cmp(b)).map(|(case, _)| case.name())
+    cases.retain(|(_, (case, _))| case.declaration(tier).card.is_some());
+    let least = cases.iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
+    least.map(|(name, _)| *name)
 }
 
 /// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine
@@ -283,7 +278,7 @@ struct Run {
 /// How much of a batch is done.
 #[derive(Debug, Default)]
 struct Tally {
-    runs: ByKey<Run>,
+    runs: Sorted<RunKey, Run>,
     /// Runs that have a record.
     done: usize,
     /// Name of the last of them.
@@ -294,18 +289,19 @@ impl Tally {
     /// A run is to be made, which is expected to take so long.
     fn plan(&mut self, run: RunKey, case: &'static str, expected: f64) {
         let times = Times { expected, ..Times::default() };
-        self.runs.insert(run, Run { case, times, has_ended: false });
+        entry(&mut self.runs, run, || Run { case, times, has_ended: false });
+    }
+
+    fn run(&mut self, key: &RunKey) -> Option<&mut Run> {
+        self.runs.iter_mut().find(|(other, _)| other == key).map(|(_, run)| run)
     }
 
     /// The times of all runs, and by case: what is expected is wrong by another factor for each.
-    fn times(&self) -> (Times, Vec<(&'static str, Times)>) {
-        let (mut all, mut cases) = (Times::default(), Vec::<(&str, Times)>::new());
-        for run in self.runs.values() {
+    fn times(&self) -> (Times, Sorted<&'static str, Times>) {
+        let (mut all, mut cases) = (Times::default(), Vec::new());
+        for (_, run) in &self.runs {
             all += run.times;
-            match cases.binary_search_by(|(case, _)| (*case).cmp(run.case)) {
-                Ok(place) => cases[place].1 += run.times,
-                Err(place) => cases.insert(place, (run.case, run.times)),
-            }
+            *entry(&mut cases, run.case, Times::default) += run.times;
         }
         (all, cases)
     }
@@ -329,7 +325,7 @@ impl Tally {
 
     /// So much of a run is done, after so long; that a run is made again counts no more.
     fn reach(&mut self, run: &RunKey, part: f64, took: f64) {
-        if let Some(Run { times, has_ended: false, .. }) = self.runs.get_mut(run) {
+        if let Some(Run { times, has_ended: false, .. }) = self.run(run) {
             *times = Times { done: part.clamp(0.0, 1.0) * times.expected, took, ..*times };
         }
     }
@@ -343,10 +339,10 @@ impl Tally {
 
     /// A run has ended, with or without a record; was it the last one of its case?
     fn end(&mut self, run: &RunKey) -> bool {
-        let Some(run) = self.runs.get_mut(run) else { return false };
+        let Some(run) = self.run(run) else { return false };
         run.has_ended = true;
         let case = run.case;
-        self.runs.values().filter(|run| run.case == case).all(|run| run.has_ended)
+        self.runs.iter().filter(|(_, run)| run.case == case).all(|(_, run)| run.has_ended)
     }
 }
 
@@ -368,7 +364,7 @@ impl Batch<'_> {
         change(&mut tally);
         if let Some(progress) = self.making.progress {
             let (share, left) = (tally.share(), tally.left());
-            let (runs, all) = (tally.done, tally.runs.0.len());
+            let (runs, all) = (tally.done, tally.runs.len());
             progress(Done { runs, all, share, left, last: &tally.last });
         }
     }
@@ -382,7 +378,7 @@ impl Batch<'_> {
         let written = self.making.store.map(|store| store.write(&record));
         let mut made = self.made();
         if let Some(Err(error)) = written {
-            made.not_kept.insert(record.key(), error);
+            entry(&mut made.not_kept, record.key(), || error);
         }
         made.records.insert(record.key(), record);
     }
@@ -442,7 +438,7 @@ impl Batch<'_> {
             }
             Err(failed) => {
                 begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
-                self.made().failed.insert(spec.key(), failed);
+                entry(&mut self.made().failed, spec.key(), || failed);
                 None
             }
         }
@@ -627,8 +623,8 @@ mod tests {
         let whole = std::fs::read_to_string(&path).unwrap();
         std::fs::write(&path, whole.replace("1.0", "1e-12")).unwrap();
         let again = made(&jobs, &making);
-        assert_eq!((again.reused, again.unsound.0.len(), again.records.len()), (1, 1, 2));
-        let words = again.unsound.values().next().unwrap().to_string();
+        assert_eq!((again.reused, again.unsound.len(), again.records.len()), (1, 1, 2));
+        let words = again.unsound[0].1.to_string();
         assert!(words.contains("quick-v-") && words.contains("damaged"), "{words}");
         assert_eq!(made(&jobs, &making).reused, 2);
     }
@@ -646,12 +642,13 @@ mod tests {
         let alone = made(&jobs, &Making::new(Tier::Quick, &sources));
         std::panic::set_hook(hook);
         for made in [beside, alone] {
-            let failed: Vec<_> =
-                [1, 3].map(|k| made.failed.get(&jobs[k].planned.spec.key()).unwrap()).into();
+            let failed: Vec<_> = [1, 3]
+                .map(|k| crate::runs::find(&made.failed, &jobs[k].planned.spec.key()).unwrap())
+                .into();
             assert!(matches!(failed[..], [RunError::Bug, RunError::Reference(_)]), "{failed:?}");
             let refused = &made.records[&jobs[5].planned.spec.key()].status;
             assert!(matches!(refused, Status::Refused { .. }), "{refused:?}");
-            assert_eq!((made.records.len(), made.failed.0.len()), (4, 2));
+            assert_eq!((made.records.len(), made.failed.len()), (4, 2));
         }
     }
 
@@ -770,8 +767,8 @@ mod tests {
         let suite = suite::run(&[&Quick], &making);
         let values = suite.cases[0].runs.all.iter().map(|run| run.record.value(ERROR));
         assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
-        assert_eq!(suite.made.not_kept.0.len(), 3);
-        for error in suite.made.not_kept.values() {
+        assert_eq!(suite.made.not_kept.len(), 3);
+        for (_, error) in &suite.made.not_kept {
             let words = error.to_string();
             assert!(words.contains("cannot write") && words.contains("records"), "{words}");
         }
@@ -837,7 +834,7 @@ mod tests {
         let jobs = jobs(suite::plans(&[&Quick], Tier::Quick));
         let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &|_| "abc".into()) };
         let made = make(stored(&jobs, &making), &making);
-        assert_eq!((made.records.len(), made.not_kept.0.len()), (3, 0));
+        assert_eq!((made.records.len(), made.not_kept.len()), (3, 0));
         assert_eq!(Store::all(store.path()).unwrap().len(), 3);
     }
 }

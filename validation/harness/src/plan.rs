@@ -7,7 +7,7 @@ use base::{
 
 use crate::{
     case::Case,
-    runs::{ByKey, Planned, Tier},
+    runs::{self, Planned, Tier},
 };
 
 /// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that occur
@@ -42,11 +42,10 @@ pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
 /// of them asks for all.
 pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
     let mut merged: Vec<Planned> = Vec::new();
-    let mut places = ByKey::default();
+    let mut places = Vec::new();
     for planned in all {
-        let key = planned.spec.key();
-        let Some(first) = places.get(&key).map(|place: &usize| &mut merged[*place]) else {
-            places.insert(key, merged.len());
+        let place = *runs::entry(&mut places, planned.spec.key(), || merged.len());
+        let Some(first) = merged.get_mut(place) else {
             merged.push(planned);
             continue;
         };

@@ -103,58 +103,31 @@ pub fn by_cause<'a, T>(
     judged: impl Fn(&T) -> &'a Judged,
 ) -> Vec<(&'a Cause, Vec<T>)> {
     static UNSTATED: Cause = Cause::new("No cause is stated.", "Stating one.");
-    let mut causes: Vec<(&Cause, Vec<T>)> = Vec::new();
-    for one in all {
-        if judged(&one).limitation().is_none() {
-            continue;
-        }
+    let mut causes: Sorted<&Cause, Vec<T>> = Vec::new();
+    for one in all.into_iter().filter(|one| judged(one).limitation().is_some()) {
         let cause = judged(&one).gate.cause.as_ref().unwrap_or(&UNSTATED);
-        match causes.binary_search_by(|(other, _)| other.cmp(&cause)) {
-            Ok(place) => causes[place].1.push(one),
-            Err(place) => causes.insert(place, (cause, vec![one])),
-        }
+        entry(&mut causes, cause, Vec::new).push(one);
     }
     causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
     causes
 }
 
-/// What belongs to runs, in the order of their keys.
-#[derive(Debug)]
-pub struct ByKey<T>(pub Vec<(RunKey, T)>);
+/// What belongs to keys, in their order: a short list in place of a tree.
+pub type Sorted<K, V> = Vec<(K, V)>;
 
-impl<T> Default for ByKey<T> {
-    fn default() -> Self {
-        Self(Vec::new())
-    }
+/// What belongs to a key, which is made if there is nothing yet.
+pub fn entry<K: Ord, V>(all: &mut Sorted<K, V>, key: K, make: impl FnOnce() -> V) -> &mut V {
+    let found = all.binary_search_by(|(other, _)| other.cmp(&key));
+    let place = found.unwrap_or_else(|place| {
+        all.insert(place, (key, make()));
+        place
+    });
+    &mut all[place].1
 }
 
-impl<T> ByKey<T> {
-    fn place(&self, key: &RunKey) -> Result<usize, usize> {
-        self.0.binary_search_by(|(other, _)| other.cmp(key))
-    }
-
-    /// Puts what belongs to a run in place of what did before.
-    pub fn insert(&mut self, key: RunKey, value: T) {
-        match self.place(&key) {
-            Ok(place) => self.0[place].1 = value,
-            Err(place) => self.0.insert(place, (key, value)),
-        }
-    }
-
-    /// What belongs to a run.
-    pub fn get(&self, key: &RunKey) -> Option<&T> {
-        self.place(key).ok().map(|place| &self.0[place].1)
-    }
-
-    /// The same, to be changed.
-    pub fn get_mut(&mut self, key: &RunKey) -> Option<&mut T> {
-        self.place(key).ok().map(|place| &mut self.0[place].1)
-    }
-
-    /// What belongs to all of them.
-    pub fn values(&self) -> impl Iterator<Item = &T> {
-        self.0.iter().map(|(_, value)| value)
-    }
+/// What belongs to a key, if there is something.
+pub fn find<'a, K: Ord, V>(all: &'a Sorted<K, V>, key: &K) -> Option<&'a V> {
+    all.binary_search_by(|(other, _)| other.cmp(key)).ok().map(|place| &all[place].1)
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not
@@ -164,32 +137,29 @@ impl<T> ByKey<T> {
 pub struct Runs {
     /// All of them in the order of the plan.
     pub all: Vec<JudgedRun>,
-    by_key: ByKey<usize>,
+    by_key: Sorted<RunKey, usize>,
     /// The runs that other codes made.
     pub submissions: Vec<JudgedRun>,
-    unplanned: Mutex<Vec<String>>,
+    unplanned: Mutex<Sorted<String, ()>>,
 }
 
 impl Runs {
     /// Runs in the order of the plan.
     pub fn new(all: Vec<JudgedRun>) -> Self {
-        let mut by_key = ByKey::default();
+        let mut by_key = Vec::new();
         for (k, run) in all.iter().enumerate() {
-            by_key.insert(run.planned.spec.key(), k);
+            *entry(&mut by_key, run.planned.spec.key(), || k) = k;
         }
         Self { all, by_key, ..Self::default() }
     }
 
     /// The judged run of a spec.
     pub fn judged(&self, spec: &RunSpec) -> Option<&JudgedRun> {
-        let found = self.by_key.get(&spec.key()).map(|k| &self.all[*k]);
+        let found = find(&self.by_key, &spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
             let mut unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
-            let asked = spec.canonical();
-            if let Err(place) = unplanned.binary_search(&asked) {
-                unplanned.insert(place, asked);
-            }
+            entry(&mut unplanned, spec.canonical(), || ());
         }
         found
     }
@@ -216,7 +186,8 @@ impl Runs {
 
     /// Runs that were asked for and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
-        self.unplanned.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        let unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
+        unplanned.iter().map(|(asked, ())| asked.clone()).collect()
     }
 }
 

@@ -95,7 +95,7 @@ pub fn run(
     let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
     let mut made = world.make(&jobs, making, threads, early)?;
     if made.interrupted {
-        let (kept, all) = (made.records.len() - made.not_kept.0.len(), jobs.len());
+        let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
             true => format!(
                 "nothing is judged; runs made again: {kept} of {all}; the other records are those of before"
