@@ -135,18 +135,12 @@ pub trait Values {
 }
 
 /// A settings struct; implemented by [`settings!`](crate::settings!).
-pub trait Settings: Values + Clone + Default + PartialEq + fmt::Debug {
+pub trait Settings: Values + Clone + Default + PartialEq + fmt::Debug + 'static {
     /// All settings in the order of declaration.
     const FIELDS: &'static [Field];
 
     /// The path of the module that declares them, which begins with the name of its crate.
     const MODULE: &'static str;
-}
-
-/// The value of a setting, `None` if there is no such setting.
-pub fn get(settings: &dyn Values, key: &str) -> Option<Value> {
-    let place = settings.fields().iter().position(|field| field.name == key)?;
-    Some(settings.values()[place])
 }
 
 /// Sets one setting from text; on error nothing changes.
@@ -176,20 +170,9 @@ pub fn apply(
     assignments: &[impl AsRef<str>],
 ) -> Result<(), SettingError> {
     let before = settings.values();
-    let applied = assign(settings, assignments.iter().map(AsRef::as_ref));
-    if applied.is_err() {
-        put(settings, &before);
-    }
-    applied
-}
-
-/// Applies assignments up to the first one that is refused.
-fn assign<'a>(
-    settings: &mut dyn Values,
-    assignments: impl Iterator<Item = &'a str>,
-) -> Result<(), SettingError> {
     let mut given: Vec<(&str, &str)> = Vec::new();
-    for text in assignments {
+    let applied = assignments.iter().try_for_each(|assignment| {
+        let text = assignment.as_ref();
         let Some((key, value)) = text.split_once('=') else {
             return Err(SettingError(format!("{text:?} is not of the form key=value")));
         };
@@ -200,8 +183,9 @@ fn assign<'a>(
             return Err(SettingError(format!("{twice}; give one of them")));
         }
         given.push((key, value));
-    }
-    Ok(())
+        Ok(())
+    });
+    applied.inspect_err(|_| put(settings, &before))
 }
 
 /// Settings as one JSON object.

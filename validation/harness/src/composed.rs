@@ -77,7 +77,7 @@ impl<T: Settings, M> Setup for Alike<T, M> {
     }
 }
 
-impl<T: Settings + 'static, M: 'static> Variants<T, M> {
+impl<T: Settings, M: 'static> Variants<T, M> {
     /// An empty list of variants: what runs each method with settings, and what the rules choose from these.
     pub fn of(
         run: impl Fn(&M, &T, &Context) -> Result<Record, RunError> + 'static,
@@ -87,15 +87,15 @@ impl<T: Settings + 'static, M: 'static> Variants<T, M> {
         Self { run: Rc::new(run), rules: Rc::new(rules), all }
     }
 
-    /// Adds a variant that refuses settings: name and description, method, a function that changes the
-    /// default settings, and the names of those that it refuses.
+    /// Adds a variant that refuses settings: name and description, method, the names of those that it
+    /// refuses, and a function that changes the default settings.
     #[must_use]
     pub fn lacking(
         mut self,
         [name, about]: [&'static str; 2],
         method: M,
-        adjust: fn(&mut T),
         lacks: Vec<&'static str>,
+        adjust: fn(&mut T),
     ) -> Self {
         let (run, rules) = (Rc::clone(&self.run), Rc::clone(&self.rules));
         let mut setup = Box::new(Alike { method, settings: T::default(), run, rules });
@@ -105,7 +105,7 @@ impl<T: Settings + 'static, M: 'static> Variants<T, M> {
     }
 }
 
-impl<T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
+impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
     /// Adds a variant: name, description, method, and a function that changes the default settings. It
     /// refuses settings that none of its terms and walls reads.
     #[must_use]
@@ -117,7 +117,7 @@ impl<T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<T, Method<
         adjust: fn(&mut T),
     ) -> Self {
         let lacks = Knob::others(&method.uses, T::FIELDS);
-        self.lacking([name, about], method, adjust, lacks)
+        self.lacking([name, about], method, lacks, adjust)
     }
 }
 
@@ -202,7 +202,7 @@ pub struct Composed<T> {
     pub plan: fn(Tier) -> Vec<Planned>,
 }
 
-impl<T: Settings + 'static> Composed<T> {
+impl<T: Settings> Composed<T> {
     /// The run of a variant with its default settings, changed by `set`. A name that no variant has, or a
     /// value out of range, makes a run that is refused, with the reason in its record.
     pub fn spec(&self, variant: &str, set: impl FnOnce(&mut T)) -> RunSpec {
@@ -255,7 +255,7 @@ impl<T: Settings + 'static> Composed<T> {
     }
 }
 
-impl<T: Settings + 'static> Case for Composed<T> {
+impl<T: Settings> Case for Composed<T> {
     fn name(&self) -> &'static str {
         self.name
     }

@@ -1,6 +1,6 @@
 //! The parameters from which terms and walls are constructed.
 
-use base::settings::{self, Field, Value, Values};
+use base::settings::{Field, Value, Values};
 use maths::theory::time_step;
 use nalgebra::Vector2;
 use solver::Tait;
@@ -52,10 +52,11 @@ impl Medium {
     /// With the values that settings have by the names of [`Knob`]s.
     #[must_use]
     pub fn set_by(mut self, settings: &dyn Values) -> Self {
-        for (_, name, set) in Knob::ALL {
-            match settings::get(settings, name) {
-                Some(Value::Real(value)) => set(&mut self, value),
-                Some(Value::Count(value)) => set(&mut self, value as f64),
+        for (field, value) in settings.fields().iter().zip(settings.values()) {
+            let knob = Knob::ALL.into_iter().find(|(_, name, _)| *name == field.name);
+            match (knob, value) {
+                (Some((.., set)), Value::Real(value)) => set(&mut self, value),
+                (Some((.., set)), Value::Count(value)) => set(&mut self, value as f64),
                 _ => {}
             }
         }

@@ -47,7 +47,7 @@ pub struct Table<T: 'static, G> {
     pub rows: Vec<Row<T, G>>,
 }
 
-impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
+impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
     /// No runs yet.
     pub fn new(case: &'static Composed<T>, tier: Tier) -> Self {
         Self { case, tier, rows: Vec::new() }

@@ -76,6 +76,8 @@ const BULLET: &str = "bullet";
 
 fn variants() -> Compositions<ExtremeSettings> {
     const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
+    const SHORT: &[&str] = &["distance", "steps", "dt"];
+    const FAST: &[&str] = &["speed", "steps", "dt"];
     let cubic = schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
     // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
@@ -87,31 +89,18 @@ fn variants() -> Compositions<ExtremeSettings> {
         let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
         names.filter(|name| !uses.contains(name)).collect()
     };
+    let wendland = schemes::lattice::wendland();
     Variants::<_, (Method, Scene)>::of(run, rules)
-        .lacking(
-            [REST, rest],
-            (cubic(), at_rest),
-            |s| (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7),
-            all_but(AT_REST),
-        )
-        .lacking(
-            [PRESSED, pressed],
-            (schemes::lattice::wendland(), at_rest),
-            |s| (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05),
-            all_but(AT_REST),
-        )
-        .lacking(
-            [COINCIDENT, coincident],
-            (cubic(), stirred),
-            |_| (),
-            all_but(&["distance", "steps", "dt"]),
-        )
-        .lacking(
-            [BULLET, bullet],
-            (cubic(), blocks),
-            |s| (s.steps, s.dt) = (200, 0.3),
-            all_but(&["speed", "steps", "dt"]),
-        )
+        .lacking([REST, rest], (cubic(), at_rest), all_but(AT_REST), |s| {
+            (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
+        })
+        .lacking([PRESSED, pressed], (wendland, at_rest), all_but(AT_REST), |s| {
+            (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
+        })
+        .lacking([COINCIDENT, coincident], (cubic(), stirred), all_but(SHORT), |_| ())
+        .lacking([BULLET, bullet], (cubic(), blocks), all_but(FAST), |s| {
+            (s.steps, s.dt) = (200, 0.3);
+        })
         .all
 }
 

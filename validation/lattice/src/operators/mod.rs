@@ -139,7 +139,7 @@ fn variants() -> Compositions<OperatorSettings> {
         |(_, method), s| run::rules(method, s, &Context::of_rules()),
     );
     let add = |all: Variants<_, _>, of: &'static Subject| {
-        all.lacking([of.name, of.about()], (of, (of.method)()), of.adjust, Vec::new())
+        all.lacking([of.name, of.about()], (of, (of.method)()), Vec::new(), of.adjust)
     };
     subjects().fold(none, add).all
 }

@@ -3,7 +3,8 @@
 use nalgebra::Vector2;
 use solver::{Domain, Observer, Particle, Role, Stepper, Symmetric};
 
-use super::{Energy, Material, clamp, lagrangian, limits};
+use super::lagrangian::{self, LAGRANGIAN, TOTAL};
+use super::{Energy, Material, clamp, limits};
 use base::{
     bits::Bits,
     record::{self, Record},
@@ -22,7 +23,7 @@ use harness::{
 use maths::theory::time_step::Integrator;
 
 /// Settings by [`solid_settings!`](crate::solid_settings!).
-pub trait SharedSettings: Settings + 'static {
+pub trait SharedSettings: Settings {
     /// The material.
     fn material(&self) -> Material;
     /// h/dx.
@@ -118,27 +119,14 @@ pub fn no_variants<P: Problem>() -> Alike<P> {
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
 pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
+    let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
+                  principal axes, XSPH";
+    let alone = "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what \
+                 to the terms that stabilise?";
     no_variants()
-        .with(
-            "seed",
-            "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
-             principal axes, XSPH",
-            seed,
-            |_| {},
-        )
-        .with(
-            "bare",
-            "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what to \
-             the terms that stabilise?",
-            bare,
-            |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
-        )
-        .with(
-            lagrangian::LAGRANGIAN,
-            lagrangian::TOTAL,
-            schemes::total::hencky(),
-            |s| lagrangian::choose(s),
-        )
+        .with("seed", papers, seed, |_| {})
+        .with("bare", alone, bare, |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]))
+        .with(LAGRANGIAN, TOTAL, schemes::total::hencky(), |s| lagrangian::choose(s))
 }
 
 /// Refuses a body of less than two columns of particles.
