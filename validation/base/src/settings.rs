@@ -112,7 +112,7 @@ pub struct Field {
 /// Why a setting was refused: in words that name it, its value, and what is allowed.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{0}")]
-pub struct SettingError(String);
+pub struct SettingError(pub String);
 
 /// " (did you mean NAME?)" with the name most similar to what was written, or nothing if none is similar.
 pub fn hint(names: &[&str], written: &str) -> String {
@@ -165,14 +165,11 @@ pub fn validate(settings: &dyn Values) -> Result<(), SettingError> {
 }
 
 /// Applies assignments `key=value`, one for a key; on error nothing changes.
-pub fn apply(
-    settings: &mut dyn Values,
-    assignments: &[impl AsRef<str>],
-) -> Result<(), SettingError> {
+pub fn apply(settings: &mut dyn Values, texts: &[impl AsRef<str>]) -> Result<(), SettingError> {
     let before = settings.values();
     let mut given: Vec<(&str, &str)> = Vec::new();
-    let applied = assignments.iter().try_for_each(|assignment| {
-        let text = assignment.as_ref();
+    let applied = texts.iter().try_for_each(|text| {
+        let text = text.as_ref();
         let Some((key, value)) = text.split_once('=') else {
             return Err(SettingError(format!("{text:?} is not of the form key=value")));
         };
@@ -247,26 +244,17 @@ impl Field {
     /// Reads a value. One that is not finite, or outside of the range, is refused.
     fn read(&self, text: &str) -> Result<Value, SettingError> {
         let Self { name, kind, range, limits: [low, high], .. } = self;
-        let is_allowed = |value: &Value| match value {
-            Value::Real(real) => (low..=high).contains(&real),
-            Value::Count(count) => (low..=high).contains(&&(*count as f64)),
-            Value::Flag(_) | Value::Auto => true,
+        let is_allowed = |number: f64| (*low..=*high).contains(&number);
+        let real = || text.parse().ok().filter(|real| is_allowed(*real)).map(Value::Real);
+        let value = match kind {
+            Kind::Real => real(),
+            Kind::RealOrAuto if text == "auto" => Some(Value::Auto),
+            Kind::RealOrAuto => real(),
+            Kind::Count => count(text).filter(|of| is_allowed(*of as f64)).map(Value::Count),
+            Kind::Flag => text.parse().ok().map(Value::Flag),
         };
-        let refused =
-            || SettingError(format!("setting {name} is {text:?}; allowed is {kind}, {range}"));
-        kind.read(text).filter(is_allowed).ok_or_else(refused)
-    }
-}
-
-impl Kind {
-    /// Reads the text; knows nothing of the range.
-    fn read(self, text: &str) -> Option<Value> {
-        match self {
-            Self::RealOrAuto if text == "auto" => Some(Value::Auto),
-            Self::Real | Self::RealOrAuto => text.parse().ok().map(Value::Real),
-            Self::Count => count(text).map(Value::Count),
-            Self::Flag => text.parse().ok().map(Value::Flag),
-        }
+        let words = || format!("setting {name} is {text:?}; allowed is {kind}, {range}");
+        value.ok_or_else(|| SettingError(words()))
     }
 }
 

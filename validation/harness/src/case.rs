@@ -132,11 +132,9 @@ pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
         value => value.to_string(),
     };
     let fields = case.fields().iter().map(|field| field.name);
-    fields
-        .filter_map(|name| Some((name, spec.settings.get(name)?)))
-        .filter(|(name, value)| defaults.get(name) != Some(value))
-        .map(|(name, value)| format!("{name}={}", text(value)))
-        .collect()
+    let given = fields.filter_map(|name| Some((name, spec.settings.get(name)?)));
+    let others = given.filter(|(name, value)| defaults.get(name) != Some(value));
+    others.map(|(name, value)| format!("{name}={}", text(value))).collect()
 }
 
 /// The case of that name among these.

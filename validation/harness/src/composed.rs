@@ -6,7 +6,7 @@ use std::{fmt::Display, marker::PhantomData, rc::Rc};
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
-    settings::{self, Field, Settings, Values},
+    settings::{self, Field, SettingError, Settings, Values},
     spec::RunSpec,
 };
 
@@ -140,35 +140,32 @@ impl Composition {
         let mut chosen = Self::named(case, all, &spec.variant)?;
         let settings = chosen.setup.settings();
         let (fields, before) = (settings.fields(), settings.values());
-        settings::read(settings, &spec.settings).map_err(|reason| RunError::Settings {
-            case: case.into(),
-            reason: reason.to_string(),
-        })?;
+        let refused = |SettingError(reason)| RunError::Settings { case: case.into(), reason };
+        settings::read(settings, &spec.settings).map_err(refused)?;
         settings::validate(settings)?;
         let now = settings.values();
         let is_changed = |key: &&&str| {
             let place = fields.iter().position(|field| field.name == **key);
             place.is_some_and(|k| now[k] != before[k])
         };
-        if let Some(key) = chosen.lacks.iter().find(is_changed) {
-            let (key, variant) = (key.to_string(), spec.variant.clone());
-            return Err(RunError::Unused { key, variant });
+        match chosen.lacks.iter().find(is_changed) {
+            Some(key) => Err(chosen.unused(key)),
+            None => Ok(chosen),
         }
-        Ok(chosen)
+    }
+
+    fn unused(&self, key: &str) -> RunError {
+        RunError::Unused { key: key.into(), variant: self.variant.name.into() }
     }
 
     /// Its settings with `key=value` texts applied.
-    fn set(mut self, set: &[String]) -> Result<serde_json::Value, RunError> {
+    fn set(mut self, texts: &[String]) -> Result<serde_json::Value, RunError> {
         let settings = self.setup.settings();
-        settings::apply(settings, set)?;
+        settings::apply(settings, texts)?;
         settings::validate(settings)?;
-        let mut keys =
-            set.iter().filter_map(|text| text.split_once('=')).map(|(key, _)| key.trim());
-        match keys.find(|key| self.lacks.contains(key)) {
-            Some(key) => {
-                let (key, variant) = (key.to_string(), self.variant.name.to_string());
-                Err(RunError::Unused { key, variant })
-            }
+        let mut set = texts.iter().filter_map(|text| text.split_once('='));
+        match set.find(|(key, _)| self.lacks.contains(&key.trim())) {
+            Some((key, _)) => Err(self.unused(key.trim())),
             None => Ok(settings::to_json(settings)),
         }
     }

@@ -623,11 +623,8 @@ impl Declaration {
         }
         let ensembles = self.ensembles.iter().flat_map(|ensembles| &ensembles.of);
         ensembles.flat_map(|ensemble| &ensemble.members).for_each(&mut plain);
-        self.budgets
-            .of
-            .iter()
-            .flat_map(|budget| &budget.changes)
-            .for_each(|change| plain(&change.spec));
+        let changes = self.budgets.of.iter().flat_map(|budget| &budget.changes);
+        changes.for_each(|change| plain(&change.spec));
         self.limits.of.iter().for_each(|limit| plain(&limit.spec));
         let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
         cells.flatten().flatten().for_each(&mut plain);

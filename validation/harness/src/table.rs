@@ -145,22 +145,19 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         size: [f64; 2],
         panels: impl Fn(&Row<T, G>) -> Vec<PicturePanel>,
     ) -> Picture {
-        let mut of_rows = Vec::new();
+        let (mut all, columns) = (Vec::new(), 1);
         for row in &self.rows {
             if row.run.spec.keep.particles {
-                of_rows.extend(panels(row));
+                all.extend(panels(row));
             }
         }
-        let (panels, columns) = (of_rows, 1);
-        Picture { texts, colours, size, panels, columns, shown: |value| value, range: None }
+        Picture { texts, colours, size, panels: all, columns, shown: |value| value, range: None }
     }
 
     /// The plan: every run with its gates.
     pub fn plan(self) -> Vec<Planned> {
         let mut plan = Vec::new();
-        for row in self.rows {
-            plan.push(row.run);
-        }
+        self.rows.into_iter().for_each(|row| plan.push(row.run));
         plan
     }
 }

@@ -12,7 +12,7 @@ use crate::{
     columns::Columns,
     declare::{Blind, Sensitivity, Watched},
     detect::{DETECTED, GATES, UNDETECTED},
-    runs::Runs,
+    runs::{Runs, entry},
     study::Study,
 };
 
@@ -107,7 +107,7 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
 
 /// The gates of the runs that a gross fault fails, those that compare the program with itself not counted.
 fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> usize {
-    let mut failed: Vec<&str> = Vec::new();
+    let mut failed = Vec::new();
     for (healthy, spec) in sensitivity.faulty(of, factor) {
         let Some((record, healthy)) = runs.record(&spec).zip(runs.judged(healthy)) else {
             continue;
@@ -115,11 +115,7 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
         let gates = healthy.planned.gates.iter();
         let outside = gates.filter(|gate| gate.evidence != Evidence::Regression);
         let fails = outside.filter(|gate| gate.judge_record(record).verdict.is_failure());
-        for gate in fails {
-            if !failed.contains(&&*gate.id) {
-                failed.push(&gate.id);
-            }
-        }
+        fails.for_each(|gate| *entry(&mut failed, gate.id.as_str(), || ()) = ());
     }
     failed.len()
 }
