@@ -439,10 +439,8 @@ impl Record {
 
     /// How much was measured of the run: all, unless a metric is absent because it was not asked for.
     pub fn measured(&self) -> Measure {
-        match self.absent.values().any(|reason| reason == NOT_ASKED) {
-            true => Measure::Headline,
-            false => Measure::All,
-        }
+        let is_part = self.absent.values().any(|reason| reason == NOT_ASKED);
+        if is_part { Measure::Headline } else { Measure::All }
     }
 
     /// Its settings with their types; the defaults of the case if they are of another case, which a caller

@@ -216,7 +216,7 @@ impl<T: Settings> Composed<T> {
     /// The settings of a variant before any is set.
     pub fn defaults(&self, variant: &str) -> T {
         let mut settings = T::default();
-        if let Ok(mut found) = self.composition(variant) {
+        if let Ok(mut found) = Composition::named(self.name, (self.variants)().all, variant) {
             settings::put(&mut settings, &found.setup.settings().values());
         }
         settings
@@ -241,14 +241,6 @@ impl<T: Settings> Composed<T> {
     ) -> Gate {
         let metric = String::from(metric.into());
         Gate::new(format!("{}.{run}.{metric}", self.name), metric, bound, evidence, because)
-    }
-
-    fn composition(&self, variant: &str) -> Result<Composition, RunError> {
-        Composition::named(self.name, (self.variants)().all, variant)
-    }
-
-    fn of_run(&self, spec: &RunSpec) -> Result<Composition, RunError> {
-        Composition::of_run(self.name, (self.variants)().all, spec)
     }
 }
 
@@ -282,15 +274,15 @@ impl<T: Settings> Case for Composed<T> {
     }
 
     fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        self.composition(variant)?.set(set)
+        Composition::named(self.name, (self.variants)().all, variant)?.set(set)
     }
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-        self.of_run(spec)?.run(spec, context)
+        Composition::of_run(self.name, (self.variants)().all, spec)?.run(spec, context)
     }
 
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
-        self.of_run(spec)?.setup.rules()
+        Composition::of_run(self.name, (self.variants)().all, spec)?.setup.rules()
     }
 
     fn declaration(&self, tier: Tier) -> Declaration {

@@ -602,11 +602,9 @@ impl CurvePanel {
 impl Declaration {
     /// How much must be measured of a run with these gates.
     pub fn measure_for(&self, gates: &[Gate]) -> Measure {
-        let costly = self.costly.iter().map(|metric| String::from(*metric));
-        match costly.into_iter().any(|metric| gates.iter().any(|gate| gate.metric == metric)) {
-            true => Measure::All,
-            false => Measure::Headline,
-        }
+        let mut costly = self.costly.iter().map(|metric| String::from(*metric));
+        let is_read = costly.any(|metric| gates.iter().any(|gate| gate.metric == metric));
+        if is_read { Measure::All } else { Measure::Headline }
     }
 
     /// Every run that the studies need.
