@@ -284,8 +284,8 @@ pub trait Slot {
     fn put(&mut self, value: Value);
 }
 
-/// Implements [`SettingType`] for types: their kinds, the ends of their ranges, and how they become a value and
-/// are made from one.
+/// Implements [`SettingType`] for types: their kinds, the ends of their ranges, how they become a value, and
+/// how they are made from one.
 macro_rules! setting_types {
     ($($Type:ty: $kind:ident, $Limit:ty, |$to:ident| $value:expr, $($from:pat => $of:expr),+;)+) => {$(
         impl SettingType for $Type {

@@ -49,9 +49,9 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
 };
 
 fn variants() -> Compositions<PlateSettings> {
-    let plain = "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?";
+    let of = "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?";
     solid::variants(schemes::solid::clamped())
-        .with(PLAIN, plain, schemes::solid::clamped_plain(), |s| solid::leave_out(s, &["xsph"]))
+        .with(PLAIN, of, schemes::solid::clamped_plain(), |s| solid::leave_out(s, &["xsph"]))
         .all
 }
 
