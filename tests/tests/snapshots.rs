@@ -14,7 +14,6 @@ use std::{
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{Record, Status},
-    settings::Value as Default,
     spec::{RunSpec, Task},
 };
 use fluids::channel::{Flow, ladder};
@@ -575,14 +574,13 @@ fn settings_are_as_they_were() {
             .iter()
             .map(|v| (v.name.to_string(), case.settings(v.name, &[]).expect("default settings")))
             .collect();
-        let default = |value: Default| serde_json::to_value(value).expect("a value");
         let fields: Map<String, Value> = case
             .fields()
             .iter()
             .map(|f| {
                 let field = json!({
                     "unit": f.unit, "doc": f.doc, "kind": f.kind.to_string(), "range": f.range,
-                    "default": default((f.default)()),
+                    "default": Value::from((f.default)()),
                 });
                 (f.name.to_string(), field)
             })

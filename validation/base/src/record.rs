@@ -26,7 +26,7 @@ use thiserror::Error;
 use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::reference::sha256;
-use crate::settings::Settings;
+use crate::settings::{self, Settings};
 use crate::spec::{Measure, RunSpec, is_default};
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
@@ -357,7 +357,12 @@ pub struct Column {
 impl Profile {
     /// Columns of these names and units from rows.
     pub fn of_rows<const N: usize>(columns: &[(&str, &str); N], rows: &[[f64; N]]) -> Self {
-        let column = |k: usize| rows.iter().map(|row| row[k]).collect();
+        Self::of_numbers(columns, rows.as_flattened())
+    }
+
+    /// The same from the numbers of all rows, one after another.
+    fn of_numbers(columns: &[(&str, &str)], numbers: &[f64]) -> Self {
+        let column = |k: usize| numbers.iter().skip(k).step_by(columns.len()).copied().collect();
         let add = |profile: Self, (k, (name, unit)): (usize, &(&str, &str))| {
             profile.with(name, unit, column(k))
         };
@@ -434,16 +439,14 @@ impl Record {
 
     /// How much was measured of the run: all, unless a metric is absent because it was not asked for.
     pub fn measured(&self) -> Measure {
-        match self.absent.values().any(|reason| reason == NOT_ASKED) {
-            true => Measure::Headline,
-            false => Measure::All,
-        }
+        let is_part = self.absent.values().any(|reason| reason == NOT_ASKED);
+        if is_part { Measure::Headline } else { Measure::All }
     }
 
     /// Its settings with their types; the defaults of the case if they are of another case, which a caller
     /// that asked for a run of its own case does not meet.
     pub fn settings_as<T: Settings>(&self) -> T {
-        serde_json::from_value(self.settings.clone()).unwrap_or_default()
+        settings::of_json(&self.settings).unwrap_or_default()
     }
 
     /// A record of one simulation of this process that is yet to be filled: completed, nothing measured.

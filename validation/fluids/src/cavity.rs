@@ -44,7 +44,7 @@ base::metrics! {
 
 const NAME: &str = "cavity";
 
-fn variants() -> Vec<Composition<Cavity>> {
+fn variants() -> Compositions<Cavity> {
     let seed = "the paper's, with interface and wall particles: are they enough for a moving lid?";
     let modern = "extrapolating walls, density diffusion, shifting: as good as in channels?";
     let carried = "modern with stronger shifting that takes the velocity of the new place";

@@ -45,7 +45,7 @@ const SEED: [&str; 2] = ["seed", "seed-interface"];
 const MODERN: [&str; 2] = ["modern", "modern-interface"];
 const CONSISTENT: [&str; 2] = ["consistent", "consistent-interface"];
 
-fn variants() -> Vec<Composition<ManufacturedSettings>> {
+fn variants() -> Compositions<ManufacturedSettings> {
     let of_seed = "the paper's terms, kernel and predictor-corrector: what order have they?";
     let of_modern = "quintic spline, leapfrog, density diffusion, shifting: what order have they?";
     let of_consistent = "modern with sums that are exact for linear fields: what order have they?";

@@ -147,7 +147,7 @@ fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
     record.profiles.insert("velocity".into(), Profile::of_rows(&columns, &rows));
 }
 
-fn variants() -> Vec<Composition<CylinderSettings>> {
+fn variants() -> Compositions<CylinderSettings> {
     let interface =
         "interface and wall particles (section 4.2 of the paper) on and behind both cylinders";
     let extrapolating =

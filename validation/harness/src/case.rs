@@ -100,12 +100,9 @@ pub fn resolved(case: &dyn Case, spec: RunSpec) -> Result<RunSpec, RunError> {
         (Some(default), Some(number)) => default.as_f64() == Some(number),
         (default, _) => default == Some(value),
     };
-    let text = |value: &Value| match value.as_str() {
-        Some("auto") => "auto".to_string(),
-        _ => value.to_string(),
-    };
     let others = given.iter().filter(|(name, value)| !is_default(name, value));
-    let set: Vec<String> = others.map(|(name, value)| format!("{name}={}", text(value))).collect();
+    let set: Vec<String> =
+        others.map(|(name, value)| format!("{name}={}", settings::text(value))).collect();
     let settings = case.settings(&spec.variant, &set)?;
     if let Task::Bisect(bisect) = &spec.task {
         let is_real = |field: &&Field| matches!(field.kind, Kind::Real | Kind::RealOrAuto);
@@ -135,11 +132,9 @@ pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
         value => value.to_string(),
     };
     let fields = case.fields().iter().map(|field| field.name);
-    fields
-        .filter_map(|name| Some((name, spec.settings.get(name)?)))
-        .filter(|(name, value)| defaults.get(name) != Some(value))
-        .map(|(name, value)| format!("{name}={}", text(value)))
-        .collect()
+    let given = fields.filter_map(|name| Some((name, spec.settings.get(name)?)));
+    let others = given.filter(|(name, value)| defaults.get(name) != Some(value));
+    others.map(|(name, value)| format!("{name}={}", text(value))).collect()
 }
 
 /// The case of that name among these.

@@ -1,12 +1,12 @@
 //! A case that consists of a table of compositions (variants with their methods), a declaration, a plan, and
 //! studies of its own.
 
-use std::{fmt::Display, rc::Rc};
+use std::{fmt::Display, marker::PhantomData, rc::Rc};
 
 use base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
-    settings::{self, Field, Settings},
+    settings::{self, Field, SettingError, Settings, Values},
     spec::RunSpec,
 };
 
@@ -20,24 +20,25 @@ use crate::{
     rules::state_steps,
 };
 
-/// What runs a variant with these settings.
-pub type Run<T> = dyn Fn(&T, &Context) -> Result<Record, RunError>;
+/// A method with settings, whatever their types.
+trait Setup {
+    fn settings(&mut self) -> &mut dyn Values;
+    fn run(&self, context: &Context) -> Result<Record, RunError>;
+    fn rules(&self) -> Result<Rules, RunError>;
+}
 
-/// What states the rules of a variant.
-pub type Ruled<T> = dyn Fn(&T) -> Result<Rules, RunError>;
-
-/// A variant: its name, its settings before `--set`, and its method.
-pub struct Composition<T> {
-    /// Name and description.
-    pub variant: Variant,
-    /// How it changes the default settings.
-    pub adjust: fn(&mut T),
-    /// What runs it.
-    pub run: Box<Run<T>>,
-    /// What states its rules.
-    pub rules: Box<Ruled<T>>,
+/// A variant: its name, its method, and its settings before `--set`.
+pub struct Composition {
+    variant: Variant,
+    setup: Box<dyn Setup>,
     /// Settings that none of its terms and walls reads: the variant refuses them.
-    pub lacks: Vec<&'static str>,
+    lacks: Vec<&'static str>,
+}
+
+/// The variants of a case with these settings.
+pub struct Compositions<T> {
+    all: Vec<Composition>,
+    settings: PhantomData<fn(T)>,
 }
 
 /// What runs any of some methods with settings.
@@ -51,40 +52,132 @@ pub struct Variants<T, M> {
     run: Rc<RunBy<M, T>>,
     rules: Rc<RulesBy<M, T>>,
     /// Those so far.
-    pub all: Vec<Composition<T>>,
+    pub all: Compositions<T>,
 }
 
-impl<T: Settings + 'static, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
-    /// An empty list of variants: what runs each method with settings, and what the rules choose from these.
-    pub fn of(
-        run: impl Fn(&Method<X, D>, &T, &Context) -> Result<Record, RunError> + 'static,
-        rules: impl Fn(&Method<X, D>, &T) -> Result<Rules, RunError> + 'static,
-    ) -> Self {
-        Self { run: Rc::new(run), rules: Rc::new(rules), all: Vec::new() }
+/// One of them.
+struct Alike<T, M> {
+    method: M,
+    settings: T,
+    run: Rc<RunBy<M, T>>,
+    rules: Rc<RulesBy<M, T>>,
+}
+
+impl<T: Settings, M> Setup for Alike<T, M> {
+    fn settings(&mut self) -> &mut dyn Values {
+        &mut self.settings
     }
 
-    /// Adds a variant: name, description, method, and a function that changes the default settings.
+    fn run(&self, context: &Context) -> Result<Record, RunError> {
+        (self.run)(&self.method, &self.settings, context)
+    }
+
+    fn rules(&self) -> Result<Rules, RunError> {
+        (self.rules)(&self.method, &self.settings)
+    }
+}
+
+impl<T: Settings, M: 'static> Variants<T, M> {
+    /// An empty list of variants: what runs each method with settings, and what the rules choose from these.
+    pub fn of(
+        run: impl Fn(&M, &T, &Context) -> Result<Record, RunError> + 'static,
+        rules: impl Fn(&M, &T) -> Result<Rules, RunError> + 'static,
+    ) -> Self {
+        let all = Compositions { all: Vec::new(), settings: PhantomData };
+        Self { run: Rc::new(run), rules: Rc::new(rules), all }
+    }
+
+    /// Adds a variant that refuses settings: name and description, method, the names of those that it
+    /// refuses, and a function that changes the default settings.
+    #[must_use]
+    pub fn lacking(
+        mut self,
+        [name, about]: [&'static str; 2],
+        method: M,
+        lacks: Vec<&'static str>,
+        adjust: fn(&mut T),
+    ) -> Self {
+        let (run, rules) = (Rc::clone(&self.run), Rc::clone(&self.rules));
+        let mut setup = Box::new(Alike { method, settings: T::default(), run, rules });
+        adjust(&mut setup.settings);
+        self.all.all.push(Composition { variant: Variant { name, about }, setup, lacks });
+        self
+    }
+}
+
+impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
+    /// Adds a variant: name, description, method, and a function that changes the default settings. It
+    /// refuses settings that none of its terms and walls reads.
     #[must_use]
     pub fn with(
-        mut self,
+        self,
         name: &'static str,
         about: &'static str,
         method: Method<X, D>,
         adjust: fn(&mut T),
     ) -> Self {
-        let (run, rules) = (Rc::clone(&self.run), Rc::clone(&self.rules));
-        let method = Rc::new(method);
-        let is_setting = |name: &&str| T::FIELDS.iter().any(|field| field.name == *name);
-        let lacks = Knob::others(&method.uses).filter(is_setting).collect();
-        let ruled = Rc::clone(&method);
-        self.all.push(Composition {
-            variant: Variant { name, about },
-            adjust,
-            run: Box::new(move |settings, context| run(&method, settings, context)),
-            rules: Box::new(move |settings| rules(&ruled, settings)),
-            lacks,
-        });
-        self
+        let lacks = Knob::others(&method.uses, T::FIELDS);
+        self.lacking([name, about], method, lacks, adjust)
+    }
+}
+
+impl Composition {
+    fn variants(all: &[Self]) -> Vec<Variant> {
+        all.iter().map(|of| of.variant).collect()
+    }
+
+    /// That of a name among those of a case.
+    fn named(case: &'static str, mut all: Vec<Self>, variant: &str) -> Result<Self, RunError> {
+        let known: Vec<_> = all.iter().map(|of| of.variant.name).collect();
+        match known.iter().position(|name| *name == variant) {
+            Some(place) => Ok(all.swap_remove(place)),
+            None => Err(RunError::Variant { case, name: variant.into(), known }),
+        }
+    }
+
+    /// That of a run of a case, with the settings of the run.
+    fn of_run(case: &'static str, all: Vec<Self>, spec: &RunSpec) -> Result<Self, RunError> {
+        let mut chosen = Self::named(case, all, &spec.variant)?;
+        let settings = chosen.setup.settings();
+        let (fields, before) = (settings.fields(), settings.values());
+        let refused = |SettingError(reason)| RunError::Settings { case: case.into(), reason };
+        settings::read(settings, &spec.settings).map_err(refused)?;
+        settings::validate(settings)?;
+        let now = settings.values();
+        let is_changed = |key: &&&str| {
+            let place = fields.iter().position(|field| field.name == **key);
+            place.is_some_and(|k| now[k] != before[k])
+        };
+        match chosen.lacks.iter().find(is_changed) {
+            Some(key) => Err(chosen.unused(key)),
+            None => Ok(chosen),
+        }
+    }
+
+    fn unused(&self, key: &str) -> RunError {
+        RunError::Unused { key: key.into(), variant: self.variant.name.into() }
+    }
+
+    /// Its settings with `key=value` texts applied.
+    fn set(mut self, texts: &[String]) -> Result<serde_json::Value, RunError> {
+        let settings = self.setup.settings();
+        settings::apply(settings, texts)?;
+        settings::validate(settings)?;
+        let mut set = texts.iter().filter_map(|text| text.split_once('='));
+        match set.find(|(key, _)| self.lacks.contains(&key.trim())) {
+            Some((key, _)) => Err(self.unused(key.trim())),
+            None => Ok(settings::to_json(settings)),
+        }
+    }
+
+    /// Runs it.
+    fn run(mut self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+        // All settings in their usual form, those that the spec leaves out included.
+        let settings = settings::to_json(self.setup.settings());
+        let spec = RunSpec { settings, ..spec.clone() };
+        let mut record = self.setup.run(&Context { spec, ..context.clone() })?;
+        state_steps(&mut record);
+        Ok(record)
     }
 }
 
@@ -99,14 +192,14 @@ pub struct Composed<T> {
     /// The problem in words.
     pub about: &'static str,
     /// The variants.
-    pub variants: fn() -> Vec<Composition<T>>,
+    pub variants: fn() -> Compositions<T>,
     /// The declaration from which the studies common to all cases are made.
     pub declaration: fn(Tier) -> Declaration,
     /// The judged runs beside those of the declaration.
     pub plan: fn(Tier) -> Vec<Planned>,
 }
 
-impl<T: Settings + 'static> Composed<T> {
+impl<T: Settings> Composed<T> {
     /// The run of a variant with its default settings, changed by `set`. A name that no variant has, or a
     /// value out of range, makes a run that is refused, with the reason in its record.
     pub fn spec(&self, variant: &str, set: impl FnOnce(&mut T)) -> RunSpec {
@@ -115,15 +208,23 @@ impl<T: Settings + 'static> Composed<T> {
 
     /// The settings of a variant, changed.
     pub fn chosen(&self, variant: &str, set: impl FnOnce(&mut T)) -> T {
-        let found = self.composition(variant).ok();
-        let mut settings = found.map_or_else(T::default, |(_, defaults)| defaults);
+        let mut settings = self.defaults(variant);
         set(&mut settings);
+        settings
+    }
+
+    /// The settings of a variant before any is set.
+    pub fn defaults(&self, variant: &str) -> T {
+        let mut settings = T::default();
+        if let Ok(mut found) = Composition::named(self.name, (self.variants)().all, variant) {
+            settings::put(&mut settings, &found.setup.settings().values());
+        }
         settings
     }
 
     /// The run of a variant with these settings.
     pub fn spec_of(&self, variant: &str, settings: &T) -> RunSpec {
-        RunSpec::new(self.name, variant, serde_json::to_value(settings).unwrap_or_default())
+        RunSpec::new(self.name, variant, settings::to_json(settings))
     }
 
     /// A gate on a metric of a run, called `case.run.metric`.
@@ -141,36 +242,9 @@ impl<T: Settings + 'static> Composed<T> {
         let metric = String::from(metric.into());
         Gate::new(format!("{}.{run}.{metric}", self.name), metric, bound, evidence, because)
     }
-
-    /// The composition of that name, and its settings before any is set.
-    fn composition(&self, variant: &str) -> Result<(Composition<T>, T), RunError> {
-        let mut all = (self.variants)();
-        let known: Vec<_> = all.iter().map(|of| of.variant.name).collect();
-        let Some(place) = known.iter().position(|name| *name == variant) else {
-            return Err(RunError::Variant { case: self.name, name: variant.into(), known });
-        };
-        let (chosen, mut defaults) = (all.swap_remove(place), T::default());
-        (chosen.adjust)(&mut defaults);
-        Ok((chosen, defaults))
-    }
-
-    /// The composition of a run and its settings.
-    fn resolve(&self, spec: &RunSpec) -> Result<(Composition<T>, T), RunError> {
-        let (chosen, defaults) = self.composition(&spec.variant)?;
-        let settings: T = serde_json::from_value(spec.settings.clone()).map_err(|reason| {
-            RunError::Settings { case: self.name.into(), reason: reason.to_string() }
-        })?;
-        settings.validate()?;
-        let is_changed = |key: &&&str| settings.get(key) != defaults.get(key);
-        if let Some(key) = chosen.lacks.iter().find(is_changed) {
-            let (key, variant) = (key.to_string(), spec.variant.clone());
-            return Err(RunError::Unused { key, variant });
-        }
-        Ok((chosen, settings))
-    }
 }
 
-impl<T: Settings + 'static> Case for Composed<T> {
+impl<T: Settings> Case for Composed<T> {
     fn name(&self) -> &'static str {
         self.name
     }
@@ -192,7 +266,7 @@ impl<T: Settings + 'static> Case for Composed<T> {
     }
 
     fn variants(&self) -> Vec<Variant> {
-        (self.variants)().into_iter().map(|v| v.variant).collect()
+        Composition::variants(&(self.variants)().all)
     }
 
     fn fields(&self) -> &'static [Field] {
@@ -200,30 +274,15 @@ impl<T: Settings + 'static> Case for Composed<T> {
     }
 
     fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {
-        let (chosen, mut settings) = self.composition(variant)?;
-        settings::apply(&mut settings, set)?;
-        settings.validate()?;
-        let mut keys =
-            set.iter().filter_map(|text| text.split_once('=')).map(|(key, _)| key.trim());
-        match keys.find(|key| chosen.lacks.contains(key)) {
-            Some(key) => Err(RunError::Unused { key: key.into(), variant: variant.into() }),
-            None => Ok(serde_json::to_value(settings).unwrap_or_default()),
-        }
+        Composition::named(self.name, (self.variants)().all, variant)?.set(set)
     }
 
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-        let (chosen, settings) = self.resolve(spec)?;
-        // All settings in their usual form, those that the spec leaves out included.
-        let json = serde_json::to_value(&settings).unwrap_or_default();
-        let spec = RunSpec { settings: json, ..spec.clone() };
-        let mut record = (chosen.run)(&settings, &Context { spec, ..context.clone() })?;
-        state_steps(&mut record);
-        Ok(record)
+        Composition::of_run(self.name, (self.variants)().all, spec)?.run(spec, context)
     }
 
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
-        let (chosen, settings) = self.resolve(spec)?;
-        (chosen.rules)(&settings)
+        Composition::of_run(self.name, (self.variants)().all, spec)?.setup.rules()
     }
 
     fn declaration(&self, tier: Tier) -> Declaration {

@@ -233,6 +233,14 @@ pub struct Ladder {
     pub order: Option<Gate>,
 }
 
+impl Ladder {
+    /// Adds a run before those that are finer; its spacing, and its resolution in words.
+    pub fn add(&mut self, run: &Planned, (spacing, label): (f64, String)) {
+        let place = self.levels.partition_point(|level| level.spacing >= spacing);
+        self.levels.insert(place, Level { run: run.clone(), spacing, label });
+    }
+}
+
 /// A run at a resolution, such as one of a ladder.
 #[derive(Clone)]
 pub struct Level {
@@ -594,11 +602,9 @@ impl CurvePanel {
 impl Declaration {
     /// How much must be measured of a run with these gates.
     pub fn measure_for(&self, gates: &[Gate]) -> Measure {
-        let costly = self.costly.iter().map(|metric| String::from(*metric));
-        match costly.into_iter().any(|metric| gates.iter().any(|gate| gate.metric == metric)) {
-            true => Measure::All,
-            false => Measure::Headline,
-        }
+        let mut costly = self.costly.iter().map(|metric| String::from(*metric));
+        let is_read = costly.any(|metric| gates.iter().any(|gate| gate.metric == metric));
+        if is_read { Measure::All } else { Measure::Headline }
     }
 
     /// Every run that the studies need.
@@ -615,11 +621,8 @@ impl Declaration {
         }
         let ensembles = self.ensembles.iter().flat_map(|ensembles| &ensembles.of);
         ensembles.flat_map(|ensemble| &ensemble.members).for_each(&mut plain);
-        self.budgets
-            .of
-            .iter()
-            .flat_map(|budget| &budget.changes)
-            .for_each(|change| plain(&change.spec));
+        let changes = self.budgets.of.iter().flat_map(|budget| &budget.changes);
+        changes.for_each(|change| plain(&change.spec));
         self.limits.of.iter().for_each(|limit| plain(&limit.spec));
         let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
         cells.flatten().flatten().for_each(&mut plain);

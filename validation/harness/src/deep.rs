@@ -2,8 +2,6 @@
 //! cell, and tables of what gates detect over every judged run. It is made for clusters: its runs are
 //! independent of each other, and some may take more than a run may unless that is asked for.
 
-use std::collections::BTreeSet;
-
 use base::functions::powf;
 use base::mutation::Disorder;
 use base::spec::{Keep, RunKey, RunSpec, Task};
@@ -114,10 +112,10 @@ fn setting_of_starts(cell: &[RunSpec]) -> Option<String> {
 fn watch_all(declared: &mut Declaration, case: &dyn Case) {
     let all = [case.plan(Tier::Full), declared.runs()].concat();
     let Some(sensitivity) = &mut declared.sensitivity else { return };
-    let mut known: BTreeSet<RunKey> = sensitivity.runs.iter().map(RunSpec::key).collect();
+    let known: Vec<RunKey> = sensitivity.runs.iter().map(RunSpec::key).collect();
     for Planned { spec, gates, .. } in plan::merged(all) {
         let is_healthy = spec.task == Task::Simulate && spec.mutation.is_none();
-        if is_healthy && !gates.is_empty() && known.insert(spec.key()) {
+        if is_healthy && !gates.is_empty() && !known.contains(&spec.key()) {
             sensitivity.runs.push(spec);
         }
     }

@@ -3,7 +3,7 @@
 //! all of them, so that a change of the machine's speed affects every variant alike. If somebody waits for
 //! the first complete case, one case is made in this way before all others.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -23,7 +23,7 @@ use crate::{
     case::{self, Case, RunError},
     context::{self, Context},
     detect,
-    runs::{Planned, Tier},
+    runs::{Planned, Sorted, Tier, entry},
     store::{Begun, Store},
 };
 
@@ -114,11 +114,11 @@ pub struct Made {
     pub of_other_sources: usize,
     /// Why the store could not keep some of the records, which are among `records` all the same: what was
     /// computed is not lost with a disk that is full.
-    pub not_kept: BTreeMap<RunKey, FileError>,
+    pub not_kept: Sorted<RunKey, FileError>,
     /// Why records that the store had could not be read; these runs were made again.
-    pub unsound: BTreeMap<RunKey, FileError>,
+    pub unsound: Sorted<RunKey, FileError>,
     /// Why runs have no record. None of them costs another its record.
-    pub failed: BTreeMap<RunKey, RunError>,
+    pub failed: Sorted<RunKey, RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
     /// Why files that say that they are such runs could not be read.
@@ -172,7 +172,7 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
         };
         let made = &mut stored.made;
         let record = found.unwrap_or_else(|error| {
-            made.unsound.insert(spec.key(), error);
+            entry(&mut made.unsound, spec.key(), || error);
             None
         });
         let sources = (making.sources)(&spec.case);
@@ -187,9 +187,11 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
             stored.missing.push(job.clone());
         }
     }
-    let cases: BTreeSet<&str> = jobs.iter().map(|job| job.case.name()).collect();
-    let of_case = |(case, store): (&str, &Store)| store.submissions(case);
-    for read in cases.into_iter().zip(making.store.into_iter().cycle()).flat_map(of_case) {
+    let mut cases = Vec::new();
+    jobs.iter().for_each(|job| *entry(&mut cases, job.case.name(), || ()) = ());
+    let submissions =
+        |(case, ())| making.store.map(|store| store.submissions(case)).unwrap_or_default();
+    for read in cases.into_iter().flat_map(submissions) {
         match read {
             Ok(record) => stored.made.submissions.push(record),
             Err(error) => stored.made.unread.push(error),
@@ -225,13 +227,13 @@ pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
 
 /// Of the main cases, which have a card, the one whose runs take the least time.
 fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
-    let mut cases: BTreeMap<&'static str, (&'static dyn Case, f64)> = BTreeMap::new();
+    let mut cases = Vec::new();
     for job in missing {
-        cases.entry(job.case.name()).or_insert((job.case, 0.0)).1 += job.planned.seconds;
+        entry(&mut cases, job.case.name(), || (job.case, 0.0)).1 += job.planned.seconds;
     }
-    cases.retain(|_, (case, _)| case.declaration(tier).card.is_some());
-    let least = cases.into_iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
-    least.map(|(name, _)| name)
+    cases.retain(|(_, (case, _))| case.declaration(tier).card.is_some());
+    let least = cases.iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
+    least.map(|(name, _)| *name)
 }
 
 /// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine
@@ -276,7 +278,7 @@ struct Run {
 /// How much of a batch is done.
 #[derive(Debug, Default)]
 struct Tally {
-    runs: BTreeMap<RunKey, Run>,
+    runs: Sorted<RunKey, Run>,
     /// Runs that have a record.
     done: usize,
     /// Name of the last of them.
@@ -287,15 +289,19 @@ impl Tally {
     /// A run is to be made, which is expected to take so long.
     fn plan(&mut self, run: RunKey, case: &'static str, expected: f64) {
         let times = Times { expected, ..Times::default() };
-        self.runs.insert(run, Run { case, times, has_ended: false });
+        entry(&mut self.runs, run, || Run { case, times, has_ended: false });
+    }
+
+    fn run(&mut self, key: &RunKey) -> Option<&mut Run> {
+        self.runs.iter_mut().find(|(other, _)| other == key).map(|(_, run)| run)
     }
 
     /// The times of all runs, and by case: what is expected is wrong by another factor for each.
-    fn times(&self) -> (Times, BTreeMap<&'static str, Times>) {
-        let (mut all, mut cases) = (Times::default(), BTreeMap::<_, Times>::new());
-        for run in self.runs.values() {
+    fn times(&self) -> (Times, Sorted<&'static str, Times>) {
+        let (mut all, mut cases) = (Times::default(), Vec::new());
+        for (_, run) in &self.runs {
             all += run.times;
-            *cases.entry(run.case).or_default() += run.times;
+            *entry(&mut cases, run.case, Times::default) += run.times;
         }
         (all, cases)
     }
@@ -310,16 +316,16 @@ impl Tally {
     fn left(&self) -> Option<f64> {
         let (all, cases) = self.times();
         let weight = OF_ALL_CASES * all.expected;
-        let of_case = |times: &Times| {
+        let of_case = |(_, times): &(&str, Times)| {
             let factor = (times.took + weight * all.took / all.done) / (times.done + weight);
             factor * (times.expected - times.done).max(0.0)
         };
-        (self.share() >= FIRST_ESTIMATE).then(|| cases.values().map(of_case).sum())
+        (self.share() >= FIRST_ESTIMATE).then(|| cases.iter().map(of_case).sum())
     }
 
     /// So much of a run is done, after so long; that a run is made again counts no more.
     fn reach(&mut self, run: &RunKey, part: f64, took: f64) {
-        if let Some(Run { times, has_ended: false, .. }) = self.runs.get_mut(run) {
+        if let Some(Run { times, has_ended: false, .. }) = self.run(run) {
             *times = Times { done: part.clamp(0.0, 1.0) * times.expected, took, ..*times };
         }
     }
@@ -333,10 +339,10 @@ impl Tally {
 
     /// A run has ended, with or without a record; was it the last one of its case?
     fn end(&mut self, run: &RunKey) -> bool {
-        let Some(run) = self.runs.get_mut(run) else { return false };
+        let Some(run) = self.run(run) else { return false };
         run.has_ended = true;
         let case = run.case;
-        self.runs.values().filter(|run| run.case == case).all(|run| run.has_ended)
+        self.runs.iter().filter(|(_, run)| run.case == case).all(|(_, run)| run.has_ended)
     }
 }
 
@@ -372,7 +378,7 @@ impl Batch<'_> {
         let written = self.making.store.map(|store| store.write(&record));
         let mut made = self.made();
         if let Some(Err(error)) = written {
-            made.not_kept.insert(record.key(), error);
+            entry(&mut made.not_kept, record.key(), || error);
         }
         made.records.insert(record.key(), record);
     }
@@ -432,7 +438,7 @@ impl Batch<'_> {
             }
             Err(failed) => {
                 begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
-                self.made().failed.insert(spec.key(), failed);
+                entry(&mut self.made().failed, spec.key(), || failed);
                 None
             }
         }
@@ -618,7 +624,7 @@ mod tests {
         std::fs::write(&path, whole.replace("1.0", "1e-12")).unwrap();
         let again = made(&jobs, &making);
         assert_eq!((again.reused, again.unsound.len(), again.records.len()), (1, 1, 2));
-        let words = again.unsound.values().next().unwrap().to_string();
+        let words = again.unsound[0].1.to_string();
         assert!(words.contains("quick-v-") && words.contains("damaged"), "{words}");
         assert_eq!(made(&jobs, &making).reused, 2);
     }
@@ -636,7 +642,9 @@ mod tests {
         let alone = made(&jobs, &Making::new(Tier::Quick, &sources));
         std::panic::set_hook(hook);
         for made in [beside, alone] {
-            let failed: Vec<_> = [1, 3].map(|k| &made.failed[&jobs[k].planned.spec.key()]).into();
+            let failed: Vec<_> = [1, 3]
+                .map(|k| crate::runs::find(&made.failed, &jobs[k].planned.spec.key()).unwrap())
+                .into();
             assert!(matches!(failed[..], [RunError::Bug, RunError::Reference(_)]), "{failed:?}");
             let refused = &made.records[&jobs[5].planned.spec.key()].status;
             assert!(matches!(refused, Status::Refused { .. }), "{refused:?}");
@@ -760,7 +768,7 @@ mod tests {
         let values = suite.cases[0].runs.all.iter().map(|run| run.record.value(ERROR));
         assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
         assert_eq!(suite.made.not_kept.len(), 3);
-        for error in suite.made.not_kept.values() {
+        for (_, error) in &suite.made.not_kept {
             let words = error.to_string();
             assert!(words.contains("cannot write") && words.contains("records"), "{words}");
         }

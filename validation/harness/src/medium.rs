@@ -1,6 +1,6 @@
 //! The parameters from which terms and walls are constructed.
 
-use base::settings::{Settings, Value};
+use base::settings::{Field, Value, Values};
 use maths::theory::time_step;
 use nalgebra::Vector2;
 use solver::Tait;
@@ -51,11 +51,12 @@ pub struct Medium {
 impl Medium {
     /// With the values that settings have by the names of [`Knob`]s.
     #[must_use]
-    pub fn set_by(mut self, settings: &impl Settings) -> Self {
-        for (_, name, set) in Knob::ALL {
-            match settings.get(name) {
-                Some(Value::Real(value)) => set(&mut self, value),
-                Some(Value::Count(value)) => set(&mut self, value as f64),
+    pub fn set_by(mut self, settings: &dyn Values) -> Self {
+        for (field, value) in settings.fields().iter().zip(settings.values()) {
+            let knob = Knob::ALL.into_iter().find(|(_, name, _)| *name == field.name);
+            match (knob, value) {
+                (Some((.., set)), Value::Real(value)) => set(&mut self, value),
+                (Some((.., set)), Value::Count(value)) => set(&mut self, value as f64),
                 _ => {}
             }
         }
@@ -123,9 +124,10 @@ impl Knob {
         (Self::WallGravity, "wall_gravity", |_, _| {}),
     ];
 
-    /// The names of all settings but these.
-    pub fn others(uses: &[Self]) -> impl Iterator<Item = &'static str> {
+    /// The names of all these settings that a case has, but those that are used.
+    pub fn others(uses: &[Self], fields: &[Field]) -> Vec<&'static str> {
         let others = Self::ALL.into_iter().filter(|(knob, ..)| !uses.contains(knob));
-        others.map(|(_, name, _)| name)
+        let names = others.map(|(_, name, _)| name);
+        names.filter(|name| fields.iter().any(|field| field.name == *name)).collect()
     }
 }

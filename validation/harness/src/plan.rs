@@ -1,15 +1,13 @@
 //! Turns the declarations of cases into a list of runs in which each run occurs once.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use base::{
     gate::Gate,
-    spec::{RunKey, RunSpec, Task},
+    spec::{RunSpec, Task},
 };
 
 use crate::{
     case::Case,
-    runs::{Planned, Tier},
+    runs::{self, Planned, Tier},
 };
 
 /// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that occur
@@ -31,18 +29,22 @@ pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
         let is_alike = of.variant == spec.variant && of.settings == spec.settings;
         of.task == Task::Simulate && is_alike && of.disorder == spec.disorder
     };
-    let mut names = BTreeSet::new();
-    let gates = plans.filter(|planned| is_this(&planned.spec)).flat_map(|planned| planned.gates);
-    gates.filter(|gate| names.insert(gate.id.clone())).collect()
+    let mut gates: Vec<Gate> = Vec::new();
+    for gate in plans.filter(|planned| is_this(&planned.spec)).flat_map(|planned| planned.gates) {
+        if gates.iter().all(|other| other.id != gate.id) {
+            gates.push(gate);
+        }
+    }
+    gates
 }
 
 /// Each run once, at its first place, with all gates; timed if one of them is, and all of it measured if one
 /// of them asks for all.
 pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
     let mut merged: Vec<Planned> = Vec::new();
-    let mut places: BTreeMap<RunKey, usize> = BTreeMap::new();
+    let mut places = Vec::new();
     for planned in all {
-        let place = *places.entry(planned.spec.key()).or_insert(merged.len());
+        let place = *runs::entry(&mut places, planned.spec.key(), || merged.len());
         let Some(first) = merged.get_mut(place) else {
             merged.push(planned);
             continue;

@@ -1,7 +1,6 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, PoisonError};
 
 pub use base::gate::Judged;
@@ -104,14 +103,31 @@ pub fn by_cause<'a, T>(
     judged: impl Fn(&T) -> &'a Judged,
 ) -> Vec<(&'a Cause, Vec<T>)> {
     static UNSTATED: Cause = Cause::new("No cause is stated.", "Stating one.");
-    let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
+    let mut causes: Sorted<&Cause, Vec<T>> = Vec::new();
     for one in all.into_iter().filter(|one| judged(one).limitation().is_some()) {
         let cause = judged(&one).gate.cause.as_ref().unwrap_or(&UNSTATED);
-        causes.entry(cause).or_default().push(one);
+        entry(&mut causes, cause, Vec::new).push(one);
     }
-    let mut causes: Vec<_> = causes.into_iter().collect();
     causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
     causes
+}
+
+/// What belongs to keys, in their order: a short list in place of a tree.
+pub type Sorted<K, V> = Vec<(K, V)>;
+
+/// What belongs to a key, which is made if there is nothing yet.
+pub fn entry<K: Ord, V>(all: &mut Sorted<K, V>, key: K, make: impl FnOnce() -> V) -> &mut V {
+    let found = all.binary_search_by(|(other, _)| other.cmp(&key));
+    let place = found.unwrap_or_else(|place| {
+        all.insert(place, (key, make()));
+        place
+    });
+    &mut all[place].1
+}
+
+/// What belongs to a key, if there is something.
+pub fn find<'a, K: Ord, V>(all: &'a Sorted<K, V>, key: &K) -> Option<&'a V> {
+    all.binary_search_by(|(other, _)| other.cmp(key)).ok().map(|place| &all[place].1)
 }
 
 /// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not
@@ -121,27 +137,29 @@ pub fn by_cause<'a, T>(
 pub struct Runs {
     /// All of them in the order of the plan.
     pub all: Vec<JudgedRun>,
-    by_key: BTreeMap<RunKey, usize>,
+    by_key: Sorted<RunKey, usize>,
     /// The runs that other codes made.
     pub submissions: Vec<JudgedRun>,
-    unplanned: Mutex<BTreeSet<String>>,
+    unplanned: Mutex<Sorted<String, ()>>,
 }
 
 impl Runs {
     /// Runs in the order of the plan.
     pub fn new(all: Vec<JudgedRun>) -> Self {
-        let key = |(k, run): (usize, &JudgedRun)| (run.planned.spec.key(), k);
-        let by_key = all.iter().enumerate().map(key).collect();
+        let mut by_key = Vec::new();
+        for (k, run) in all.iter().enumerate() {
+            *entry(&mut by_key, run.planned.spec.key(), || k) = k;
+        }
         Self { all, by_key, ..Self::default() }
     }
 
     /// The judged run of a spec.
     pub fn judged(&self, spec: &RunSpec) -> Option<&JudgedRun> {
-        let found = self.by_key.get(&spec.key()).map(|k| &self.all[*k]);
+        let found = find(&self.by_key, &spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
             let mut unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
-            unplanned.insert(spec.canonical());
+            entry(&mut unplanned, spec.canonical(), || ());
         }
         found
     }
@@ -168,7 +186,8 @@ impl Runs {
 
     /// Runs that were asked for and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
-        self.unplanned.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+        let unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
+        unplanned.iter().map(|(asked, ())| asked.clone()).collect()
     }
 }
 

@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 
 use crate::{
     composed::Composed,
-    declare::{Ladder, Level, Picture, PicturePanel},
+    declare::{Ladder, Picture, PicturePanel},
     pictures,
     runs::{Planned, Tier},
 };
@@ -47,7 +47,7 @@ pub struct Table<T: 'static, G> {
     pub rows: Vec<Row<T, G>>,
 }
 
-impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
+impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
     /// No runs yet.
     pub fn new(case: &'static Composed<T>, tier: Tier) -> Self {
         Self { case, tier, rows: Vec::new() }
@@ -64,7 +64,9 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         let values = if self.tier == Tier::Quick { quick } else { full };
         for &variant in variants {
             for &value in values {
-                self.one(group, variant, |settings| set(settings, value));
+                let mut settings = self.case.defaults(variant);
+                set(&mut settings, value);
+                self.row(group, variant, settings);
             }
         }
     }
@@ -76,7 +78,10 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         variant: &'static str,
         set: impl FnOnce(&mut T),
     ) -> &mut Row<T, G> {
-        let settings = self.case.chosen(variant, set);
+        self.row(group, variant, self.case.chosen(variant, set))
+    }
+
+    fn row(&mut self, group: G, variant: &'static str, settings: T) -> &mut Row<T, G> {
         let run = Planned::new(self.case.spec_of(variant, &settings));
         let place = self.rows.len();
         self.rows.push(Row { group, variant, settings, run });
@@ -123,15 +128,13 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         variant: &'static str,
         level: impl Fn(&T) -> (f64, String),
     ) -> Ladder {
-        let rows = self.rows.iter().filter(|row| row.variant == variant);
-        let rows = rows.filter(|row| groups.contains(&row.group));
-        let levels = rows.map(|row| {
-            let (spacing, label) = level(&row.settings);
-            Level { run: row.run.clone(), spacing, label }
-        });
-        let mut levels: Vec<Level> = levels.collect();
-        levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));
-        Ladder { variant, levels, order: None }
+        let mut ladder = Ladder { variant, levels: Vec::new(), order: None };
+        for row in &self.rows {
+            if row.variant == variant && groups.contains(&row.group) {
+                ladder.add(&row.run, level(&row.settings));
+            }
+        }
+        ladder
     }
 
     /// A picture of the runs that keep particles; `panels` gives those of one.
@@ -142,13 +145,19 @@ impl<T: Settings + 'static, G: Copy + PartialEq> Table<T, G> {
         size: [f64; 2],
         panels: impl Fn(&Row<T, G>) -> Vec<PicturePanel>,
     ) -> Picture {
-        let kept = self.rows.iter().filter(|row| row.run.spec.keep.particles);
-        let (panels, columns) = (kept.flat_map(panels).collect(), 1);
-        Picture { texts, colours, size, panels, columns, shown: |value| value, range: None }
+        let (mut all, columns) = (Vec::new(), 1);
+        for row in &self.rows {
+            if row.run.spec.keep.particles {
+                all.extend(panels(row));
+            }
+        }
+        Picture { texts, colours, size, panels: all, columns, shown: |value| value, range: None }
     }
 
     /// The plan: every run with its gates.
     pub fn plan(self) -> Vec<Planned> {
-        self.rows.into_iter().map(|row| row.run).collect()
+        let mut plan = Vec::new();
+        self.rows.into_iter().for_each(|row| plan.push(row.run));
+        plan
     }
 }

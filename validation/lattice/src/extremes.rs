@@ -69,60 +69,43 @@ base::metrics! {
 /// Makes the scene of a variant.
 type Scene = fn(&Method, &ExtremeSettings) -> Parts;
 
-/// A variant that uses some of the settings.
-fn variant(
-    [name, about]: [&'static str; 2],
-    uses: &[&str],
-    adjust: fn(&mut ExtremeSettings),
-    (method, scene): (Method, Scene),
-) -> Composition<ExtremeSettings> {
-    let rules = |_: &ExtremeSettings| Err(RunError::NoRules { case: EXTREMES.name.into() });
-    let fields = ExtremeSettings::FIELDS.iter().map(|field| field.name);
-    let lacks = fields.filter(|name| !uses.contains(name)).collect();
-    let run = move |s: &ExtremeSettings, context: &Context| run((&method, scene), s, context);
-    let (run, rules, variant) = (Box::new(run), Box::new(rules), Variant { name, about });
-    Composition { variant, adjust, run, rules, lacks }
-}
-
 const REST: &str = "rest";
 const PRESSED: &str = "pressed";
 const COINCIDENT: &str = "coincident";
 const BULLET: &str = "bullet";
 
-fn variants() -> Vec<Composition<ExtremeSettings>> {
+fn variants() -> Compositions<ExtremeSettings> {
     const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
+    const SHORT: &[&str] = &["distance", "steps", "dt"];
     let cubic = schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
     // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
     let pressed = "does it under pressure? Wendland function";
     let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
     let bullet = "does a block that hits another keep the momentum?";
-    vec![
-        variant(
-            [REST, rest],
-            AT_REST,
-            |s| (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7),
-            (cubic(), at_rest),
-        ),
-        variant(
-            [PRESSED, pressed],
-            AT_REST,
-            |s| (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05),
-            (schemes::lattice::wendland(), at_rest),
-        ),
-        variant([COINCIDENT, coincident], &["distance", "steps", "dt"], |_| (), (cubic(), stirred)),
-        variant(
-            [BULLET, bullet],
-            &["speed", "steps", "dt"],
-            |s| (s.steps, s.dt) = (200, 0.3),
-            (cubic(), blocks),
-        ),
-    ]
+    let rules = |_: &_, _: &_| Err(RunError::NoRules { case: EXTREMES.name.into() });
+    let all_but = |uses: &[&str]| {
+        let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
+        names.filter(|name| !uses.contains(name)).collect()
+    };
+    let wendland = schemes::lattice::wendland();
+    Variants::<_, (Method, Scene)>::of(run, rules)
+        .lacking([REST, rest], (cubic(), at_rest), all_but(AT_REST), |s| {
+            (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
+        })
+        .lacking([PRESSED, pressed], (wendland, at_rest), all_but(AT_REST), |s| {
+            (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
+        })
+        .lacking([COINCIDENT, coincident], (cubic(), stirred), all_but(SHORT), |_| ())
+        .lacking([BULLET, bullet], (cubic(), blocks), all_but(&["speed", "steps", "dt"]), |s| {
+            (s.steps, s.dt) = (200, 0.3);
+        })
+        .all
 }
 
 /// One run of any variant.
 fn run(
-    (method, scene): (&Method, Scene),
+    (method, scene): &(Method, Scene),
     s: &ExtremeSettings,
     context: &Context,
 ) -> Result<Record, RunError> {

@@ -95,7 +95,7 @@ fn method(variant: &str) -> Method {
     }
 }
 
-fn variants() -> Vec<Composition<BoxSettings>> {
+fn variants() -> Compositions<BoxSettings> {
     let cubic =
         "what sound and viscosity allow together: the kernel and the viscous term of the seed";
     let midpoint = "what the predictor-corrector allows, which amplifies sound that nothing damps";
@@ -254,10 +254,8 @@ fn table(tier: Tier) -> Table<BoxSettings, ()> {
 /// What is judged of a bisection.
 fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
     let Method { kernel, integrator, .. } = method(variant);
-    let damping = match s.alpha > 0.0 || s.delta > 0.0 {
-        true => format!(".alpha{}.delta{}", s.alpha, s.delta),
-        false => String::new(),
-    };
+    let is_damped = s.alpha > 0.0 || s.delta > 0.0;
+    let damping = if is_damped { format!(".alpha{}.delta{}", s.alpha, s.delta) } else { "".into() };
     let (h, stiffness) = (s.h_over_dx, stiffness(s));
     let id = format!("stability.{kernel}.h{h}.{integrator}.stiffness{stiffness}{damping}.ratio");
     let because = "Linear theory of the same box is exact. Bisection resolves 0.4 %, and the criterion of \

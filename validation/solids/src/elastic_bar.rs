@@ -45,7 +45,7 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             = ((K + 4 mu/3)/rho)^(1/2). In one test a pulse runs through a bar. In the other two equal \
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
-    variants: || solid::variants(schemes::solid::free()),
+    variants: || solid::variants(schemes::solid::free()).all,
     declaration,
     plan: |tier| table(tier).plan(),
 };

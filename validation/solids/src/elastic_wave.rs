@@ -50,14 +50,11 @@ base::metrics! {
          mu^(1/2) across, over rho^(1/2)";
 }
 
-fn variants() -> Vec<Composition<WaveSettings>> {
+fn variants() -> Compositions<WaveSettings> {
+    let equations =
+        "equations (9) to (12), leapfrog, cubic spline: are both moduli those of the material?";
     Variants::of(run, |method, settings| Ok(settings.rules(method)))
-        .with(
-            CubicSpline::NAME,
-            "equations (9) to (12), leapfrog, cubic spline: are both moduli those of the material?",
-            schemes::solid::bare(),
-            |_| {},
-        )
+        .with(CubicSpline::NAME, equations, schemes::solid::bare(), |_| {})
         .all
 }
 

@@ -37,7 +37,7 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     about: "A free elastic disk begins to spin without stress. Angular momentum must stay, and stress must \
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",
-    variants: || solid::variants(schemes::solid::free()),
+    variants: || solid::variants(schemes::solid::free()).all,
     declaration,
     plan: |tier| table(tier).plan(),
 };

@@ -63,7 +63,7 @@ fn differences(case: &dyn Case, variant: &str) -> Vec<String> {
     let Ok(settings) = case.settings(variant, &[]) else { return Vec::new() };
     let default = |name: &str| {
         let field = case.fields().iter().find(|field| field.name == name);
-        field.and_then(|field| serde_json::to_value((field.default)()).ok())
+        field.map(|field| Value::from((field.default)()))
     };
     let differs = |(name, value): &(&String, &Value)| default(name).as_ref() != Some(*value);
     let text = |(name, value): (&String, &Value)| format!("{name}={value}");
@@ -78,7 +78,7 @@ fn json(case: &dyn Case) -> Value {
     let setting = |field: &Field| {
         json!({
             "name": field.name, "unit": field.unit, "doc": field.doc,
-            "kind": field.kind.to_string(), "range": field.range, "default": (field.default)(),
+            "kind": field.kind.to_string(), "range": field.range, "default": Value::from((field.default)()),
         })
     };
     let best = case.best();

@@ -213,11 +213,13 @@ fn tell(lines: &[String]) {
 
 /// Says which records could not be read, kept or made.
 fn tell_trouble(made: &Made) {
-    let again = |error: &FileError| format!("{error}; a record in this place does not count");
-    tell(&made.unsound.values().map(again).collect::<Vec<_>>());
-    let lost = |error: &FileError| format!("a record could not be stored: {error}");
-    tell(&made.not_kept.values().map(lost).collect::<Vec<_>>());
-    let failed = |(key, failed): (&RunKey, &RunError)| format!("run {key} has no record: {failed}");
+    let again = |(_, error): &(RunKey, FileError)| {
+        format!("{error}; a record in this place does not count")
+    };
+    tell(&made.unsound.iter().map(again).collect::<Vec<_>>());
+    let lost = |(_, error): &(RunKey, FileError)| format!("a record could not be stored: {error}");
+    tell(&made.not_kept.iter().map(lost).collect::<Vec<_>>());
+    let failed = |(key, failed): &(RunKey, RunError)| format!("run {key} has no record: {failed}");
     tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
     let unread = |error: &FileError| format!("{error}; the submission does not count");
     tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
@@ -225,7 +227,7 @@ fn tell_trouble(made: &Made) {
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.
 fn trouble(made: &Made) -> Option<Exit> {
-    match made.failed.values().any(|failed| matches!(failed, RunError::Bug)) {
+    match made.failed.iter().any(|(_, failed)| matches!(failed, RunError::Bug)) {
         true => Some(Exit::Bug),
         false => (!made.failed.is_empty() || !made.not_kept.is_empty()).then_some(Exit::Usage),
     }

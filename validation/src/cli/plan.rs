@@ -181,7 +181,7 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, world: &World
     let making = Making { store: Some(&store), allow_long, ..world.making(Tier::Quick) };
     let made = world.make(&jobs, making, arguments.threads, None)?;
     // What the store could not keep is not lost.
-    for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
+    for record in made.not_kept.iter().filter_map(|(key, _)| made.records.get(key)) {
         output::print_whole(&record.to_json().map_err(Failure::bug)?)?;
     }
     let (runs, lines) = (counted(jobs.len(), "run", "runs"), counted(lines, "line", "lines"));

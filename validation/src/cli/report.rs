@@ -12,6 +12,7 @@ use base::spec::RunKey;
 use harness::{
     case::{self, Tier},
     make::{self, Job, Made, Stored},
+    runs,
     store::{Pending, Store},
     study::Study,
     suite::{self, Plans, Suite},
@@ -150,7 +151,7 @@ pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite,
 }
 
 fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
-    let why = |job: &Job| match made.unsound.get(&job.planned.spec.key()) {
+    let why = |job: &Job| match runs::find(&made.unsound, &job.planned.spec.key()) {
         Some(error) => Pending::Failed(error.to_string()),
         None => Store::to_read(path).pending(&job.planned.spec),
     };

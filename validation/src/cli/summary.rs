@@ -91,11 +91,10 @@ fn failures(suite: &Suite) -> String {
         judged.map(move |(of, judged)| (results.case, of, judged))
     };
     let all: Vec<_> = suite.cases.iter().flat_map(of_case).collect();
-    let mut text: String = all
-        .iter()
-        .take(IN_FULL)
-        .map(|(case, of, judged)| format!("\n{}", explain::in_full(*case, *of, judged)))
-        .collect();
+    let mut text = String::new();
+    for (case, of, judged) in all.iter().take(IN_FULL) {
+        text += &format!("\n{}", explain::in_full(*case, *of, judged));
+    }
     let more: Vec<&str> = all.iter().skip(IN_FULL).map(|(_, _, j)| j.gate.id.as_str()).collect();
     if !more.is_empty() {
         let words = report::counted(more.len(), "more gate fails", "more gates fail");

@@ -56,7 +56,7 @@ fn modern(s: &mut DropSettings) {
     (s.h_over_dx, s.alpha, s.courant) = (2.5, 0.02, 0.6);
 }
 
-fn variants() -> Vec<Composition<DropSettings>> {
+fn variants() -> Compositions<DropSettings> {
     let seed = "the paper's terms: cubic spline, predictor-corrector, artificial viscosity and stress, XSPH";
     let best = "Wendland C2, h/dx 2.5, leapfrog, density diffusion, little artificial viscosity";
     let plain = "modern without dissipation: (3), (5) and (7) alone";
@@ -376,7 +376,7 @@ mod tests {
     fn extents_and_places_of_a_drop_put_by_hand_are_measured() {
         let settings: DropSettings = {
             let spec = ELLIPTIC_DROP.spec("modern", |s| (s.n, s.gravity) = (40, 1.0));
-            serde_json::from_value(spec.settings).expect("settings")
+            base::settings::of_json(&spec.settings).expect("settings")
         };
         let method = water::free();
         let (drop, rate) = (Drop::new(&settings, &method), settings.strain);

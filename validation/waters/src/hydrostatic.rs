@@ -76,7 +76,7 @@ fn modern(s: &mut HydrostaticSettings) {
     (s.h_over_dx, s.courant, s.alpha) = (1.5, 0.8, 0.02);
 }
 
-fn variants() -> Vec<Composition<HydrostaticSettings>> {
+fn variants() -> Compositions<HydrostaticSettings> {
     let seed = "as in the paper: cubic spline, interface and wall particles, artificial viscosity and \
                 stress, XSPH, predictor-corrector";
     let best = "Wendland C2, h/dx 1.5, walls that extrapolate pressure, density diffusion that keeps \
@@ -415,7 +415,7 @@ mod tests {
     fn what_is_measured_of_water_at_rest_is_what_was_done_to_it() {
         let spec = HYDROSTATIC.spec("modern", |_| {});
         let settings: HydrostaticSettings =
-            serde_json::from_value(spec.settings).expect("settings");
+            base::settings::of_json(&spec.settings).expect("settings");
         let (method, context) = (schemes::water::modern(), Context::default());
         let column = Column::new(&settings, &method, &context).expect("sound settings");
         let (dx, g) = (column.medium.dx, settings.g);

@@ -41,7 +41,7 @@ base::metrics! {
     OUTSIDE = "outside" ["-"] "particles inside of the wedge or beyond floor or sides at the end";
 }
 
-fn variants() -> Vec<Composition<Wedge>> {
+fn variants() -> Compositions<Wedge> {
     let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";

@@ -40,13 +40,13 @@ fn single_sweep(s: &mut ChannelSettings) {
 }
 
 /// The variants of Couette flow.
-pub fn of_couette() -> Vec<Composition<ChannelSettings>> {
+pub fn of_couette() -> Compositions<ChannelSettings> {
     both(Flow::Couette, flow::couette()).all
 }
 
 /// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable: the paper's method
 /// with one thing against its instability each.
-pub fn of_poiseuille() -> Vec<Composition<ChannelSettings>> {
+pub fn of_poiseuille() -> Compositions<ChannelSettings> {
     let bent =
         "plain with ghosts that know the curvature of the velocity at the wall: is it their error?";
     let stress = "seed with artificial stress, equations (18) and (19): does it cure the seed's \

@@ -51,7 +51,7 @@ fn strong(s: &mut HillSettings) {
     s.shift = 3.0;
 }
 
-fn variants() -> Vec<Composition<HillSettings>> {
+fn variants() -> Compositions<HillSettings> {
     let plain =
         "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser: is one needed?";
     let interface =

@@ -44,7 +44,7 @@ fn strong(s: &mut VortexSettings) {
     s.shift = 3.0;
 }
 
-fn variants() -> Vec<Composition<VortexSettings>> {
+fn variants() -> Compositions<VortexSettings> {
     let plain = "quintic spline, h/dx 1, leapfrog, no stabiliser: is one needed?";
     let modern =
         "plain with density diffusion and shifting: does what suits channels suit vortices?";

@@ -90,11 +90,8 @@ fn stable(declared: &Declaration, specs: &[RunSpec], runs: &Runs) -> Option<Stri
 fn reach(card: &declare::Card, runs: &Runs) -> Option<String> {
     let (setting, name, unit) = card.reach;
     let completed = |record: &&Record| record.status == Status::Completed;
-    let values: Vec<f64> = runs
-        .simulations()
-        .filter(completed)
-        .filter_map(|record| record.settings[setting].as_f64())
-        .collect();
+    let of = |record: &Record| record.settings[setting].as_f64();
+    let values: Vec<f64> = runs.simulations().filter(completed).filter_map(of).collect();
     let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick));
     Some(format!("{name} {} to {}{unit}", exact(low?), exact(high?)))
 }

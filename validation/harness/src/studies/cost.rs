@@ -170,14 +170,11 @@ const TIMES: &str = "Times are the least median run time on one core of a level 
 /// Orders, intervals, and what errors cost.
 fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
     let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
+    let finest = |row: &Row| row.points.last().map_or(f64::NAN, |p| p.error);
     let columns = Columns::default()
         .code("variant", |row: &Row| row.of.variant)
         .order(|row: &Row| &row.found)
-        .of(
-            ["finest error", "-"],
-            |row| row.points.last().map_or(f64::NAN, |p| p.error),
-            |error| Cell::percent(error, 2),
-        );
+        .of(["finest error", "-"], finest, |error| Cell::percent(error, 2));
     let columns = GOALS.iter().fold(columns, |columns, goal| {
         let head = format!("time to {}", percent(*goal, 1));
         columns.of([&head, "s"], |row| cheapest(&row.points, *goal), Cell::seconds)

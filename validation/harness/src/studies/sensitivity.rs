@@ -1,7 +1,5 @@
 //! The smallest error of each constant that the gates of a case detect.
 
-use std::collections::BTreeSet;
-
 use base::{
     gate::{Bound, Evidence, Gate},
     mutation::Constant,
@@ -14,7 +12,7 @@ use crate::{
     columns::Columns,
     declare::{Blind, Sensitivity, Watched},
     detect::{DETECTED, GATES, UNDETECTED},
-    runs::Runs,
+    runs::{Runs, entry},
     study::Study,
 };
 
@@ -102,14 +100,14 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
         Some(record) => record.value(UNDETECTED),
         None => made().find_map(|record| record.value(UNDETECTED)),
     };
-    let failed = |factor: &f64| failed(sensitivity, watched.constant, *factor, runs).len();
+    let failed = |factor: &f64| failed(sensitivity, watched.constant, *factor, runs);
     let faults = watched.faults.iter().map(|factor| (*factor, failed(factor))).collect();
     Row { watched, detected, undetected, faults, is_whole }
 }
 
 /// The gates of the runs that a gross fault fails, those that compare the program with itself not counted.
-fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> BTreeSet<String> {
-    let mut failed = BTreeSet::new();
+fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> usize {
+    let mut failed = Vec::new();
     for (healthy, spec) in sensitivity.faulty(of, factor) {
         let Some((record, healthy)) = runs.record(&spec).zip(runs.judged(healthy)) else {
             continue;
@@ -117,9 +115,9 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
         let gates = healthy.planned.gates.iter();
         let outside = gates.filter(|gate| gate.evidence != Evidence::Regression);
         let fails = outside.filter(|gate| gate.judge_record(record).verdict.is_failure());
-        failed.extend(fails.map(|gate| gate.id.clone()));
+        fails.for_each(|gate| *entry(&mut failed, gate.id.as_str(), || ()) = ());
     }
-    failed
+    failed.len()
 }
 
 /// The gate on the number of gates that detect a gross fault.

@@ -1,7 +1,5 @@
 //! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
 
-use std::collections::BTreeSet;
-
 use base::submission::{Division, OURS, SESSION, Submission};
 use report::{Axis, Cell, Colour, Figure, Plot, Series, percent, seconds};
 
@@ -47,9 +45,14 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     };
     let mut marks: Vec<Mark> = runs.submissions.iter().filter_map(of).collect();
     marks.sort_by(|a, b| a.name.cmp(&b.name).then(a.seconds.total_cmp(&b.seconds)));
-    let mut seen = BTreeSet::new();
-    marks.retain(|mark| mark.particles == 0 || seen.insert((mark.name.clone(), mark.particles)));
-    marks
+    let mut first: Vec<Mark> = Vec::new();
+    for mark in marks {
+        let is_same = |of: &Mark| of.particles == mark.particles && of.name == mark.name;
+        if mark.particles == 0 || !first.iter().any(is_same) {
+            first.push(mark);
+        }
+    }
+    first
 }
 
 /// Where another code is better than ours in the same session: in error with as many particles, or in time at

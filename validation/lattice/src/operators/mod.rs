@@ -13,9 +13,7 @@ mod study;
 #[cfg(test)]
 mod tests;
 
-use std::rc::Rc;
-
-use harness::{case::Variant, composed::*, context::Context, declare::Declaration, method::*};
+use harness::{composed::*, context::Context, declare::Declaration, method::*};
 use schemes::lattice;
 
 base::settings! {
@@ -135,19 +133,15 @@ fn subjects() -> impl Iterator<Item = &'static Subject> {
     SUBJECTS.iter().flatten()
 }
 
-fn variants() -> Vec<Composition<OperatorSettings>> {
-    let variant = |of: &'static Subject| {
-        let method = Rc::new((of.method)());
-        let ruled = Rc::clone(&method);
-        Composition {
-            variant: Variant { name: of.name, about: of.about() },
-            adjust: of.adjust,
-            run: Box::new(move |s, context| run::run(of, &method, s, context)),
-            rules: Box::new(move |s| run::rules(&ruled, s, &Context::of_rules())),
-            lacks: Vec::new(),
-        }
+fn variants() -> Compositions<OperatorSettings> {
+    let none = Variants::of(
+        |(of, method): &(&Subject, _), s, context| run::run(of, method, s, context),
+        |(_, method), s| run::rules(method, s, &Context::of_rules()),
+    );
+    let add = |all: Variants<_, _>, of: &'static Subject| {
+        all.lacking([of.name, of.about()], (of, (of.method)()), Vec::new(), of.adjust)
     };
-    subjects().map(variant).collect()
+    subjects().fold(none, add).all
 }
 
 /// Operators on particles.

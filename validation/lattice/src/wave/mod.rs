@@ -132,7 +132,7 @@ const STEPWISE: &[MetricKey] = &[
     run::VISCOUS_FACTOR,
 ];
 
-fn variants(of: Polarisation) -> Vec<Composition<WaveSettings>> {
+fn variants(of: Polarisation) -> Compositions<WaveSettings> {
     let of_kernel = "are the symbols those of this kernel? its plain equations with the leapfrog";
     let of_step =
         "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";

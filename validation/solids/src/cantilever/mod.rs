@@ -100,28 +100,15 @@ const fn error(name: &'static str) -> MetricKey {
 /// The total Lagrangian variant of another law.
 const SAINT_VENANT: &str = "lagrangian-saint-venant";
 
-fn variants() -> Vec<Composition<CantileverSettings>> {
+fn variants() -> Compositions<CantileverSettings> {
+    let papers = "what the paper describes, with weight: predictor-corrector, artificial viscosity, \
+                  artificial stress in principal axes, XSPH";
+    let law = "the same with the stored energy of St. Venant and Kirchhoff, the law of the test CSM3: does \
+               the law matter?";
     solid::no_variants()
-        .with(
-            "seed",
-            "what the paper describes, with weight: predictor-corrector, artificial viscosity, artificial \
-             stress in principal axes, XSPH",
-            schemes::solid::heavy_seed(),
-            |_| {},
-        )
-        .with(
-            LAGRANGIAN,
-            TOTAL,
-            total::hencky(),
-            lagrangian::choose,
-        )
-        .with(
-            SAINT_VENANT,
-            "the same with the stored energy of St. Venant and Kirchhoff, the law of the test CSM3: does the \
-             law matter?",
-            total::saint_venant_kirchhoff(),
-            lagrangian::choose,
-        )
+        .with("seed", papers, schemes::solid::heavy_seed(), |_| {})
+        .with(LAGRANGIAN, TOTAL, total::hencky(), |s| lagrangian::choose(s))
+        .with(SAINT_VENANT, law, total::saint_venant_kirchhoff(), |s| lagrangian::choose(s))
         .all
 }
 

@@ -48,14 +48,11 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     plan: |tier| plan::table(tier).plan(),
 };
 
-fn variants() -> Vec<Composition<PlateSettings>> {
-    let plain = solid::no_variants().with(
-        PLAIN,
-        "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?",
-        schemes::solid::clamped_plain(),
-        |s| solid::leave_out(s, &["xsph"]),
-    );
-    solid::variants(schemes::solid::clamped()).into_iter().chain(plain.all).collect()
+fn variants() -> Compositions<PlateSettings> {
+    let of = "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?";
+    solid::variants(schemes::solid::clamped())
+        .with(PLAIN, of, schemes::solid::clamped_plain(), |s| solid::leave_out(s, &["xsph"]))
+        .all
 }
 
 base::metrics! {

@@ -31,7 +31,7 @@ fn path_and_extents() -> Curve {
         columns: &[("x_c", "m"), ("v_c", "m/s"), ("width", "m"), ("height", "m")],
         rows: |_| 1,
         place: |settings, at, starts| {
-            let Ok(settings) = serde_json::from_value::<RingSettings>(settings.clone()) else {
+            let Ok(settings) = base::settings::of_json::<RingSettings>(settings) else {
                 return Vec::new();
             };
             let (to, dx) = (settings.to_flight(), settings.dx());

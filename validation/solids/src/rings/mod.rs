@@ -85,46 +85,25 @@ pub const CORRECTED: &str = "corrected";
 /// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
 
-fn variants() -> Vec<Composition<RingSettings>> {
+fn variants() -> Compositions<RingSettings> {
     use schemes::solid::{componentwise, corrected, leapfrog, seed};
+    let papers = "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
+                  stress in principal axes";
+    let by_components = "the seed with artificial stress component by component, as the paper writes it: \
+                         does the answer depend on the axes?";
+    let staggered = "the seed with the staggered leapfrog, one right-hand side a step, and longer steps: \
+                     does that change anything but the cost?";
+    let conjugate = "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that \
+                     are conjugate to them: what do uncorrected gradients at free faces do?";
     solid::no_variants::<RingSettings>()
-        .with(
-            "seed",
-            "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
-             stress in principal axes",
-            seed(),
-            |_| {},
-        )
-        .with(
-            COMPONENTWISE,
-            "the seed with artificial stress component by component, as the paper writes it: does the \
-             answer depend on the axes?",
-            componentwise(),
-            |_| {},
-        )
-        .with(
-            "leapfrog",
-            "the seed with the staggered leapfrog, one right-hand side a step, and longer steps: does that \
-             change anything but the cost?",
-            leapfrog(),
-            |s| s.courant = LONG_STEPS,
-        )
-        .with(
-            CORRECTED,
-            "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that are \
-             conjugate to them: what do uncorrected gradients at free faces do?",
-            corrected(),
-            |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0),
-        )
-        .with(
-            LAGRANGIAN,
-            TOTAL,
-            schemes::total::hencky(),
-            |s| {
-                total::choose(s);
-                s.courant = total::COURANT_OF_FOLDS;
-            },
-        )
+        .with("seed", papers, seed(), |_| {})
+        .with(COMPONENTWISE, by_components, componentwise(), |_| {})
+        .with("leapfrog", staggered, leapfrog(), |s| s.courant = LONG_STEPS)
+        .with(CORRECTED, conjugate, corrected(), |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0))
+        .with(LAGRANGIAN, TOTAL, schemes::total::hencky(), |s| {
+            total::choose(s);
+            s.courant = total::COURANT_OF_FOLDS;
+        })
         .all
 }
 

@@ -84,10 +84,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     let Some(exact) = Reference::of(row.variant, s).filter(|_| is_compared) else { return gates };
     let distances = Distances { row, id, exact, allowed: 0.5 * s.spacing };
     gates.push(distances.of_stretch());
-    match is_lagrangian {
-        true => gates.extend(distances.of_lagrangian()),
-        false => gates.extend(distances.of_extremes()),
-    }
+    gates.extend(if is_lagrangian { distances.of_lagrangian() } else { distances.of_extremes() });
     if row.group == Group::Paper {
         gates.extend(distances.of_contact());
     }

@@ -1,6 +1,6 @@
 //! What the total Lagrangian solid is used with.
 
-use base::settings::Settings;
+use base::settings::{self, Values};
 use schemes::total::H_OVER_DX;
 pub use schemes::total::{bending, displace, limit_in_contact};
 
@@ -21,9 +21,9 @@ const COURANT: f64 = 0.8;
 pub const COURANT_OF_FOLDS: f64 = 0.4;
 
 /// Sets what the method is used with, and the strengths of terms that it lacks to 0.
-pub fn choose(settings: &mut impl Settings) {
+pub fn choose(settings: &mut dyn Values) {
     leave_out(settings, &["alpha", "beta", "xi", "xsph"]);
     for (name, value) in [("h_over_dx", H_OVER_DX), ("courant", COURANT)] {
-        let _is_in_range = settings.set(name, &value.to_string());
+        let _is_in_range = settings::set(settings, name, &value.to_string());
     }
 }

@@ -3,15 +3,16 @@
 use nalgebra::Vector2;
 use solver::{Domain, Observer, Particle, Role, Stepper, Symmetric};
 
-use super::{Energy, Material, clamp, lagrangian, limits};
+use super::lagrangian::{self, LAGRANGIAN, TOTAL};
+use super::{Energy, Material, clamp, limits};
 use base::{
     bits::Bits,
     record::{self, Record},
-    settings::Settings,
+    settings::{self, Settings, Values},
 };
 use harness::{
     case::{Rules, RunError, Step},
-    composed::{Composition, Variants},
+    composed::Variants,
     context::Context,
     method::{Medium, Method, Parts},
     outline::Sink,
@@ -22,7 +23,7 @@ use harness::{
 use maths::theory::time_step::Integrator;
 
 /// Settings by [`solid_settings!`](crate::solid_settings!).
-pub trait SharedSettings: Settings + 'static {
+pub trait SharedSettings: Settings {
     /// The material.
     fn material(&self) -> Material;
     /// h/dx.
@@ -108,35 +109,24 @@ pub trait Watch: Observer<Symmetric> + Bits {
     fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
 
+/// Variants of a problem.
+type Alike<P> = Variants<P, Method<Symmetric>>;
+
 /// No variants yet, of a problem that any method runs.
-pub fn no_variants<P: Problem>() -> Variants<P, Method<Symmetric>> {
+pub fn no_variants<P: Problem>() -> Alike<P> {
     Variants::of(run, |method, s| Ok(rules(method, s)))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
-pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Vec<Composition<P>> {
+pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
+    let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
+                  principal axes, XSPH";
+    let alone = "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what \
+                 to the terms that stabilise?";
     no_variants()
-        .with(
-            "seed",
-            "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
-             principal axes, XSPH",
-            seed,
-            |_| {},
-        )
-        .with(
-            "bare",
-            "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what to \
-             the terms that stabilise?",
-            bare,
-            |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]),
-        )
-        .with(
-            lagrangian::LAGRANGIAN,
-            lagrangian::TOTAL,
-            schemes::total::hencky(),
-            lagrangian::choose,
-        )
-        .all
+        .with("seed", papers, seed, |_| {})
+        .with("bare", alone, bare, |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]))
+        .with(LAGRANGIAN, TOTAL, schemes::total::hencky(), |s| lagrangian::choose(s))
 }
 
 /// Refuses a body of less than two columns of particles.
@@ -152,9 +142,9 @@ pub fn check_length(dx: f64, length: f64) -> Result<(), RunError> {
 }
 
 /// Sets the strengths of terms that a method lacks to 0.
-pub fn leave_out(settings: &mut impl Settings, names: &[&str]) {
+pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
     for name in names {
-        let _is_in_range = settings.set(name, "0");
+        let _is_in_range = settings::set(settings, name, "0");
     }
 }
 

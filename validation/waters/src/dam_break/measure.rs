@@ -288,7 +288,8 @@ mod tests {
     }
 
     fn record(dam: &Dam, measure: impl Fn(&mut Record)) -> Record {
-        let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
+        let mut record =
+            Record::new("dam_break", "modern", base::settings::to_json(&dam.settings), 1);
         measure(&mut record);
         record
     }

@@ -88,7 +88,7 @@ fn modern(s: &mut DamSettings) {
 }
 
 /// The variants, each with the question that it answers.
-fn variants() -> Vec<Composition<DamSettings>> {
+fn variants() -> Compositions<DamSettings> {
     use schemes::water;
     let paper = "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
                  stress, predictor-corrector";

@@ -362,7 +362,8 @@ mod tests {
         samples: impl Iterator<Item = [f64; 7]>,
         pressures: Vec<[f64; 5]>,
     ) -> Box<dyn Fn(MetricName) -> f64> {
-        let mut record = Record::new("dam_break", "modern", serde_json::json!(dam.settings), 1);
+        let mut record =
+            Record::new("dam_break", "modern", base::settings::to_json(&dam.settings), 1);
         Samples::made_up(dam, samples).measure(&mut record);
         Gauge::made_up(dam, pressures).measure(dam, &mut record);
         compare(dam, &mut record);
