@@ -357,7 +357,12 @@ pub struct Column {
 impl Profile {
     /// Columns of these names and units from rows.
     pub fn of_rows<const N: usize>(columns: &[(&str, &str); N], rows: &[[f64; N]]) -> Self {
-        let column = |k: usize| rows.iter().map(|row| row[k]).collect();
+        Self::of_numbers(columns, rows.as_flattened())
+    }
+
+    /// Columns of these names and units from numbers, row by row.
+    fn of_numbers(columns: &[(&str, &str)], numbers: &[f64]) -> Self {
+        let column = |k: usize| numbers.iter().skip(k).step_by(columns.len()).copied().collect();
         let add = |profile: Self, (k, (name, unit)): (usize, &(&str, &str))| {
             profile.with(name, unit, column(k))
         };
