@@ -259,7 +259,9 @@ pub fn lattice(
     columns: usize,
     rows: usize,
 ) -> impl Iterator<Item = Vector2<f64>> {
-    (0..rows).flat_map(move |j| {
-        (0..columns).map(move |i| first + Vector2::new(i as f64 * dx, j as f64 * dx))
-    })
+    let mut points = Vec::with_capacity(columns * rows);
+    for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
+        points.push(first + Vector2::new(i as f64 * dx, j as f64 * dx));
+    }
+    points.into_iter()
 }

@@ -105,8 +105,8 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     fn bytes(&self) -> usize;
     /// Its particles, and [`ParticleData::watch`], who is told of the phases of steps from now on.
     fn data_mut(&mut self) -> &mut ParticleData<X>;
-    /// Shows the present state to an observer, without a step.
-    fn show(&self, observer: &mut dyn Observer<X>);
+    /// The simulation without the type by which it is known.
+    fn stepper(&mut self) -> &mut dyn Stepper<X>;
     /// The energies that its forces derive from, if they do \[J/m\].
     fn potential(&self) -> Option<Potential> {
         None
@@ -182,8 +182,8 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn advance(&mut self, until: f64, dt: f64, observer: &mut dyn Observer<S::Extra>) -> Outcome {
         advance(self, until, dt, observer)
     }
-    fn show(&self, observer: &mut dyn Observer<S::Extra>) {
-        observer.after_step(self);
+    fn stepper(&mut self) -> &mut dyn Stepper<S::Extra> {
+        self
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         self.engine.core().restore(from)?;

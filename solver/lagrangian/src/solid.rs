@@ -144,8 +144,8 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     fn advance(&mut self, until: f64, dt: f64, seen: &mut dyn Observer<Symmetric>) -> Outcome {
         simulation::advance(self, until, dt, seen)
     }
-    fn show(&self, observer: &mut dyn Observer<Symmetric>) {
-        observer.after_step(self);
+    fn stepper(&mut self) -> &mut dyn Stepper<Symmetric> {
+        self
     }
     fn restore(&mut self, from: &Checkpoint<Symmetric>) -> Result<(), &'static str> {
         self.data.resume(from)?;

@@ -143,7 +143,10 @@ impl<T: Bits + Default> Bits for Vec<T> {
     fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
         // Grows with what is there, whatever the length claims.
         let count: usize = read(from)?;
-        *self = (0..count).map(|_| read(from)).collect::<Result<_, _>>()?;
+        self.clear();
+        for _ in 0..count {
+            self.push(read(from)?);
+        }
         Ok(())
     }
 }
@@ -154,7 +157,7 @@ impl<T: Bits + Default> Bits for Option<T> {
         self.as_slice().save(to);
     }
     fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        *self = read::<bool>(from)?.then(|| read(from)).transpose()?;
+        *self = if read(from)? { Some(read(from)?) } else { None };
         Ok(())
     }
 }

@@ -5,20 +5,24 @@
 //! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
 //! it goes on.
 
-use std::any::{Any, TypeId};
+use std::any::TypeId;
 use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use base::{
-    bits::{self, Bits, OtherBits},
+    bits::{self, Bits},
     files::FileError,
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Numbers, Particle, Past, Progress, Role, Stepper, Symmetric, Work};
+use solver::{Checkpoint, Numbers, Particle, Past, Progress, Stepper, Symmetric, Work};
 
-use crate::error::RunError;
+use crate::{
+    error::RunError,
+    frames::{stress, stressed},
+    outline,
+};
 
 /// How far a simulation is, apart from its particles and from what is observed of it.
 #[derive(Default)]
@@ -35,80 +39,60 @@ pub(crate) struct Stage {
 
 base::observed! { Stage: changes(reached, cost, frames, ended), stays() }
 
-/// The extra fields of a particle: none, or those of a deviatoric stress.
-#[derive(Default)]
-struct Extra<X>(X);
-
-impl<X: Numbers> Bits for Extra<X> {
-    fn save(&self, to: &mut Vec<u8>) {
-        let extra: &dyn Any = &self.0;
-        if let Some(s) = extra.downcast_ref::<Symmetric>() {
-            [s.xx, s.yy, s.xy].save(to);
-        }
-    }
-    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        let extra: &mut dyn Any = &mut self.0;
-        if let Some(s) = extra.downcast_mut::<Symmetric>() {
-            let [xx, yy, xy] = bits::read(from)?;
-            *s = Symmetric { xx, yy, xy };
-        }
-        Ok(())
-    }
-}
-
 /// Id and role of a particle, its position, its velocity and where it was when the neighbour lists were
-/// built, and then density, mass and extra fields.
-type Stored<X> = (u32, u8, [Vector2<f64>; 3], ([f64; 2], Extra<X>));
+/// built, and then density and mass.
+type Stored = (u32, u8, [Vector2<f64>; 3], [f64; 2]);
 
-/// What an integrator keeps of earlier steps: density and extra fields, and their rates.
-type Earlier<X> = [(f64, Extra<X>); 2];
-
-/// Times and steps, and then the particles.
-type State<X> = ([f64; 7], [u64; 5], bool, (Vec<Stored<X>>, Vec<Earlier<X>>));
+/// Times and steps, then the particles, the densities that an integrator keeps of earlier steps with their
+/// rates, and the deviatoric stresses of both, none of a fluid.
+type State = ([f64; 7], [u64; 5], bool, (Vec<Stored>, Vec<[f64; 2]>, Vec<[f64; 3]>));
 
 /// The state of a simulation.
-fn state<X: Numbers>(of: &Checkpoint<X>) -> State<X> {
+fn state<X: Numbers>(of: &Checkpoint<X>) -> State {
     let Checkpoint { progress, lag, particles, built_at, past } = of;
     let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    let stored = particles.iter().zip(built_at).map(|((id, p), at)| {
-        let moved = [p.position, p.velocity, *at];
-        (*id, p.role as u8, moved, ([p.density, p.mass], Extra(p.extra)))
-    });
-    let earlier = |past: &Past<X>| [past.drifted, past.rate].map(|(of, extra)| (of, Extra(extra)));
+    let (mut stored, mut earlier, mut stresses) = (Vec::new(), Vec::new(), Vec::new());
+    for ((id, p), at) in particles.iter().zip(built_at) {
+        stored.push((*id, p.role as u8, [p.position, p.velocity, *at], [p.density, p.mass]));
+        stresses.extend(stress(&p.extra));
+    }
+    for Past { drifted, rate } in past {
+        earlier.push([drifted.0, rate.0]);
+        stresses.extend(stress(&drifted.1).into_iter().chain(stress(&rate.1)));
+    }
     let times = [time, dt, last_approach, *lag, call[0], call[1], call[2]];
     let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
-    let particles = (stored.collect(), past.iter().map(earlier).collect());
-    (times, counts, built_inside_a_step, particles)
+    (times, counts, built_inside_a_step, (stored, earlier, stresses))
 }
 
 fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError> {
-    let (times, counts, built_inside_a_step, (stored, past)) = bits::read::<State<X>>(from)?;
+    let (times, counts, built_inside_a_step, (stored, earlier, stresses)) =
+        bits::read::<State>(from)?;
     let [time, dt, last_approach, lag, call @ ..] = times;
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
     let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
-    let (mut particles, mut built_at) = (Vec::new(), Vec::new());
-    for (id, role, [position, velocity, at], ([density, mass], Extra(extra))) in stored {
-        let roles = [Role::Fluid, Role::Wall, Role::Interface];
-        let role = roles.into_iter().find(|known| *known as u8 == role);
+    let mut stresses = stresses.into_iter();
+    let mut extra = || stresses.next().map_or_else(X::default, stressed);
+    let (mut particles, mut built_at, mut past) = (Vec::new(), Vec::new(), Vec::new());
+    for (id, role, [position, velocity, at], [density, mass]) in stored {
+        let role = outline::role(role.into());
         let role = role.ok_or(RunError::Checkpoint("a particle of an unknown role"))?;
-        particles.push((id, Particle { role, position, velocity, density, mass, extra }));
+        particles.push((id, Particle { role, position, velocity, density, mass, extra: extra() }));
         built_at.push(at);
     }
-    let earlier = |earlier: Earlier<X>| {
-        let [drifted, rate] = earlier.map(|(density, Extra(extra))| (density, extra));
-        Past { drifted, rate }
-    };
-    let past = past.into_iter().map(earlier).collect();
+    for [drifted, rate] in earlier {
+        past.push(Past { drifted: (drifted, extra()), rate: (rate, extra()) });
+    }
     Ok(Checkpoint { progress, lag, particles, built_at, past })
 }
 
 /// A simulation as bytes.
 pub(crate) fn save<X: Numbers>(
-    simulation: &(impl Stepper<X> + ?Sized),
+    simulation: &dyn Stepper<X>,
     stage: &Stage,
-    seen: &impl Bits,
+    seen: &dyn Bits,
 ) -> Result<Vec<u8>, RunError> {
     if size_of::<X>() > 0 && TypeId::of::<X>() != TypeId::of::<Symmetric>() {
         return Err(RunError::Checkpoint(
@@ -125,8 +109,8 @@ pub(crate) fn save<X: Numbers>(
 /// Gives a simulation of the same scene, and what was observed of it, their state from bytes.
 pub(crate) fn restore<X: Numbers>(
     mut bytes: &[u8],
-    simulation: &mut (impl Stepper<X> + ?Sized),
-    seen: &mut impl Bits,
+    simulation: &mut dyn Stepper<X>,
+    seen: &mut dyn Bits,
 ) -> Result<Stage, RunError> {
     let from = &mut bytes;
     simulation.restore(&restore_state(from)?).map_err(RunError::Checkpoint)?;

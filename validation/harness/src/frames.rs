@@ -61,10 +61,7 @@ impl<'a> Frames<'a> {
     ///
     /// # Errors
     /// If it cannot be written; the frames after it can be all the same.
-    pub fn write<X: Numbers>(
-        &mut self,
-        simulation: &(impl Stepper<X> + ?Sized),
-    ) -> Result<(), FileError> {
+    pub fn write<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) -> Result<(), FileError> {
         let name = format!("particles_{:04}.vtu", self.come);
         self.come += 1;
         let columns = columns(&simulation.particles(), self.pressure);
@@ -80,13 +77,19 @@ impl<'a> Frames<'a> {
 /// Name of the deviatoric stress of a solid: xx, yy, xy \[Pa\].
 const STRESS: &str = "deviatoric stress";
 
-/// The deviatoric stress of each particle \[Pa\], if it is a solid that these are of.
-fn stress<X: Numbers>(particles: &[Particle<X>]) -> Option<Vec<[f64; 3]>> {
-    let stress = |p: &Particle<X>| {
-        let extra: &dyn Any = &p.extra;
-        extra.downcast_ref::<Symmetric>().map(|s| [s.xx, s.yy, s.xy])
-    };
-    particles.iter().map(stress).collect()
+/// The deviatoric stress among the extra fields of a particle \[Pa\], if it is one of a solid.
+pub(crate) fn stress<X: Numbers>(extra: &X) -> Option<[f64; 3]> {
+    let extra: &dyn Any = extra;
+    extra.downcast_ref().map(|Symmetric { xx, yy, xy }| [*xx, *yy, *xy])
+}
+
+/// The extra fields of a particle of a solid that has this stress.
+pub(crate) fn stressed<X: Numbers>([xx, yy, xy]: [f64; 3]) -> X {
+    let mut extra = X::default();
+    if let Some(stress) = (&mut extra as &mut dyn Any).downcast_mut() {
+        *stress = Symmetric { xx, yy, xy };
+    }
+    extra
 }
 
 /// All fields of the particles at one time, as columns. A particle keeps its number through a run.
@@ -101,7 +104,7 @@ pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> 
         .with("v", "m/s", column(&|p| p.velocity.y))
         .with("density", "kg/m^3", column(&|p| p.density))
         .with("pressure", "Pa", column(&|p| pressure(p.density)));
-    let stress = stress(particles).unwrap_or_default();
+    let stress: Vec<_> = particles.iter().filter_map(|p| stress(&p.extra)).collect();
     let names = ["xx", "yy", "xy"].into_iter().enumerate().filter(|_| !stress.is_empty());
     let profile = names.fold(profile, |profile, (k, name)| {
         profile.with(&format!("{STRESS} {name}"), "Pa", stress.iter().map(|s| s[k]).collect())

@@ -138,7 +138,7 @@ impl Sink {
     /// Adds what the drive of the scene is made of.
     pub fn drive<X: Numbers>(
         &self,
-        simulation: &(impl Stepper<X> + ?Sized),
+        simulation: &dyn Stepper<X>,
         times: &[f64],
         dt: f64,
         pressure: &dyn Fn(f64) -> f64,

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use base::record::Status;
 use nalgebra::Vector2;
-use solver::{Checkpoint, Divergence, Numbers, Observer, Outcome, Particle, Role, Stepper};
+use solver::{Checkpoint, Divergence, Numbers, Outcome, Particle, Role, Stepper};
 
 use crate::error::RunError;
 
@@ -29,6 +29,13 @@ pub struct Frame {
     pub time: f64,
     /// The particles that moved; the others are where they were.
     pub particles: Vec<Placed>,
+}
+
+impl Frame {
+    /// Does it count for this time of a run to this end?
+    pub(crate) fn is_at(&self, time: f64, end: f64) -> bool {
+        (self.time - time).abs() <= SAME_TIME * end
+    }
 }
 
 /// A particle that another code chose itself.
@@ -68,46 +75,12 @@ impl Playback<'_> {
         };
         self.own.iter().map(particle).collect()
     }
-
-    /// Shows every frame to the observer, and calls `at` with the number of each of the times.
-    ///
-    /// # Errors
-    /// If a time has no frame, or a frame cannot be put in place of the particles of the scene.
-    pub fn play<X: Numbers, D: Stepper<X> + ?Sized, O: Observer<X>>(
-        &self,
-        simulation: &mut D,
-        times: &[f64],
-        observer: &mut O,
-        mut at: impl FnMut(&mut O, &mut D, usize),
-    ) -> Result<Status, RunError> {
-        let end = times.last().copied().unwrap_or_default();
-        if let Some(time) = missing(self.frames, times).first() {
-            return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
-        }
-        let mut reached = 0;
-        for frame in self.frames {
-            let next = |reached: usize| {
-                times.get(reached).copied().filter(|time| is_at(frame, *time, end))
-            };
-            let time = next(reached).unwrap_or(frame.time);
-            if let Some(ended) = put(frame, time, simulation)? {
-                return Ok(ended);
-            }
-            simulation.show(observer);
-            // A time may be stated twice, such as that of a sample and of a picture.
-            while next(reached).is_some() {
-                at(observer, simulation, reached);
-                reached += 1;
-            }
-        }
-        Ok(Status::Completed)
-    }
 }
 
 /// The times that have no frame \[s\], of a run that ends with the last of them.
 pub fn missing(frames: &[Frame], times: &[f64]) -> Vec<f64> {
     let end = times.last().copied().unwrap_or_default();
-    let has = |time: &&f64| frames.iter().any(|frame| is_at(frame, **time, end));
+    let has = |time: &&f64| frames.iter().any(|frame| frame.is_at(**time, end));
     times.iter().filter(|time| !has(time)).copied().collect()
 }
 
@@ -116,10 +89,10 @@ pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str
     let end = times.last().copied().unwrap_or_default();
     let why = |k: usize| match &frames[k] {
         frame if frame.time < 0.0 => Some("it is before the start; expected times from 0 on"),
-        frame if frame.time > end && !is_at(frame, end, end) => {
+        frame if frame.time > end && !frame.is_at(end, end) => {
             Some("it is after the end; expected no later times than those of the problem")
         }
-        frame if k > 0 && is_at(frame, frames[k - 1].time, 2.0 * end) => Some(
+        frame if k > 0 && frame.is_at(frames[k - 1].time, 2.0 * end) => Some(
             "it is the time of the frame before it but for round-off; expected one frame a time",
         ),
         _ => None,
@@ -127,15 +100,11 @@ pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str
     (0..frames.len()).find_map(|k| Some(k).zip(why(k)))
 }
 
-fn is_at(frame: &Frame, time: f64, end: f64) -> bool {
-    (frame.time - time).abs() <= SAME_TIME * end
-}
-
 /// Puts the particles of a frame in place; how the run counts as ended, if they are beyond its limits.
-fn put<X: Numbers, D: Stepper<X> + ?Sized>(
+pub(crate) fn put<X: Numbers>(
     frame: &Frame,
     time: f64,
-    simulation: &mut D,
+    simulation: &mut dyn Stepper<X>,
 ) -> Result<Option<Status>, RunError> {
     let refused = |reason: String| RunError::Playback(format!("frame at t = {time} s: {reason}"));
     let mut state = simulation.checkpoint();
@@ -185,11 +154,11 @@ pub(crate) fn diverged(Divergence { step, time, fault }: Divergence) -> Status {
 
 /// Derives all that pair sweeps read. What another code integrates beside position, velocity and density is
 /// not a number unless the positions determine it: the rest is derived without it.
-fn advanced<X: Numbers, D: Stepper<X> + ?Sized>(
+fn advanced<X: Numbers>(
     frame: &Frame,
     time: f64,
     mut state: Checkpoint<X>,
-    simulation: &mut D,
+    simulation: &mut dyn Stepper<X>,
 ) -> Outcome {
     let outcome = simulation.advance(time, 1.0, &mut ());
     match &outcome {

@@ -91,13 +91,12 @@ pub(crate) struct Profiler {
 }
 
 impl Profiler {
-    /// A profiler of a simulation with these observers, frames and checkpoints.
+    /// A profiler of a simulation with these observers, of which frames and checkpoints are the last.
     pub fn new<X: Numbers>(
-        simulation: &mut (impl Stepper<X> + ?Sized),
-        observers: impl Iterator<Item = &'static str>,
+        simulation: &mut dyn Stepper<X>,
+        observers: Vec<&'static str>,
         earlier: Breakdown,
     ) -> Self {
-        let observers: Vec<_> = observers.chain([FRAMES, CHECKPOINTS]).collect();
         let parts = (0..=PHASES.len() + observers.len()).map(|_| Default::default()).collect();
         let (part, since) = (AtomicUsize::new(PHASES.len() + observers.len()), AtomicU64::new(0));
         let clock = Arc::new(Clock { start: Instant::now(), part, since, parts });
@@ -126,7 +125,7 @@ impl Profiler {
     }
 
     /// Looks at the lists of a simulation that was brought to a time, if the last look is long ago.
-    pub fn sample<X: Numbers>(&mut self, simulation: &(impl Stepper<X> + ?Sized)) {
+    pub fn sample<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) {
         let steps = simulation.work().steps;
         // Before the first step nothing is derived yet that could be looked at.
         if steps == 0 || self.lists.count > 0.0 && steps < self.sampled + SAMPLE_EVERY {
@@ -152,7 +151,7 @@ impl Profiler {
     }
 
     /// What was found so far.
-    pub fn breakdown<X: Numbers>(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Breakdown {
+    pub fn breakdown<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Breakdown {
         let mut all = self.earlier.clone();
         let of_clock = |parts: &mut Vec<Part>, name: &str, number: usize| {
             let [nanoseconds, times] = [0, 1].map(|k| self.clock.parts[number][k].load(Relaxed));

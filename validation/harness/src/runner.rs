@@ -1,13 +1,12 @@
 //! Steps a simulation through the times of interest: the only time loop of the program. It measures the
-//! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs.
+//! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs. The loop
+//! knows a run of a case by [`Observed`] alone, so it is compiled once for all cases of fluids, and once for
+//! those of solids.
 
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-use base::bits::Bits;
-use base::breakdown::Breakdown;
-use base::mutation::Constant;
-use base::record::{Cost, Status};
+use base::{bits::Bits, breakdown::Breakdown, mutation::Constant, record::*};
 use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
@@ -17,7 +16,7 @@ use crate::{
     error::RunError,
     frames::{self, Frames},
     outline::Sink,
-    playback,
+    playback::{self, Playback},
     profile::{self, Profiler},
     size::Size,
 };
@@ -25,29 +24,115 @@ use crate::{
 /// Wall time after which it is shown again how far a run is.
 const SHOW_EVERY: Duration = Duration::from_millis(200);
 
-/// A function that is called after every step with what is observed of the run.
-type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
-/// A function that is called at the k-th of the times of interest.
-type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
-/// Functions by the names that a profile gives them, in the order in which they are called.
-type Named<F> = Vec<(&'static str, F)>;
-/// Whether what is called at a time reads quantities of that very time.
-type Synchronised = bool;
-/// A function that is called when a run goes on from a checkpoint.
-type Resumed<'a, D, S> = &'a dyn Fn(&S, &mut D);
+/// How a run ended, and what it took.
+pub type Ended = Result<(Status, Cost), RunError>;
 
-/// Sees every step: calls the observer, writes frames and checkpoints, shows how far the run is, and obeys an
+/// A simulation and all that is observed of it.
+trait Observed<X> {
+    /// The simulation, and what sees its steps.
+    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>);
+    /// Calls the k-th of the functions that are called at times, at this one of the times.
+    fn at(&mut self, k: usize, reached: usize);
+    /// Puts back what a case has changed of the simulation and what is no part of a checkpoint.
+    fn resumed(&mut self);
+}
+
+/// What is observed of a run.
+trait Seen<X> {
+    /// Calls the k-th of the functions that are called after every step.
+    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow;
+    /// All that changes of it.
+    fn bits(&mut self) -> &mut dyn Bits;
+}
+
+/// A run that is under way.
+type Running<'a, X> = &'a mut dyn Observed<X>;
+
+/// The way of a run, and what is called on it, by the names that a profile gives it.
+struct Course<'a> {
+    dt: f64,
+    /// Steps to each of the times at least.
+    least: usize,
+    /// Pair sweeps a step.
+    sweeps: f64,
+    times: &'a [f64],
+    pressure: Box<dyn Fn(f64) -> f64>,
+    /// After every step.
+    after_step: Vec<&'static str>,
+    /// At each of the times, and whether it reads quantities of that very time.
+    at: Vec<(&'static str, bool)>,
+}
+
+impl Course<'_> {
+    /// Steps a run through the times. [`simulate`](crate::simulate::simulate) has it compiled here for fluids.
+    fn run<X: Numbers>(&self, run: Running<X>, context: &Context) -> Ended {
+        let (simulation, _) = run.parts();
+        let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
+        let (dt, least) = (self.dt * factor, self.least as f64 / factor);
+        let end = self.times.last().copied().unwrap_or_default();
+        let fewest = least.max(1.0) * self.times.len() as f64;
+        let steps = ((end - simulation.time()) / dt).max(fewest);
+        let size = Size { sweeps: self.sweeps, ..Size::of(simulation, steps) };
+        check_size(size, "the end, the time step or the spacing", context)?;
+        if let Some(tell) = context.estimate {
+            tell(&size);
+        }
+        if let Some(outline) = &context.outline {
+            return outlined(outline, simulation, (dt, self.times), &self.pressure, context);
+        }
+        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, &self.pressure));
+        let mut watch = Watch {
+            context,
+            course: self,
+            end,
+            shown: Instant::now(),
+            saved: context.now().wall,
+            frames: frames.transpose()?,
+            profiler: None,
+            cost: Cost { threads: context.threads.max(1), ..Cost::default() },
+            start: Reading::default(),
+            steps: 0,
+            reached: 0,
+            synchronises: true,
+        };
+        if let Some(playback) = context.playback {
+            return watch.play(run, playback);
+        }
+        let ended = watch.go_on(run)?;
+        let (simulation, _) = run.parts();
+        if context.profile && ended.is_none() {
+            let names = self.after_step.iter().chain(self.at.iter().map(|(name, _)| name));
+            let names = names.copied().chain([profile::FRAMES, profile::CHECKPOINTS]).collect();
+            let earlier = watch.cost.breakdown.take().unwrap_or_default();
+            watch.profiler = Some(Profiler::new(simulation, names, earlier));
+        }
+        watch.show(simulation, dt);
+        let (status, cost) = match ended {
+            Some(status) => (status, watch.cost.clone()),
+            None => watch.step_through(run, dt, least),
+        };
+        let (simulation, seen) = run.parts();
+        if let Some(checkpoints) = context.checkpoints {
+            let stage = watch.stage(cost.clone(), Some(status.clone()));
+            checkpoints.keep(checkpoint::save(simulation, &stage, seen.bits())?);
+        }
+        if let Some(at_the_end) = context.at_the_end {
+            let columns = frames::columns(&simulation.particles(), &self.pressure);
+            *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
+        }
+        Ok((status, cost))
+    }
+}
+
+/// Sees every step: calls the observers, writes frames and checkpoints, shows how far the run is, and obeys an
 /// interrupt after every step, however long steps take.
-struct Watch<'a, X, D: ?Sized, S> {
+struct Watch<'a> {
     context: &'a Context<'a>,
+    course: &'a Course<'a>,
     end: f64,
     shown: Instant,
     /// Wall time of the last checkpoint \[s\].
     saved: f64,
-    seen: &'a mut S,
-    pressure: &'a dyn Fn(f64) -> f64,
-    after_step: Named<AfterStep<'a, X, S>>,
-    at: Named<(At<'a, D, S>, Synchronised)>,
     frames: Option<Frames<'a>>,
     profiler: Option<Profiler>,
     /// What the way to the last of the times of interest took, and all observing.
@@ -59,11 +144,11 @@ struct Watch<'a, X, D: ?Sized, S> {
     /// How many of the times of interest were reached.
     reached: usize,
     /// Whether what is called at the next of them reads quantities of that very time.
-    synchronises: Synchronised,
+    synchronises: bool,
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
-    fn show(&mut self, simulation: &(impl Stepper<X> + ?Sized), dt: f64) {
+impl Watch<'_> {
+    fn show<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
             show(Progress { time: simulation.time(), end: self.end, dt, particle_steps });
@@ -72,7 +157,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
     }
 
     /// What the run took until now.
-    fn cost(&self, simulation: &(impl Stepper<X> + ?Sized), now: Reading) -> Cost {
+    fn cost<X: Numbers>(&self, simulation: &dyn Stepper<X>, now: Reading) -> Cost {
         let mut cost = self.cost.clone();
         if simulation.work().steps > self.steps {
             cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
@@ -83,35 +168,19 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
         cost
     }
 
-    /// An observer of this name begins.
-    fn profile(&self, name: &str) {
-        self.profiler.iter().for_each(|profiler| profiler.observe(name));
-    }
-
     /// Where the time went until now, if anyone wants to know.
-    fn breakdown(&self, simulation: &(impl Stepper<X> + ?Sized)) -> Option<Breakdown> {
+    fn breakdown<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Option<Breakdown> {
         self.profiler.as_ref().map(|profiler| profiler.breakdown(simulation))
     }
 
-    /// The run as bytes, after a step or at its end.
-    fn save(
-        &self,
-        simulation: &(impl Stepper<X> + ?Sized),
-        cost: Cost,
-        ended: Option<Status>,
-    ) -> Result<Vec<u8>, RunError> {
+    /// How far the run is, after a step or at its end.
+    fn stage(&self, cost: Cost, ended: Option<Status>) -> Stage {
         let frames = self.frames.as_ref().map(Frames::written);
-        let stage = Stage { reached: self.reached, cost, frames, ended };
-        checkpoint::save(simulation, &stage, &*self.seen)
-    }
-
-    /// Is there anything to do after a step?
-    fn observes(&self) -> bool {
-        !self.after_step.is_empty() || self.frames.is_some() || self.context.checkpoints.is_some()
+        Stage { reached: self.reached, cost, frames, ended }
     }
 
     /// Writes the frames whose time has come, unless it is interrupted: those are written when it goes on.
-    fn write_frames(&mut self, simulation: &(impl Stepper<X> + ?Sized)) {
+    fn write_frames<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) {
         let Some(frames) = &mut self.frames else { return };
         self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
         while frames.is_due(simulation.time()) && !self.context.is_interrupted() {
@@ -120,11 +189,16 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
     }
 
     /// What the case observes, and what of it is written.
-    fn observe(&mut self, simulation: &dyn Stepper<X>, now: Reading) -> Flow {
+    fn observe<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, seen: &mut dyn Seen<X>) -> Flow {
+        let is_seen = !self.course.after_step.is_empty() || self.frames.is_some();
+        if !is_seen && self.context.checkpoints.is_none() {
+            return Flow::Continue;
+        }
+        let now = self.context.now();
         let mut flow = Flow::Continue;
-        for (name, after_step) in &self.after_step {
-            self.profile(name);
-            if after_step(self.seen, simulation) == Flow::Stop {
+        for (k, name) in self.course.after_step.iter().enumerate() {
+            self.profiler.iter().for_each(|profiler| profiler.observe(name));
+            if seen.after_step(k, simulation) == Flow::Stop {
                 flow = Flow::Stop;
             }
         }
@@ -134,22 +208,26 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
             && (now.wall - self.saved >= checkpoints.every.as_secs_f64()
                 || self.context.is_interrupted())
         {
-            self.profile(profile::CHECKPOINTS);
+            self.profiler.iter().for_each(|profiler| profiler.observe(profile::CHECKPOINTS));
             let cost = Cost { breakdown: self.breakdown(simulation), ..self.cost(simulation, now) };
-            let saved = self.save(simulation, cost, None);
+            let saved = checkpoint::save(simulation, &self.stage(cost, None), seen.bits());
             let is_last = self.context.is_interrupted();
             let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
             written.unwrap_or_else(|error| self.context.lose(&error));
             self.saved = self.context.now().wall;
         }
+        let took = self.context.now() - now;
+        self.start += took;
+        self.cost.observing_s += took.wall;
         flow
     }
 
     /// Steps to a time; how the run ended, if it did not get there.
-    fn step_to(&mut self, simulation: &mut D, until: f64, dt: f64) -> Option<Status> {
+    fn step_to<X: Numbers>(&mut self, run: Running<X>, until: f64, dt: f64) -> Option<Status> {
+        let (simulation, seen) = run.parts();
         (self.start, self.steps) = (self.context.now(), simulation.work().steps);
         self.profiler.iter().for_each(Profiler::step);
-        let outcome = simulation.advance(until, dt, self);
+        let outcome = simulation.advance(until, dt, &mut Watching { watch: self, seen });
         self.profiler.iter().for_each(Profiler::pause);
         self.cost = self.cost(simulation, self.context.now());
         if let Some(profiler) = &mut self.profiler {
@@ -166,42 +244,68 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
     }
 
     /// Steps through the times that are left, with steps of at most `dt` \[s\] and at least so many to each,
-    /// and observes each; how the run ended.
-    fn step_through(&mut self, simulation: &mut D, times: &[f64], dt: f64, least: f64) -> Status {
+    /// observes each, and writes the last frame; how the run ended, and what it took.
+    fn step_through<X: Numbers>(&mut self, run: Running<X>, dt: f64, least: f64) -> (Status, Cost) {
+        let Course { times, at, .. } = self.course;
         while let Some(&until) = times.get(self.reached) {
             let start = self.reached.checked_sub(1).map_or(0.0, |before| times[before]);
             let dt = if until > start { dt.min((until - start) / least) } else { dt };
             let is_last = self.reached + 1 == times.len();
             let is_told = self.context.at_times.is_some();
             self.synchronises =
-                is_last || is_told || self.at.iter().any(|(_, (_, synchronised))| *synchronised);
-            if let Some(ended) = self.step_to(simulation, until, dt) {
-                return ended;
+                is_last || is_told || at.iter().any(|(_, synchronised)| *synchronised);
+            if let Some(ended) = self.step_to(run, until, dt) {
+                return (ended, self.counted(run.parts().0));
             }
             let start = self.context.now();
             if let Some(tell) = self.context.at_times {
-                tell(until, frames::columns(&simulation.particles(), self.pressure));
+                tell(until, frames::columns(&run.parts().0.particles(), &self.course.pressure));
             }
-            for (name, (at, _)) in &self.at {
-                self.profile(name);
-                at(self.seen, simulation, self.reached);
+            for (k, (name, _)) in at.iter().enumerate() {
+                self.profiler.iter().for_each(|profiler| profiler.observe(name));
+                run.at(k, self.reached);
             }
             self.profiler.iter().for_each(Profiler::pause);
             self.cost.observing_s += (self.context.now() - start).wall;
             self.reached += 1;
         }
-        Status::Completed
+        let (simulation, _) = run.parts();
+        if let Some(frames) = &mut self.frames {
+            frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
+        }
+        (Status::Completed, self.counted(simulation))
     }
 
-    /// Calls what is to be called at the k-th of the times of interest.
-    fn look(&mut self, simulation: &mut D, k: usize) {
-        self.at.iter().for_each(|(_, (at, _))| at(self.seen, simulation, k));
+    /// Shows every frame of another code to the observers, and calls what is to be called at its times.
+    fn play<X: Numbers>(&mut self, run: Running<X>, playback: &Playback) -> Ended {
+        let (times, end) = (self.course.times, self.end);
+        if let Some(time) = playback::missing(playback.frames, times).first() {
+            return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
+        }
+        for frame in playback.frames {
+            let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));
+            let (simulation, seen) = run.parts();
+            let time = next(self.reached).copied().unwrap_or(frame.time);
+            if let Some(ended) = playback::put(frame, time, simulation)? {
+                return Ok((ended, self.counted(simulation)));
+            }
+            Watching { watch: self, seen }.after_step(simulation);
+            // A time may be stated twice, such as that of a sample and of a picture.
+            while next(self.reached).is_some() {
+                (0..self.course.at.len()).for_each(|k| run.at(k, self.reached));
+                self.reached += 1;
+            }
+        }
+        Ok((Status::Completed, self.counted(run.parts().0)))
     }
 
-    /// Goes on from a checkpoint; how the simulation ended, if it did.
-    fn go_on(&mut self, bytes: &[u8], simulation: &mut D) -> Result<Option<Status>, RunError> {
+    /// Goes on from a checkpoint if there is one; how the simulation ended, if it did.
+    fn go_on<X: Numbers>(&mut self, run: Running<X>) -> Result<Option<Status>, RunError> {
+        let bytes = self.context.checkpoints.and_then(Checkpoints::next);
+        let Some(bytes) = bytes else { return Ok(None) };
+        let (simulation, seen) = run.parts();
         let Stage { reached, cost, frames, ended } =
-            checkpoint::restore(bytes, simulation, self.seen)?;
+            checkpoint::restore(&bytes, simulation, seen.bits())?;
         let resumed = cost.resumed + u32::from(ended.is_none());
         self.cost = Cost { threads: self.cost.threads, resumed, ..cost };
         self.reached = reached;
@@ -215,11 +319,12 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
             // No step: derives again what may be asked for at the end.
             simulation.advance(self.end, 1.0, &mut ());
         }
+        run.resumed();
         Ok(ended)
     }
 
     /// What was counted.
-    fn counted(&self, simulation: &D) -> Cost {
+    fn counted<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Cost {
         let work = simulation.work();
         Cost {
             steps: work.steps,
@@ -233,25 +338,25 @@ impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Watch<'_, X, D, S> {
     }
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observer<X> for Watch<'_, X, D, S> {
+/// A watch with what is observed of the run.
+struct Watching<'w, 'a, X> {
+    watch: &'w mut Watch<'a>,
+    seen: &'w mut dyn Seen<X>,
+}
+
+impl<X: Numbers> Observer<X> for Watching<'_, '_, X> {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        if self.context.progress.is_some() && self.shown.elapsed() >= SHOW_EVERY {
-            self.show(simulation, simulation.dt());
+        let Self { watch, seen } = self;
+        if watch.context.progress.is_some() && watch.shown.elapsed() >= SHOW_EVERY {
+            watch.show(simulation, simulation.dt());
         }
-        let mut flow = Flow::Continue;
-        if self.observes() {
-            let now = self.context.now();
-            flow = self.observe(simulation, now);
-            let took = self.context.now() - now;
-            self.start += took;
-            self.cost.observing_s += took.wall;
-        }
-        if self.context.is_interrupted() { Flow::Stop } else { flow }
+        let flow = watch.observe(simulation, *seen);
+        if watch.context.is_interrupted() { Flow::Stop } else { flow }
     }
 
     fn synchronises(&self) -> bool {
-        self.synchronises
+        self.watch.synchronises
     }
 }
 
@@ -282,11 +387,11 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
 /// the case looks at them: it does not know what the observer sees. The run ends here, as an error.
 fn outlined<X: Numbers>(
     outline: &Sink,
-    simulation: &mut (impl Stepper<X> + ?Sized),
+    simulation: &mut dyn Stepper<X>,
     (dt, times): (f64, &[f64]),
     pressure: &dyn Fn(f64) -> f64,
     context: &Context,
-) -> Result<(Status, Cost), RunError> {
+) -> Ended {
     let early = outline.early(dt)?;
     let (dt, times) = early.as_ref().map_or((dt, times), |(dt, times)| (*dt, &times[..]));
     outline.drive(simulation, times, dt, pressure);
@@ -301,21 +406,53 @@ fn outlined<X: Numbers>(
     Err(RunError::Told)
 }
 
+/// A function that is called after every step with what is observed of the run.
+type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
+/// A function that is called at the k-th of the times of interest.
+type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
+
+/// What is observed of a run, and what is called of it after every step.
+struct Seeing<'a, X, S> {
+    seen: &'a mut S,
+    after_step: Vec<AfterStep<'a, X, S>>,
+}
+
+impl<X, S: Bits> Seen<X> for Seeing<'_, X, S> {
+    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow {
+        self.after_step[k](self.seen, simulation)
+    }
+    fn bits(&mut self) -> &mut dyn Bits {
+        self.seen
+    }
+}
+
+/// A simulation with the functions of a case.
+struct Run<'a, X, D: ?Sized, S> {
+    simulation: &'a mut D,
+    seeing: Seeing<'a, X, S>,
+    at: Vec<At<'a, D, S>>,
+    resumed: &'a dyn Fn(&S, &mut D),
+}
+
+impl<X, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
+    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>) {
+        (self.simulation.stepper(), &mut self.seeing)
+    }
+    fn at(&mut self, k: usize, reached: usize) {
+        self.at[k](self.seeing.seen, self.simulation, reached);
+    }
+    fn resumed(&mut self) {
+        (self.resumed)(self.seeing.seen, self.simulation);
+    }
+}
+
 /// A simulation with what is observed of it on its way through the times of interest.
 ///
 /// The functions of a case cannot change what they capture: all that changes is in `S`, which checkpoints
 /// hold.
 pub struct Drive<'a, X, D: ?Sized, S> {
-    simulation: &'a mut D,
-    dt: f64,
-    least: usize,
-    sweeps: f64,
-    times: &'a [f64],
-    pressure: Box<dyn Fn(f64) -> f64>,
-    seen: &'a mut S,
-    after_step: Named<AfterStep<'a, X, S>>,
-    at: Named<(At<'a, D, S>, Synchronised)>,
-    resumed: Resumed<'a, D, S>,
+    run: Run<'a, X, D, S>,
+    course: Course<'a>,
 }
 
 impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
@@ -328,61 +465,57 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
         eos: impl EquationOfState,
         seen: &'a mut S,
     ) -> Self {
+        let seeing = Seeing { seen, after_step: Vec::new() };
+        let run = Run { simulation, seeing, at: Vec::new(), resumed: &|_, _| {} };
+        let (least, sweeps, after_step, at) = (1, 2.0, Vec::new(), Vec::new());
         let pressure = Box::new(move |density| eos.pressure(density));
-        let (after_step, at) = (Vec::new(), Vec::new());
-        let resumed: Resumed<'a, D, S> = &|_, _| {};
-        let (least, sweeps) = (1, 2.0);
-        Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed }
+        Self { run, course: Course { dt, least, sweeps, times, pressure, after_step, at } }
     }
 
-    /// Makes at least so many steps to each of the times, from the one before it.
-    pub fn at_least(self, least: usize) -> Self {
-        Self { least, ..self }
-    }
-
-    /// So many pair sweeps a step, for the estimate of what the run takes.
-    pub fn sweeps(self, sweeps: f64) -> Self {
-        Self { sweeps, ..self }
+    /// Makes at least so many steps to each of the times, from the one before it, of so many pair sweeps each,
+    /// for the estimate of what the run takes.
+    pub fn steps(mut self, least: usize, sweeps: f64) -> Self {
+        (self.course.least, self.course.sweeps) = (least, sweeps);
+        self
     }
 
     /// Calls a function after every step, beside those named before; a profile shows its time by this name.
-    pub fn after_step(self, name: &'static str, after_step: AfterStep<'a, X, S>) -> Self {
-        self.after_step_if(true, name, after_step)
+    pub fn after_step(mut self, name: &'static str, call: AfterStep<'a, X, S>) -> Self {
+        self.run.seeing.after_step.push(call);
+        self.course.after_step.push(name);
+        self
     }
 
     /// The same if that is asked for: a run that does without has no such call.
-    pub fn after_step_if(
-        mut self,
-        asked: bool,
-        name: &'static str,
-        after_step: AfterStep<'a, X, S>,
-    ) -> Self {
-        self.after_step.extend(asked.then_some((name, after_step)));
-        self
+    pub fn after_step_if(self, is: bool, name: &'static str, call: AfterStep<'a, X, S>) -> Self {
+        if is { self.after_step(name, call) } else { self }
     }
 
     /// Calls a function at each of the times, with its number, likewise.
-    pub fn at(self, name: &'static str, at: At<'a, D, S>) -> Self {
-        self.at_if(true, name, at)
+    pub fn at(mut self, name: &'static str, call: At<'a, D, S>) -> Self {
+        self.run.at.push(call);
+        self.course.at.push((name, true));
+        self
     }
 
     /// The same if that is asked for.
-    pub fn at_if(mut self, asked: bool, name: &'static str, at: At<'a, D, S>) -> Self {
-        self.at.extend(asked.then_some((name, (at, true))));
-        self
+    pub fn at_if(self, is: bool, name: &'static str, call: At<'a, D, S>) -> Self {
+        if is { self.at(name, call) } else { self }
     }
 
     /// The same for a function that reads positions and densities, or for which velocities and what else a
     /// leapfrog has may lag behind them by half a step, which costs no pair sweep.
-    pub fn at_positions(mut self, name: &'static str, at: At<'a, D, S>) -> Self {
-        self.at.push((name, (at, false)));
+    pub fn at_positions(mut self, name: &'static str, call: At<'a, D, S>) -> Self {
+        self.run.at.push(call);
+        self.course.at.push((name, false));
         self
     }
 
     /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
     /// what is no part of a [`Checkpoint`](solver::Checkpoint), such as a force.
-    pub fn resumed(self, resumed: Resumed<'a, D, S>) -> Self {
-        Self { resumed, ..self }
+    pub fn resumed(mut self, resumed: &'a dyn Fn(&S, &mut D)) -> Self {
+        self.run.resumed = resumed;
+        self
     }
 
     /// Steps through the times. Returns how the run ended, and its cost: that of the stepping, and separately
@@ -392,75 +525,8 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     /// If it would take more time or memory than a run may, the folder of frames cannot be made, or it does
     /// not fit the checkpoint that it goes on from. A frame or a checkpoint that cannot be written is told to
     /// [`Context::lost`].
-    pub fn run(self, context: &Context) -> Result<(Status, Cost), RunError> {
-        let Self { simulation, dt, least, sweeps, times, pressure, seen, after_step, at, resumed } =
-            self;
-        let pressure = &*pressure;
-        let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
-        let (dt, least) = (dt * factor, least as f64 / factor);
-        let end = times.last().copied().unwrap_or_default();
-        let fewest = least.max(1.0) * times.len() as f64;
-        let steps = ((end - simulation.time()) / dt).max(fewest);
-        let size = Size { sweeps, ..Size::of(simulation, steps) };
-        check_size(size, "the end, the time step or the spacing", context)?;
-        if let Some(tell) = context.estimate {
-            tell(&size);
-        }
-        if let Some(outline) = &context.outline {
-            return outlined(outline, simulation, (dt, times), pressure, context);
-        }
-        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, pressure));
-        let mut watch = Watch {
-            context,
-            end,
-            shown: Instant::now(),
-            saved: context.now().wall,
-            seen,
-            pressure,
-            after_step,
-            at,
-            frames: frames.transpose()?,
-            profiler: None,
-            cost: Cost { threads: context.threads.max(1), ..Cost::default() },
-            start: Reading::default(),
-            steps: 0,
-            reached: 0,
-            synchronises: true,
-        };
-        if let Some(playback) = context.playback {
-            let status = playback.play(simulation, times, &mut watch, Watch::look)?;
-            return Ok((status, watch.counted(simulation)));
-        }
-        let mut ended = None;
-        if let Some(bytes) = context.checkpoints.and_then(Checkpoints::next) {
-            ended = watch.go_on(&bytes, simulation)?;
-            resumed(watch.seen, simulation);
-        }
-        if context.profile && ended.is_none() {
-            let names = watch.after_step.iter().map(|(name, _)| *name);
-            let names: Vec<_> = names.chain(watch.at.iter().map(|(name, _)| *name)).collect();
-            let earlier = watch.cost.breakdown.take().unwrap_or_default();
-            watch.profiler = Some(Profiler::new(simulation, names.into_iter(), earlier));
-        }
-        watch.show(simulation, dt);
-        let (status, cost) = match ended {
-            Some(status) => (status, watch.cost.clone()),
-            None => {
-                let status = watch.step_through(simulation, times, dt, least);
-                if let (Some(frames), Status::Completed) = (&mut watch.frames, &status) {
-                    frames.write(simulation).unwrap_or_else(|error| context.lose(&error.into()));
-                }
-                (status, watch.counted(simulation))
-            }
-        };
-        if let Some(checkpoints) = context.checkpoints {
-            checkpoints.keep(watch.save(simulation, cost.clone(), Some(status.clone()))?);
-        }
-        if let Some(at_the_end) = context.at_the_end {
-            let columns = frames::columns(&simulation.particles(), pressure);
-            *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
-        }
-        Ok((status, cost))
+    pub fn run(mut self, context: &Context) -> Ended {
+        self.course.run(&mut self.run, context)
     }
 }
 

@@ -5,7 +5,7 @@ use base::{
     record::{Record, digest},
 };
 use nalgebra::Vector2;
-use solver::{Numbers, Particle, Role, Stepper};
+use solver::{Particle, Role, Stepper};
 
 use crate::{
     context::Context,
@@ -31,10 +31,14 @@ pub fn begin<X, D: ?Sized>(
     numbers: &[(&str, f64)],
     context: &Context,
 ) -> Record {
+    let &Method { kernel, support, integrator, walls, law, .. } = method;
+    let shifts = method.uses.contains(&Knob::Shift);
+    begin_of(MethodWords { kernel, support, integrator, walls, law, shifts }, numbers, context)
+}
+
+fn begin_of(method: MethodWords, numbers: &[(&str, f64)], context: &Context) -> Record {
     if let Some(outline) = &context.outline {
-        let &Method { kernel, support, integrator, walls, law, .. } = method;
-        let shifts = method.uses.contains(&Knob::Shift);
-        outline.method(MethodWords { kernel, support, integrator, walls, law, shifts });
+        outline.method(method);
     }
     let mut record = Record::of(&context.spec, context.threads.max(1));
     let words = [(KERNEL, method.kernel), (INTEGRATOR, method.integrator), (WALLS, method.walls)];
@@ -92,13 +96,13 @@ pub fn check<X, D: ?Sized>(
 ///
 /// # Errors
 /// If the scene is refused, or a frame cannot be written.
-pub fn simulate<X: Numbers>(
-    method: &Method<X>,
-    parts: Parts<X>,
+pub fn simulate(
+    method: &Method,
+    parts: Parts,
     [dt, end]: [f64; 2],
     context: &Context,
     record: &mut Record,
-) -> Result<Box<dyn Stepper<X>>, RunError> {
+) -> Result<Box<dyn Stepper<()>>, RunError> {
     let eos = parts.medium.eos;
     let mut simulation = (method.build)(parts)?;
     (record.status, record.cost) =
@@ -115,7 +119,9 @@ pub fn momentum<X>(particles: &[Particle<X>]) -> Vector2<f64> {
 
 /// Digest of positions, velocities and densities, in the order of the scene.
 pub fn state<X>(particles: &[Particle<X>]) -> String {
-    let numbers =
-        |p: &Particle<X>| [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density];
-    digest(&particles.iter().flat_map(numbers).collect::<Vec<f64>>())
+    let mut numbers = Vec::new();
+    for p in particles {
+        numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
+    }
+    digest(&numbers)
 }

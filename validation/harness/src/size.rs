@@ -42,7 +42,7 @@ impl Size {
     }
 
     /// So many steps of a simulation; its kernel tells how far it reaches.
-    pub fn of<X: Numbers>(simulation: &(impl Stepper<X> + ?Sized), steps: f64) -> Self {
+    pub fn of<X: Numbers>(simulation: &dyn Stepper<X>, steps: f64) -> Self {
         let particles = simulation.fluid_count() + simulation.walls().len();
         let spacing = simulation.fluid().next().map_or(1.0, |(m, p)| (m / p.density).sqrt());
         let reaches =

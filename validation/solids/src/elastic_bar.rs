@@ -96,8 +96,6 @@ impl BarSettings {
 }
 
 impl Problem for BarSettings {
-    type Watch = Motion;
-
     fn scales(&self) -> Scales {
         let (dx, rows) = (self.length / self.n as f64, self.rows());
         let (bodies, auto) = match (self.collide, self.gap > 0.0) {
@@ -148,15 +146,9 @@ impl Problem for BarSettings {
         Vector2::new(size * (1.0 - erfc(z * FRAC_1_SQRT_2)), 0.0)
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Motion {
-        Motion {
-            settings: self.clone(),
-            momentum: start.iter().map(|p| p.velocity * p.mass).sum(),
-            total: start.iter().map(|p| p.velocity.norm() * p.mass).sum(),
-            energy: energy.unwrap_or_else(|| Energy::of_all(start, &self.material())).total(),
-            series: vec![row(0.0, start.iter().map(|p| (p.mass, p.position.x, p.velocity.x)))],
-            stress: None,
-        }
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch> {
+        let energy = energy.unwrap_or_else(|| Energy::of_all(start, &self.material()));
+        Box::new(Motion::new(self, start, energy.total()))
     }
 }
 
@@ -192,19 +184,18 @@ fn row(time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 4] 
     [time, first / (momentum[0] + momentum[1]), mean[0], mean[1]]
 }
 
-impl Observer<Symmetric> for Motion {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
-        let all = simulation.fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
-        let row = row(simulation.time(), all);
-        self.series.push(row);
-        if self.settings.collide && self.stress.is_none() && row[2] <= 0.0 {
-            self.stress = Some(self.contact_stress(simulation));
-        }
-        Flow::Continue
-    }
-}
-
 impl Motion {
+    fn new(s: &BarSettings, start: &[Particle<Symmetric>], energy: f64) -> Self {
+        Self {
+            settings: s.clone(),
+            momentum: start.iter().map(|p| p.velocity * p.mass).sum(),
+            total: start.iter().map(|p| p.velocity.norm() * p.mass).sum(),
+            energy,
+            series: vec![row(0.0, start.iter().map(|p| (p.mass, p.position.x, p.velocity.x)))],
+            stress: None,
+        }
+    }
+
     fn contact_stress(&self, simulation: &dyn Stepper<Symmetric>) -> f64 {
         let (eos, reach) = (self.settings.material().eos(), 0.5 * self.settings.length);
         let near = simulation.fluid().filter(|(_, p)| p.position.x.abs() < reach);
@@ -250,7 +241,16 @@ impl Motion {
 }
 
 impl Watch for Motion {
-    fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        let all = simulation.fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
+        let row = row(simulation.time(), all);
+        self.series.push(row);
+        if self.settings.collide && self.stress.is_none() && row[2] <= 0.0 {
+            self.stress = Some(self.contact_stress(simulation));
+        }
+    }
+
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         match self.settings.collide {
             true => self.impact_metrics(record),
             false => self.pulse_metrics(record),
@@ -423,8 +423,7 @@ mod tests {
 
     /// Motion that was written down, not stepped.
     fn motion(settings: &BarSettings, series: Vec<[f64; 4]>, stress: Option<f64>) -> Motion {
-        let nothing = settings.watch(&[], None);
-        Motion { series, stress, ..nothing }
+        Motion { series, stress, ..Motion::new(settings, &[], 0.0) }
     }
 
     fn record() -> Record {
@@ -510,7 +509,7 @@ mod tests {
             p.velocity.x = if p.position.x < 0.0 { -0.2 } else { 0.5 };
         }
         let (dx, method) = (s.dx(), schemes::solid::bare());
-        let mut watch = s.watch(&particles, None);
+        let mut watch = Motion::new(&s, &particles, 0.0);
         let parts =
             Parts::new(s.medium(&method, dx), s.scales().domain, particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");

@@ -148,9 +148,7 @@ impl Watch {
         }
         acos(0.5 * forward / square)
     }
-}
 
-impl Observer<Symmetric> for Watch {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
         let particles = simulation.particles();
         let part =

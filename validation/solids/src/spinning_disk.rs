@@ -62,8 +62,6 @@ const SAMPLES: f64 = 200.0;
 const TENTH: f64 = 0.1;
 
 impl Problem for DiskSettings {
-    type Watch = History;
-
     fn scales(&self) -> Scales {
         let speed = self.speed * self.material().sound_speed();
         Scales {
@@ -86,16 +84,8 @@ impl Problem for DiskSettings {
             .collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> History {
-        let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
-        let energy = Energy::of_all(start, &self.material()).total();
-        History {
-            settings: self.clone(),
-            mass: start.iter().map(|p| p.mass).sum(),
-            until: self.end() / SAMPLES,
-            series: vec![[0.0, spin, energy, 0.0]],
-            first: None,
-        }
+    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Box<dyn Watch> {
+        Box::new(History::new(self, start))
     }
 }
 
@@ -115,6 +105,14 @@ pub struct History {
 harness::observed! { History: changes(until, series, first), stays(settings, mass) }
 
 impl History {
+    fn new(s: &DiskSettings, start: &[Particle<Symmetric>]) -> Self {
+        let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
+        let energy = Energy::of_all(start, &s.material()).total();
+        let (mass, until) = (start.iter().map(|p| p.mass).sum(), s.end() / SAMPLES);
+        let series = vec![[0.0, spin, energy, 0.0]];
+        Self { settings: s.clone(), mass, until, series, first: None }
+    }
+
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let (mut mass, mut stress) = (0.0, 0.0);
         for (m, p) in simulation.fluid() {
@@ -145,8 +143,8 @@ fn mistaken(simulation: &dyn Stepper<Symmetric>, radius: f64) -> [f64; 2] {
     [inside, rim / count]
 }
 
-impl Observer<Symmetric> for History {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
+impl Watch for History {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let s = &self.settings;
         if self.first.is_none() {
             // One support for the gradient, one for the neighbours that XSPH has moved before it.
@@ -157,12 +155,9 @@ impl Observer<Symmetric> for History {
             self.until += s.end() / SAMPLES;
             self.sample(simulation);
         }
-        Flow::Continue
     }
-}
 
-impl Watch for History {
-    fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         self.sample(simulation);
         let (material, speed) = (self.settings.material(), self.settings.speed());
         let scale = material.density * speed * speed;
@@ -336,7 +331,7 @@ mod tests {
             particles.iter().find(|p| p.position.x == s.radius).expect("a particle at the rim");
         let [x, y] = [rim.velocity.x, rim.velocity.y];
         assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
-        let History { mass, series, .. } = s.watch(&particles, None);
+        let History { mass, series, .. } = History::new(&s, &particles);
         let row = series[0];
         let spin = 2.851 / 0.04;
         let inertia = mass * 0.5 * 0.04 * 0.04;

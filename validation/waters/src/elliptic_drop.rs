@@ -173,13 +173,11 @@ fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Reco
     let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
-    let mut seen = (&mut history, &mut ledger);
+    let (mut seen, all) = ((&mut history, &mut ledger), context.measures_all());
     (record.status, record.cost) =
         Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
             .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
-            .at_if(context.measures_all(), "energy ledger by term", &|(_, ledger), s, _| {
-                ledger.sample(s);
-            })
+            .at_if(all, "energy ledger by term", &|(_, ledger), s, _| ledger.sample(s))
             .run(context)?;
     history.measure(&mut record);
     let start = shape(&drop.particles);

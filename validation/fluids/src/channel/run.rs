@@ -31,8 +31,7 @@ pub fn run(
     };
     let mut seen = (&mut mode, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
-        .at_least(s.least_steps)
-        .sweeps(setup.rules.sweeps())
+        .steps(s.least_steps, setup.rules.sweeps())
         .after_step_if(s.watch_mode, "pressure mode", &|(mode, _), simulation| {
             mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
             Going::Continue

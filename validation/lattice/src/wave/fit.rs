@@ -79,7 +79,10 @@ fn matrix_between(states: &[Vector2<f64>]) -> Option<Matrix2<f64>> {
     if states.len() < 3 {
         return None;
     }
-    square.try_inverse().map(|inverse| forward * inverse)
+    // As nalgebra inverts it, whose function comes with that for four rows.
+    let (a, b, c, d) = (square.m11, square.m12, square.m21, square.m22);
+    let determinant = a * d - c * b;
+    (determinant != 0.0).then(|| forward * (Matrix2::new(d, -b, -c, a) / determinant))
 }
 
 /// The factor of least squares |yₙ₊₁ - f yₙ|; NaN for zeros.

@@ -18,6 +18,7 @@ use base::{gate::*, record::MetricKey};
 use harness::{
     case::*,
     composed::*,
+    context::Context,
     declare::Declaration,
     table::{Row, Table},
 };
@@ -137,7 +138,7 @@ fn variants(of: Polarisation) -> Compositions<WaveSettings> {
     let of_step =
         "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";
     let of_diffusion = "does density diffusion decay as its symbol says? else as cubic-leapfrog";
-    let rules = move |m: &_, s: &_| run::rules(of, m, s);
+    let rules = move |m: &_, s: &_| Ok(run::Wave::new(of, s, m, &Context::of_rules())?.rules);
     Variants::of(move |m, s, context| run::run(of, m, s, context), rules)
         .with(CUBIC, of_kernel, schemes::lattice::cubic(), |_| ())
         .with(MIDPOINT, of_step, schemes::lattice::midpoint(), |_| ())

@@ -18,7 +18,7 @@ use harness::{
 use maths::metrics::norms::largest;
 use maths::theory::time_step::{self, Mode, modes};
 use nalgebra::Vector2;
-use solver::{EquationOfState, Flow, Observer, Stepper, Tait};
+use solver::{EquationOfState, Flow, Stepper, Tait};
 
 use super::{
     fit::{self, DampedMode},
@@ -39,7 +39,7 @@ pub(super) struct Wave {
     /// What theory gives to sound, to shear, and to density by itself.
     mode: Mode,
     /// A time step of which a whole number ends the run, the leapfrog's limits of it, sound speed, end.
-    rules: Rules,
+    pub rules: Rules,
 }
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
@@ -59,7 +59,7 @@ impl Wave {
     ///
     /// # Errors
     /// If the lattice does not carry it, or the step is beyond its limit.
-    fn new(
+    pub fn new(
         polarisation: Polarisation,
         s: &WaveSettings,
         method: &Method,
@@ -163,9 +163,7 @@ impl<'a> Projection<'a> {
         basis.iter_mut().for_each(|b| *b = [b[0] / squares[0], b[1] / squares[1]]);
         Self { wave, basis, series: Vec::new(), momentum: None }
     }
-}
 
-impl Observer<()> for Projection<'_> {
     fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
         let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = self.wave;
         let across = self.wave.across();
@@ -184,15 +182,6 @@ impl Observer<()> for Projection<'_> {
 
 /// The exponent of [`Tait::new`].
 const GAMMA: i32 = 7;
-
-/// What the rules choose.
-pub(super) fn rules(
-    polarisation: Polarisation,
-    method: &Method,
-    settings: &WaveSettings,
-) -> Result<Rules, RunError> {
-    Ok(Wave::new(polarisation, settings, method, &Context::of_rules())?.rules)
-}
 
 /// Runs a wave, projects it on itself, and compares it with theory.
 pub(super) fn run(

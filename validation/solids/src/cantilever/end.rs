@@ -23,16 +23,6 @@ pub struct End {
 
 harness::observed! { End: changes(until, path, energies), stays(settings) }
 
-impl Observer<Symmetric> for End {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
-        if simulation.time() >= self.until {
-            self.until = simulation.time() + self.settings.end / SAMPLES;
-            self.sample(simulation);
-        }
-        Flow::Continue
-    }
-}
-
 impl End {
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let all = simulation.particles();
@@ -62,7 +52,14 @@ impl End {
 }
 
 impl Watch for End {
-    fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        if simulation.time() >= self.until {
+            self.until = simulation.time() + self.settings.end / SAMPLES;
+            self.sample(simulation);
+        }
+    }
+
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         self.energies.push(self.energy(simulation));
         let most = |k: usize| {
             self.energies
@@ -133,7 +130,8 @@ mod tests {
             (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");
         let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
         lagrangian::displace(&mut *simulation, place);
-        let mut end = s.watch(&[], None);
+        let (path, energies) = (vec![[0.0; 3]], Vec::new());
+        let mut end = End { settings: s, until: 0.0, path, energies };
         end.sample(&*simulation);
         let [_, x, y] = end.path[1];
         assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);

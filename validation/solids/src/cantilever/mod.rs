@@ -138,8 +138,6 @@ impl CantileverSettings {
 }
 
 impl Problem for CantileverSettings {
-    type Watch = End;
-
     /// The speed is that of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to
     /// either side; at most that of a rigid bar that falls to the vertical.
     fn scales(&self) -> Scales {
@@ -178,9 +176,9 @@ impl Problem for CantileverSettings {
         row(0.0, columns).chain(held).collect()
     }
 
-    fn watch(&self, _: &[Particle<Symmetric>], _: Option<Energy>) -> End {
+    fn watch(&self, _: &[Particle<Symmetric>], _: Option<Energy>) -> Box<dyn Watch> {
         let (path, energies) = (vec![[0.0; 3]], vec![[0.0; 3]]);
-        End { settings: self.clone(), until: 0.0, path, energies }
+        Box::new(End { settings: self.clone(), until: 0.0, path, energies })
     }
 }
 

@@ -111,8 +111,6 @@ impl PlateSettings {
 }
 
 impl Problem for PlateSettings {
-    type Watch = Tip;
-
     fn scales(&self) -> Scales {
         Scales {
             speed: self.speed * self.material().sound_speed(),
@@ -138,9 +136,8 @@ impl Problem for PlateSettings {
         free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Tip {
-        let energy = Energy::of_all(start, &self.material()).kinetic;
-        Tip { settings: self.clone(), until: 0, energy, series: vec![[0.0; 3]] }
+    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Box<dyn Watch> {
+        Box::new(Tip::new(self, start))
     }
 }
 
@@ -155,22 +152,6 @@ pub struct Tip {
 }
 
 harness::observed! { Tip: changes(until, series), stays(settings, energy) }
-
-impl Observer<Symmetric> for Tip {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
-        if self.until > 0 {
-            self.until -= 1;
-            return Flow::Continue;
-        }
-        self.until = EVERY - 1;
-        let (all, s, columns) = (simulation.particles(), &self.settings, self.settings.columns());
-        let tip = (1..=s.n).map(|row| all[row * columns - 1].position);
-        let mean = tip.fold(Vector2::zeros(), |sum, x| sum + x) / s.n as f64;
-        let rest = (columns as f64 - 0.5) * s.dx();
-        self.series.push([simulation.time(), mean.x - rest, mean.y]);
-        Flow::Continue
-    }
-}
 
 impl Tip {
     /// Times at which the tip passes its height of rest \[s\].
@@ -189,13 +170,26 @@ impl Tip {
 }
 
 impl Watch for Tip {
-    fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        if self.until > 0 {
+            self.until -= 1;
+            return;
+        }
+        self.until = EVERY - 1;
+        let (all, s, columns) = (simulation.particles(), &self.settings, self.settings.columns());
+        let tip = (1..=s.n).map(|row| all[row * columns - 1].position);
+        let mean = tip.fold(Vector2::zeros(), |sum, x| sum + x) / s.n as f64;
+        let rest = (columns as f64 - 0.5) * s.dx();
+        self.series.push([simulation.time(), mean.x - rest, mean.y]);
+    }
+
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         self.measure_swing(record);
         let after = Energy::of(simulation, &self.settings.material()).total();
         record.put(ENERGY_CHANGE, after / self.energy - 1.0);
-        let (s, path) = (self.settings, Path(self.series));
+        let (s, path) = (&self.settings, Path(std::mem::take(&mut self.series)));
         let errors = [(PERIOD, PERIOD_ERROR), (AMPLITUDE_RATIO, AMPLITUDE_ERROR)];
-        let exact = elements(&record.variant, &s);
+        let exact = elements(&record.variant, s);
         let lacks = "the run is too short, or finite elements have no such plate: they have 0.2 m and 0.02 \
                      m, 2 MPa, Poisson's ratio 0.3975, 1000 kg/m^3, 0.01 c0, and 5, 10 and 20 layers";
         let of_path = (PATH_RMS, "extreme_1");
@@ -210,6 +204,11 @@ impl Watch for Tip {
 }
 
 impl Tip {
+    fn new(s: &PlateSettings, start: &[Particle<Symmetric>]) -> Self {
+        let energy = Energy::of_all(start, &s.material()).kinetic;
+        Self { settings: s.clone(), until: 0, energy, series: vec![[0.0; 3]] }
+    }
+
     fn measure_swing(&self, record: &mut Record) {
         let first = self.passes().first().copied().unwrap_or(f64::INFINITY);
         let swing = self.series.iter().take_while(|row| row[0] <= first);
@@ -255,7 +254,7 @@ mod tests {
         };
         let series = (0..).map(row).take_while(|row| row[0] < periods * period).collect();
         let mut record = Record::new("oscillating_plate", "made-up", serde_json::Value::Null, 1);
-        Tip { series, ..s.watch(&[], None) }.measure_swing(&mut record);
+        Tip { series, ..Tip::new(s, &[]) }.measure_swing(&mut record);
         record
     }
 
@@ -285,7 +284,7 @@ mod tests {
             p.position.y = 1.5 * p.position.y + 0.001;
         }
         let (dx, method) = (s.dx(), schemes::solid::clamped_bare());
-        let mut tip = s.watch(&particles, None);
+        let mut tip = Tip::new(&s, &particles);
         let parts =
             Parts::new(s.medium(&method, dx), Domain::open(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");

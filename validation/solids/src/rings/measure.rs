@@ -1,7 +1,6 @@
 //! What is measured of the rings, sample by sample and at the end.
 
 use maths::geometry::{Bonds, Topology};
-use solver::Flow as Going;
 
 use super::*;
 
@@ -230,18 +229,15 @@ const PAUSE: f64 = 5.0;
 /// Force of round-off, over mass and speed of a ring \[c₀/L\].
 const ROUND_OFF: f64 = 1e-9;
 
-impl Observer<Symmetric> for Series {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Going {
+impl Watch for Series {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
         if simulation.time() >= self.next {
             self.next += self.settings.end() / SAMPLES;
             let particles = along_flight(&self.settings, simulation.particles());
             self.sample(simulation.time(), &particles, Energy::known(simulation));
         }
-        Going::Continue
     }
-}
 
-impl Watch for Series {
     /// x, y and the largest principal stress of the ring on the right, for pictures.
     fn keep(&self, simulation: &dyn Stepper<Symmetric>, stop: usize, record: &mut Record) {
         let s = &self.settings;
@@ -261,7 +257,7 @@ impl Watch for Series {
         pictures::keep(record, &name, "L", ("stress", "Pa"), stressed);
     }
 
-    fn measure(mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         if record.status == Status::Completed {
             let particles = along_flight(&self.settings, simulation.particles());
             let time = simulation.time();

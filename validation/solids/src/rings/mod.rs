@@ -19,7 +19,7 @@ use harness::{
     studies::causes::*, table,
 };
 use nalgebra::{Rotation2, Vector2};
-use solver::{EquationOfState, Limits, Observer, Particle, Stepper, Symmetric};
+use solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};
 use std::f64::consts::TAU;
 
 use crate::{

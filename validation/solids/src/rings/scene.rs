@@ -39,8 +39,6 @@ impl RingSettings {
 }
 
 impl Problem for RingSettings {
-    type Watch = Series;
-
     /// Twice the density or twice the speed of sound is no rubber any more.
     fn scales(&self) -> Scales {
         let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
@@ -102,8 +100,8 @@ impl Problem for RingSettings {
         ring(-1.0).chain(ring(1.0)).collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Series {
-        Series::new(self, start, energy)
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch> {
+        Box::new(Series::new(self, start, energy))
     }
 }
 

@@ -1,7 +1,7 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use nalgebra::Vector2;
-use solver::{Domain, Observer, Particle, Role, Stepper, Symmetric};
+use solver::{Domain, Flow, Particle, Role, Stepper, Symmetric};
 
 use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
@@ -22,8 +22,8 @@ use harness::{
 };
 use maths::theory::time_step::Integrator;
 
-/// Settings by [`solid_settings!`](crate::solid_settings!).
-pub trait SharedSettings: Settings {
+/// Settings of a problem by [`solid_settings!`](crate::solid_settings!).
+pub trait SharedSettings: Problem + Settings {
     /// The material.
     fn material(&self) -> Material;
     /// h/dx.
@@ -63,10 +63,7 @@ pub struct Scales {
 }
 
 /// A problem of elasticity, stated by its settings: what differs between solid cases.
-pub trait Problem: SharedSettings {
-    /// What sees every step.
-    type Watch: Watch;
-
+pub trait Problem {
     /// Spacing, speed, end and the like.
     fn scales(&self) -> Scales;
     /// Spacing \[m\].
@@ -86,7 +83,7 @@ pub trait Problem: SharedSettings {
     fn particles(&self) -> Vec<Particle<Symmetric>>;
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch>;
     /// Refuses settings that are in their ranges and make no body together, or none that this method holds.
     ///
     /// # Errors
@@ -102,23 +99,29 @@ pub trait Problem: SharedSettings {
 }
 
 /// Sees every step of a run and measures it.
-pub trait Watch: Observer<Symmetric> + Bits {
+pub trait Watch: Bits {
+    /// Called after every step.
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>);
     /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
     fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &mut Record) {}
     /// Puts metrics and profiles; `simulation` is at its end.
-    fn measure(self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
 }
 
 /// Variants of a problem.
 type Alike<P> = Variants<P, Method<Symmetric>>;
 
 /// No variants yet, of a problem that any method runs.
-pub fn no_variants<P: Problem>() -> Alike<P> {
-    Variants::of(run, |method, s| Ok(rules(method, s)))
+pub fn no_variants<P: SharedSettings>() -> Alike<P> {
+    let run = |m: &_, s: &P, context: &Context| {
+        s.check(m, context)?;
+        run(m, s, (s.material(), rules(m, s), s.medium(m, s.dx())), s.h_over_dx(), context)
+    };
+    Variants::of(run, |m, s| Ok(rules(m, s)))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
-pub fn variants<P: Problem>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
+pub fn variants<P: SharedSettings>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
     let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
                   principal axes, XSPH";
     let alone = "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what \
@@ -152,7 +155,7 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
-fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
+fn rules<P: SharedSettings>(method: &Method<Symmetric>, settings: &P) -> Rules {
     let Scales { dx, speed, end, meet, gravity, .. } = settings.scales();
     let (material, medium) = (settings.material(), settings.medium(method, dx));
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
@@ -168,21 +171,25 @@ fn rules<P: Problem>(method: &Method<Symmetric>, settings: &P) -> Rules {
 }
 
 /// One run with a method.
-fn run<P: Problem>(m: &Method<Symmetric>, s: &P, context: &Context) -> Result<Record, RunError> {
-    s.check(m, context)?;
-    let (rules, scales) = (rules(m, s), s.scales());
+fn run(
+    m: &Method<Symmetric>,
+    s: &dyn Problem,
+    (material, rules, medium): (Material, Rules, Medium),
+    h_over_dx: f64,
+    context: &Context,
+) -> Result<Record, RunError> {
+    let scales = s.scales();
     simulate::check_step(m.integrator, &rules, context)?;
-    let medium = Medium { acceleration: scales.gravity, ..s.medium(m, scales.dx) };
+    let medium = Medium { acceleration: scales.gravity, ..medium };
     let size = simulate::size(m, &medium, [rules.end / rules.dt(), scales.count]);
     let size = Size { samples: size.steps, ..size };
     runner::check_size(size, scales.decisive, context)?;
-    let material = s.material();
     let own = [
         ("K [Pa]", material.bulk),
         ("mu [Pa]", material.shear),
         ("c_p [m/s]", material.p_wave_speed()),
     ];
-    let numbers = [&rules.numbers([s.h_over_dx(), medium.dx])[..], &own].concat();
+    let numbers = [&rules.numbers([h_over_dx, medium.dx])[..], &own].concat();
     let mut record = simulate::begin(m, &numbers, context);
     let (eos, particles) = (material.eos(), s.particles());
     let is_held = particles.iter().any(|p| p.role == Role::Wall);
@@ -201,9 +208,12 @@ fn run<P: Problem>(m: &Method<Symmetric>, s: &P, context: &Context) -> Result<Re
     let mut watch = s.watch(&particles, energy);
     let count = scales.stops.max(1);
     let stops: Vec<f64> = (1..=count).map(|k| scales.end * k as f64 / count as f64).collect();
-    let mut seen = (&mut watch, &mut record);
+    let mut seen = (&mut *watch, &mut record);
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
-        .after_step("measurements", &|(watch, _), simulation| watch.after_step(simulation))
+        .after_step("measurements", &|(watch, _), simulation| {
+            watch.after_step(simulation);
+            Flow::Continue
+        })
         .at_positions("particles", &|(watch, record), simulation, stop| {
             if context.spec.keep.particles {
                 watch.keep(simulation, stop, record);

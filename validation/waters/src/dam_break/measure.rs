@@ -192,6 +192,15 @@ impl Gauge {
         self.sensors.iter().map(|spots| spots.iter().map(at).sum()).collect()
     }
 
+    /// Reads the sensors after a step.
+    pub fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
+        if !self.sensors.is_empty() {
+            let p = self.read(simulation);
+            self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
+        }
+        Flow::Continue
+    }
+
     /// Pressures over time, means over blocks of [`BLOCK`], in the units of the column.
     pub fn measure(&self, dam: &Dam, record: &mut Record) {
         let (unit, scale) = (dam.settings.unit_time(), dam.unit_pressure());
@@ -236,16 +245,6 @@ fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
 }
 
 harness::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
-
-impl Observer<()> for Gauge {
-    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        if !self.sensors.is_empty() {
-            let p = self.read(simulation);
-            self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
-        }
-        Flow::Continue
-    }
-}
 
 #[cfg(test)]
 mod tests {

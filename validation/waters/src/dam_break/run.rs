@@ -43,9 +43,7 @@ pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<R
     let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
-        .at_if(is_balanced, "energy ledger and momentum", &|(_, _, ledger, _), s, _| {
-            ledger.sample(s)
-        })
+        .at_if(is_balanced, "energy ledger and momentum", &|(.., ledger, _), s, _| ledger.sample(s))
         .at_positions("picture", &|(.., record), s, k| {
             if context.spec.keep.particles && k == pictured {
                 let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
