@@ -413,8 +413,8 @@ const DAMAGES: [(&str, Damage, &[&str]); 38] = [
         "a grid in two pieces, of which the second would be taken for all",
         |f| {
             fs::remove_file(f.join("results.csv")).unwrap();
-            let piece = "<Piece><Points><DataArray NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray>\
-                         </Points></Piece>";
+            let head = "<DataArray NumberOfComponents=\"3\" format=\"ascii\">";
+            let piece = format!("<Piece><Points>{head}0 0 0</DataArray></Points></Piece>");
             fs::write(f.join("a.vtu"), format!("<VTKFile>{piece}{piece}</VTKFile>")).unwrap()
         },
         &["a.vtu, line 1, column x", "there twice; expected once"],

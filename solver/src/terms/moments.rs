@@ -26,8 +26,8 @@ pub fn inverse(moments: Symmetric) -> Option<Symmetric> {
     (determinant > SINGULAR).then(inverse)
 }
 
-/// Determinant and inverse of three by three numbers, for each size has a function of its own: that of nalgebra
-/// is compiled with what inverts any size.
+/// Determinant and inverse of three by three numbers, for each size has a function of its own: that of
+/// nalgebra is compiled with what inverts any size.
 #[inline]
 pub fn inverse_of_three(m: &Matrix3<f64>) -> (f64, Matrix3<f64>) {
     let [[a, d, g], [b, e, h], [c, f, i]] = m.data.0;

@@ -64,7 +64,8 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Steps a run through the times. [`simulate`](crate::simulate::simulate) has it compiled here for fluids.
+    /// Steps a run through the times. [`simulate`](crate::simulate::simulate) has it compiled here for
+    /// fluids.
     fn run<X: Numbers>(&self, run: Running<X>, context: &Context) -> Ended {
         let (simulation, _) = run.parts();
         let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
@@ -124,8 +125,8 @@ impl Course<'_> {
     }
 }
 
-/// Sees every step: calls the observers, writes frames and checkpoints, shows how far the run is, and obeys an
-/// interrupt after every step, however long steps take.
+/// Sees every step: calls the observers, writes frames and checkpoints, shows how far the run is, and obeys
+/// an interrupt after every step, however long steps take.
 struct Watch<'a> {
     context: &'a Context<'a>,
     course: &'a Course<'a>,
@@ -472,8 +473,8 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
         Self { run, course: Course { dt, least, sweeps, times, pressure, after_step, at } }
     }
 
-    /// Makes at least so many steps to each of the times, from the one before it, of so many pair sweeps each,
-    /// for the estimate of what the run takes.
+    /// Makes at least so many steps to each of the times, from the one before it, of so many pair sweeps
+    /// each, for the estimate of what the run takes.
     pub fn steps(mut self, least: usize, sweeps: f64) -> Self {
         (self.course.least, self.course.sweeps) = (least, sweeps);
         self
