@@ -215,12 +215,8 @@ fn table(tier: Tier) -> table::Table<Cavity, f64> {
     table.over(1000.0, &["carried", BEST], [&[], &[32, 45, 64]], |s, n| {
         (s.re, s.n, s.end) = (1000.0, n, 50.0);
     });
-    for row in &mut table.rows {
-        row.run.seconds = 0.007 * row.settings.end * (row.settings.n as f64 / 12.0).powi(3);
-        if row.variant == BEST && row.settings.n == if tier == Tier::Quick { 22 } else { 64 } {
-            row.run.spec = row.run.spec.clone().keep_particles();
-        }
-    }
+    let finest = if tier == Tier::Quick { 22 } else { 64 };
+    table.keep_particles(|row| row.variant == BEST && row.settings.n == finest);
     table.judge(gates);
     table
 }

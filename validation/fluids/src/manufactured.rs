@@ -170,9 +170,6 @@ fn table(tier: Tier) -> Table {
     table.over(For::Mixed, &ladders, [&[], &sides[1..]], |s, n| {
         (s.n, s.re, s.end, s.c0) = (n, 10.0, 1.2, 20.0);
     });
-    for row in &mut table.rows {
-        row.run.seconds = (row.settings.n as f64 / 40.0).powi(4);
-    }
     table
 }
 

@@ -38,17 +38,15 @@ pub struct Planned {
     pub gates: Vec<Gate>,
     /// Are its seconds shown? Then it is made in the quiet phase, while this program does nothing else.
     pub timed: bool,
-    /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
-    /// waits for the last one.
+    /// How long it takes \[s\], by [`estimate`](crate::make::estimate); long runs start first, so that no
+    /// core waits for the last one.
     pub seconds: f64,
 }
 
 impl Planned {
     /// A run without gates.
     pub fn new(spec: RunSpec) -> Self {
-        // A search makes several simulations, one after another.
-        let seconds = if spec.task == Task::Simulate { 1.0 } else { 10.0 };
-        Self { spec, gates: Vec::new(), timed: false, seconds }
+        Self { spec, gates: Vec::new(), timed: false, seconds: 1.0 }
     }
 
     /// The same run, judged.

@@ -244,13 +244,8 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
     for variant in ["seed", "modern"] {
         table.one(Group::Falling, variant, |s| (s.n, s.gravity) = (20, 1.0));
     }
-    for row in &mut table.rows {
-        row.run.seconds = 0.7 * (row.settings.n as f64 / 40.0).powi(3);
-        // The run of the figure.
-        if (row.group, row.variant, row.settings.n) == (Group::Judged, "modern", 40) {
-            row.run.spec = row.run.spec.clone().keep_particles();
-        }
-    }
+    let shown = (Group::Judged, "modern", 40);
+    table.keep_particles(|row| (row.group, row.variant, row.settings.n) == shown);
     table.judge(gates);
     table
 }

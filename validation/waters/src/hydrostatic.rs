@@ -325,11 +325,6 @@ fn table(tier: Tier) -> table::Table<HydrostaticSettings, Group> {
     table.over(Group::Disturbed, &["modern"], [&[], &[(0.1, false), (0.0, true)]], |s, start| {
         ((s.jitter, s.uniform), s.end) = (start, 40.0);
     });
-    for Row { variant, settings, run, .. } in &mut table.rows {
-        // Twice as many rows and columns take half the step.
-        let dear = if *variant == "modern" { 1.0 } else { 3.0 };
-        run.seconds = 0.3 * dear * (settings.rows as f64 / 20.0).powi(3);
-    }
     table.judge(gates);
     table
 }

@@ -244,12 +244,7 @@ fn table(tier: Tier) -> table::Table<Wedge, ()> {
     let depths: [&[usize]; 2] = [&[10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over((), &["seed"], [&[10, 14], depths[1]], |s, n| s.n = n);
     table.over((), &["modern"], depths, |s, n| s.n = n);
-    for row in &mut table.rows {
-        row.run.seconds = 0.3 * (row.settings.n as f64 / 20.0).powi(3);
-        if row.settings.n == 20 {
-            row.run.spec = row.run.spec.clone().keep_particles();
-        }
-    }
+    table.keep_particles(|row| row.settings.n == 20);
     table.judge(gates);
     table
 }

@@ -121,13 +121,11 @@ fn table(tier: Tier) -> Table {
     table.over(For::Ladder, &[BEST], [&[12, 17, 24, 50], &[25, 50, 100]], disturbed);
     table.over(For::Lattice, &[BEST], [&[32], &[25, 50, 100]], start(0.0));
     table.over(For::Control, &["plain"], [&[32], &[50]], disturbed);
-    for row in &mut table.rows {
-        row.run.seconds = 3.0 * (row.settings.n as f64 / 50.0).powi(3);
-        let is_best = row.variant == BEST && row.settings.n == 50;
-        if row.group == For::Control || row.group == For::Ladder && is_best {
-            row.run.spec = row.run.spec.clone().keep_particles();
-        }
-    }
+    table.keep_particles(|row| match row.group {
+        For::Control => true,
+        For::Ladder => row.variant == BEST && row.settings.n == 50,
+        For::Lattice => false,
+    });
     table.judge(gates);
     table
 }
