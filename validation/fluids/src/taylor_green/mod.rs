@@ -64,7 +64,8 @@ const NAME: &str = "taylor_green";
 /// The variant that is held to the goals.
 const BEST: &str = "consistent";
 
-static CASE: Composed<VortexSettings> = Composed {
+/// Taylor-Green vortices.
+pub static CASE: Composed<VortexSettings> = Composed {
     name: NAME,
     problem: "Periodic vortices decay by viscosity",
     best: Best {
@@ -81,9 +82,6 @@ static CASE: Composed<VortexSettings> = Composed {
     declaration,
     plan: |tier| table(tier).plan(),
 };
-
-/// Taylor-Green vortices.
-pub const TAYLOR_GREEN: &dyn Case = &CASE;
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
