@@ -95,7 +95,7 @@ fn faults(case: &'static dyn Case, damage: &str, made: Made) -> Vec<String> {
     let judged = catch_unwind(AssertUnwindSafe(|| {
         let suite = suite::judge(plans, tier, made);
         page::assemble(&suite, "now").html();
-        let refused = suite.judged().filter_map(|judged| judged.gate.check().err());
+        let refused = suite.judged().filter_map(|of| of.judged.gate.check().err());
         refused.map(|error| error.to_string()).collect()
     }));
     let told = |panic: Box<dyn std::any::Any + Send>| -> Vec<String> {

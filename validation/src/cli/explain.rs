@@ -13,7 +13,7 @@ use harness::make::Stored;
 use harness::plan;
 use harness::runs::{self, Judged};
 use harness::store::Store;
-use harness::suite::{self, Of};
+use harness::suite::{self, JudgedOf, Of};
 use validation::cases;
 
 use super::{
@@ -90,12 +90,13 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
 }
 
 /// A judgement, with all that is known of its gate.
-pub fn in_full(case: &dyn Case, of: Of, judged: &Judged) -> String {
+pub fn in_full(JudgedOf { case, of, judged }: &JudgedOf) -> String {
     let (on, status) = match of {
-        Of::Run(run) => (command(case, &run.planned.spec), Some(run.record.status.clone())),
+        Of::Run(run) => (command(*case, &run.planned.spec), Some(run.record.status.clone())),
         Of::Study(study) => (of_study(&study.title, case.name()), None),
     };
-    words(&Known { last: Some(judged.clone()), status, ..Known::new(judged.gate.clone(), on) })
+    let last = Some(Judged::clone(judged));
+    words(&Known { last, status, ..Known::new(judged.gate.clone(), on) })
 }
 
 /// The command that makes a run.

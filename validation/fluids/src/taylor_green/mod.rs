@@ -216,7 +216,7 @@ fn budgets() -> Budgets {
                  row, with another disturbance, shows what is chance. A shorter step, faster sound and less \
                  diffusion all raise the error, because their parts have the sign opposite to that of the \
                  spacing and cancel some of it.";
-    Budgets { about: about.into(), of: vec![Budget { variant: BEST, changes }] }
+    Budgets { about: about.into(), of: vec![changes] }
 }
 
 /// Error through time, of each variant that keeps particles apart with the same number of particles, and of
