@@ -214,9 +214,10 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
                    only rough. The state is a digest of the bits at the end: the same for any number of \
                    threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
-    Columns::of_variants()
+    Columns::<Record>::default()
+        .code("variant", |record| record.variant.clone())
         .text("set", |record| what(case, &record.spec()))
-        .ended()
+        .text("ended", |record| record.status.to_string())
         .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
         .num(["steps", "1"], |record| Cell::count(record.cost.steps))
         .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
