@@ -40,7 +40,7 @@ fn command(found: &JudgedOf) -> String {
         Of::Run(JudgedRun { planned: Planned { spec, .. }, .. })
             if spec.task == Task::Simulate && spec.mutation.is_none() =>
         {
-            case::command(found.case, &spec.variant, &case::changed(found.case, spec))
+            case::command(found.case, spec)
         }
         _ => format!("touchstone explain {}", found.judged.gate.id),
     }

@@ -217,10 +217,9 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let refinement = |(of, title): (For, &'static str)| {
         let line = |name: &'static str| {
-            let error = |record: &Record| record.value(L2);
             let level = |row: &table::Row<ManufacturedSettings, For>| Level {
                 spacing: 1.0 / row.settings.n as f64,
-                value: runs.completed(&row.run.spec).and_then(error).unwrap_or(f64::NAN),
+                value: runs.value(&row.run.spec, L2),
             };
             let levels = table.of(of).filter(|row| row.variant == name).map(level).collect();
             Line { name, levels, gate: gate(of, name) }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 pub use base::gate::Judged;
 use base::{
     gate::{Cause, Gate},
-    record::{Record, Status},
+    record::{MetricName, Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
 
@@ -180,6 +180,12 @@ impl Runs {
     /// The record of a run that reached its end.
     pub fn completed(&self, spec: &RunSpec) -> Option<&Record> {
         self.record(spec).filter(|record| record.status == Status::Completed)
+    }
+
+    /// A metric of a run that reached its end; NaN if there is no such run or it was not measured.
+    pub fn value(&self, spec: &RunSpec, metric: impl Into<MetricName>) -> f64 {
+        let record = self.completed(spec);
+        record.and_then(|record| record.value(metric)).unwrap_or(f64::NAN)
     }
 
     /// Runs that were asked for and not planned, in their canonical form.

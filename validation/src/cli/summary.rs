@@ -186,6 +186,5 @@ pub fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<
     let mut set = case::changed(case, spec);
     set.retain(|assignment| assignment.split('=').next() != Some(name));
     set.push(format!("{name}={half_the_spacing}"));
-    case::spec(case, &spec.variant, &set).ok()?;
-    Some(case::command(case, &spec.variant, &set))
+    Some(case::command(case, &case::spec(case, &spec.variant, &set).ok()?))
 }
