@@ -274,7 +274,7 @@ pub trait SettingType: Copy {
     fn put(&mut self, value: Value);
 }
 
-/// Implements [`SettingType`] for types: their kinds, how they become a value, and how they are made from one.
+/// Implements [`SettingType`] for types: their kinds, how they become a value, and how one makes them.
 macro_rules! setting_types {
     ($($Type:ty: $kind:ident, |$to:ident| $value:expr, $($from:pat => $of:expr),+;)+) => {$(
         impl SettingType for $Type {
