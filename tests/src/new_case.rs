@@ -53,7 +53,7 @@ fn declaration(tier: Tier) -> Declaration {
     let accuracy = vec![Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") }];
     let halved = Change::new("dt/2", "time", DECAY.spec("cubic", |s| s.step *= 0.5));
     let changes = vec![Change::new("none", "–", DECAY.spec("cubic", |_| {})), halved];
-    let budgets = Budgets { about: String::new(), of: vec![Budget { variant: "cubic", changes }] };
+    let budgets = Budgets { about: String::new(), of: vec![changes] };
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
     let rules = DECAY.rules(&long).unwrap_or(Rules::REFUSED);
     let limit = StepLimit::proportional("the wave", long, ("step", 1.0), &rules, None);

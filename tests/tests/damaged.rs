@@ -8,7 +8,7 @@ use base::spec::{RunSpec, Task};
 use harness::{
     case::{Case, Planned, Tier},
     context::Context,
-    make::{self, Made},
+    make::{self, Job, Made, Making},
     plan, suite,
 };
 use rayon::prelude::*;
@@ -50,11 +50,18 @@ fn damaged(record: &Record, (_, of_profile, of_metric): Damage) -> Record {
 /// Simulations of a variant that are tried until one reaches its end.
 const TRIED: usize = 4;
 
+/// Runs of a case, the shortest first.
+pub fn shortest_first(case: &'static dyn Case, planned: Vec<Planned>) -> Vec<Planned> {
+    let mut jobs: Vec<Job> = planned.into_iter().map(|planned| Job { case, planned }).collect();
+    make::estimate(&mut jobs, &Making::new(Tier::Quick, &|_| String::new()));
+    jobs.sort_by(|a, b| a.planned.seconds.total_cmp(&b.planned.seconds));
+    jobs.into_iter().map(|job| job.planned).collect()
+}
+
 /// The record of the cheapest planned run that reaches its end, of two variants of a case: of the best and of
 /// the paper's, if they have one.
 fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
-    let mut planned = plan::of_case(case, Tier::Quick);
-    planned.sort_by(|a, b| a.seconds.total_cmp(&b.seconds));
+    let planned = shortest_first(case, plan::of_case(case, Tier::Quick));
     let best = case.best();
     let of = |variant: &'static str| {
         let is_one = |spec: &RunSpec| spec.variant == variant && spec.task == Task::Simulate;
@@ -88,7 +95,7 @@ fn faults(case: &'static dyn Case, damage: &str, made: Made) -> Vec<String> {
     let judged = catch_unwind(AssertUnwindSafe(|| {
         let suite = suite::judge(plans, tier, made);
         page::assemble(&suite, "now").html();
-        let refused = suite.judged().filter_map(|judged| judged.gate.check().err());
+        let refused = suite.judged().filter_map(|of| of.judged.gate.check().err());
         refused.map(|error| error.to_string()).collect()
     }));
     let told = |panic: Box<dyn std::any::Any + Send>| -> Vec<String> {

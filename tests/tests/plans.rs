@@ -6,7 +6,7 @@ use base::gate::{Cause, Gate};
 use base::spec::RunSpec;
 use harness::{
     case::{self, Case, Planned, RunError, Tier},
-    declare::{Budget, Change},
+    declare::Change,
     deep::{FINER, STARTS},
     make::Made,
     plan,
@@ -101,7 +101,8 @@ fn a_budget_compares_each_change_with_the_run_that_it_names() {
     let (mut named, mut count) = (0, 0);
     for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
         let budgets = case.declaration(tier).budgets.of.into_iter();
-        for Budget { variant, changes } in budgets {
+        for changes in budgets {
+            let variant = &changes[0].spec.variant;
             let budget = format!("the budget of {} {variant}, {tier:?} tier", case.name());
             assert_eq!((changes[0].what.as_str(), changes[0].against), ("none", 0), "{budget}");
             for change in &changes[1..] {

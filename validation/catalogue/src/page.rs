@@ -13,7 +13,7 @@ use harness::{
     notes::Notes,
     runs::{Judged, JudgedRun},
     study::Study,
-    suite::{CaseResults, Of, Suite},
+    suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use report::{
     Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, counted,
@@ -111,9 +111,7 @@ fn provenance(made_by: &Manifest) -> String {
 
 /// A gate, its verdict, and the numbers of the reasons.
 struct Row<'a> {
-    case: &'a dyn Case,
-    of: Of<'a>,
-    judged: &'a Judged,
+    of: JudgedOf<'a>,
     reasons: String,
 }
 
@@ -121,23 +119,20 @@ struct Row<'a> {
 fn verdicts(suite: &Suite) -> Section {
     let mut notes = Notes::default();
     let mut rows = Vec::new();
-    for results in &suite.cases {
-        for (of, judged) in results.judged() {
-            let reasons = reasons(judged, &mut notes).join(" ");
-            rows.push(Row { case: results.case, of, judged, reasons });
-        }
+    for of in suite.judged() {
+        rows.push(Row { of, reasons: reasons(of.judged, &mut notes).join(" ") });
     }
-    rows.sort_by_key(|row| std::cmp::Reverse(row.judged.judgement.verdict));
+    rows.sort_by_key(|row| std::cmp::Reverse(row.of.judged.judgement.verdict));
     let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
     let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
     let gates = Columns::<Row>::default()
-        .with(Column::text("verdict"), |row| Cell::status(row.judged.judgement.verdict))
-        .text("gate", |row| row.judged.gate.id.clone())
+        .with(Column::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
+        .text("gate", |row| row.of.judged.gate.id.clone())
         .text("run or study", judged_on)
-        .num(["value", ""], move |row| value(row.judged.judgement.value))
-        .text("bound", |row| row.judged.gate.bounds())
-        .num(["margin", ""], move |row| margin(row.judged.judgement.margin))
-        .text("evidence", |row| format!("{:?}", row.judged.gate.evidence).to_lowercase())
+        .num(["value", ""], move |row| value(row.of.judged.judgement.value))
+        .text("bound", |row| row.of.judged.gate.bounds())
+        .num(["margin", ""], move |row| margin(row.of.judged.judgement.margin))
+        .text("evidence", |row| format!("{:?}", row.of.judged.gate.evidence).to_lowercase())
         .text("reasons", |row| row.reasons.clone())
         .table("", &rows);
     let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
@@ -174,10 +169,10 @@ fn reasons<'a>(judged: &'a Judged, notes: &mut Notes<'a>) -> Vec<String> {
 
 /// The run or the study that is judged.
 fn judged_on(row: &Row) -> String {
-    match row.of {
+    match row.of.of {
         Of::Run(run) => {
             let spec = &run.planned.spec;
-            format!("`{}` {}", spec.variant, what(row.case, spec)).trim_end().to_string()
+            format!("`{}` {}", spec.variant, what(row.of.case, spec)).trim_end().to_string()
         }
         Of::Study(study) => format!("[{}](#{})", study.title, anchor(study)),
     }
@@ -219,9 +214,10 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
                    only rough. The state is a digest of the bits at the end: the same for any number of \
                    threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
-    Columns::of_variants()
+    Columns::<Record>::default()
+        .code("variant", |record| record.variant.clone())
         .text("set", |record| what(case, &record.spec()))
-        .ended()
+        .text("ended", |record| record.status.to_string())
         .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
         .num(["steps", "1"], |record| Cell::count(record.cost.steps))
         .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))

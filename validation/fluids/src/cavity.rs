@@ -61,7 +61,8 @@ fn variants() -> Compositions<Cavity> {
 
 const BEST: &str = "consistent";
 
-static CASE: Composed<Cavity> = Composed {
+/// The cavity.
+pub static CASE: Composed<Cavity> = Composed {
     name: NAME,
     problem: "A closed box whose lid moves",
     best: Best {
@@ -76,9 +77,6 @@ static CASE: Composed<Cavity> = Composed {
     declaration,
     plan: |tier| table(tier).plan(),
 };
-
-/// The cavity.
-pub const CAVITY: &dyn Case = &CASE;
 
 fn flow(s: &Cavity, m: &Method, context: &Context) -> Result<UnitFlow, RunError> {
     s.flow(m, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: None }, context)
@@ -179,17 +177,15 @@ fn run(m: &Method, s: &Cavity, context: &Context) -> Result<Record, RunError> {
     let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
     let mut means = vec![0.0; places.len()];
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
-            .at("mid-lines", &|means, simulation, _| {
-                let particles = simulation.particles();
-                for (mean, place) in means.iter_mut().zip(&places) {
-                    *mean += velocity(place, &particles, dx) / SAMPLES as f64;
-                }
-            })
-            .run(context)?;
+    Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
+        .at("mid-lines", &|means, simulation, _| {
+            let particles = simulation.particles();
+            for (mean, place) in means.iter_mut().zip(&places) {
+                *mean += velocity(place, &particles, dx) / SAMPLES as f64;
+            }
+        })
+        .record(context, &mut record)?;
     let mut all = simulation.particles();
-    record.state = Some(simulate::state(&all));
     if record.status == Status::Completed {
         measure(&places, &means, &mut record);
         all.retain(|p| p.role == Role::Fluid);
@@ -215,12 +211,8 @@ fn table(tier: Tier) -> table::Table<Cavity, f64> {
     table.over(1000.0, &["carried", BEST], [&[], &[32, 45, 64]], |s, n| {
         (s.re, s.n, s.end) = (1000.0, n, 50.0);
     });
-    for row in &mut table.rows {
-        row.run.seconds = 0.007 * row.settings.end * (row.settings.n as f64 / 12.0).powi(3);
-        if row.variant == BEST && row.settings.n == if tier == Tier::Quick { 22 } else { 64 } {
-            row.run.spec = row.run.spec.clone().keep_particles();
-        }
-    }
+    let finest = if tier == Tier::Quick { 22 } else { 64 };
+    table.keep_particles(|row| row.variant == BEST && row.settings.n == finest);
     table.judge(gates);
     table
 }

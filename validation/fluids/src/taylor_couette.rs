@@ -158,7 +158,8 @@ fn variants() -> Compositions<CylinderSettings> {
         .all
 }
 
-static CASE: Composed<CylinderSettings> = Composed {
+/// Flow between two cylinders.
+pub static CASE: Composed<CylinderSettings> = Composed {
     name: NAME,
     problem: "Flow between two cylinders, the inner one turning",
     best: Best {
@@ -175,9 +176,6 @@ static CASE: Composed<CylinderSettings> = Composed {
     declaration,
     plan: |_| Vec::new(),
 };
-
-/// Flow between two cylinders.
-pub const TAYLOR_COUETTE: &dyn Case = &CASE;
 
 /// The runs: both walls, over the spacings across the gap.
 fn table(tier: Tier) -> Table<CylinderSettings, ()> {

@@ -117,10 +117,10 @@ pub fn resolved(case: &dyn Case, spec: RunSpec) -> Result<RunSpec, RunError> {
     Ok(RunSpec { settings, ..spec })
 }
 
-/// The command that makes a run with these `key=value` texts.
-pub fn command(case: &dyn Case, variant: &str, set: &[String]) -> String {
-    let set: String = set.iter().map(|assignment| format!(" --set {assignment}")).collect();
-    format!("touchstone run {} --variant {variant}{set}", case.name())
+/// The command that makes a run.
+pub fn command(case: &dyn Case, spec: &RunSpec) -> String {
+    let set = changed(case, spec).into_iter().map(|assignment| format!(" --set {assignment}"));
+    format!("touchstone run {} --variant {}{}", case.name(), spec.variant, set.collect::<String>())
 }
 
 /// `key=value` of the settings in which a run differs from the defaults of its variant.

@@ -2,10 +2,7 @@
 
 use std::borrow::Borrow;
 
-use base::record::{MetricName, Record};
 use report::{Cell, Column, Table};
-
-use crate::case::{self, Case};
 
 /// What a column shows of an item.
 type Shown<'a, T> = dyn Fn(&T) -> Cell + 'a;
@@ -71,42 +68,5 @@ impl<'a, T> Columns<'a, T> {
             table.rows.push(self.cells.iter().map(|cell| cell(item.borrow())).collect());
         }
         table
-    }
-}
-
-impl<'a> Columns<'a, Record> {
-    /// One column: the name of the variant.
-    pub fn of_variants() -> Self {
-        Self::default().code("variant", |record| record.variant.clone())
-    }
-
-    /// One more column: the settings that are not the defaults of the variant.
-    #[must_use]
-    pub fn changed(self, head: &str, case: &'a dyn Case) -> Self {
-        self.text(head, |record| case::changed(case, &record.spec()).join(", "))
-    }
-
-    /// One more column, of a metric; a dash where it was not measured.
-    #[must_use]
-    pub fn metric(
-        self,
-        head: [&str; 2],
-        metric: impl Into<MetricName>,
-        show: impl Fn(f64) -> Cell + 'a,
-    ) -> Self {
-        let metric = metric.into();
-        self.of(head, move |record| record.value(metric.clone()).unwrap_or(f64::NAN), show)
-    }
-
-    /// The same with three digits.
-    #[must_use]
-    pub fn number(self, head: &str, unit: &str, metric: impl Into<MetricName>) -> Self {
-        self.metric([head, unit], metric, |value| Cell::num(value, 3))
-    }
-
-    /// One more column: how the run ended.
-    #[must_use]
-    pub fn ended(self) -> Self {
-        self.text("ended", |record| record.status.to_string())
     }
 }

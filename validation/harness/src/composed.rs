@@ -217,7 +217,7 @@ impl<T: Settings> Composed<T> {
     pub fn defaults(&self, variant: &str) -> T {
         let mut settings = T::default();
         if let Ok(mut found) = Composition::named(self.name, (self.variants)().all, variant) {
-            settings::put(&mut settings, &found.setup.settings().values());
+            settings.put(&found.setup.settings().values());
         }
         settings
     }

@@ -257,16 +257,8 @@ pub struct Level {
 pub struct Budgets {
     /// What was run, one or two sentences.
     pub about: String,
-    /// One per variant.
-    pub of: Vec<Budget>,
-}
-
-/// The error budget of one variant.
-pub struct Budget {
-    /// Name of the variant.
-    pub variant: &'static str,
-    /// The changes; the first one is none.
-    pub changes: Vec<Change>,
+    /// The changes of each variant; the first one is none.
+    pub of: Vec<Vec<Change>>,
 }
 
 /// A run with one thing changed.
@@ -621,8 +613,7 @@ impl Declaration {
         }
         let ensembles = self.ensembles.iter().flat_map(|ensembles| &ensembles.of);
         ensembles.flat_map(|ensemble| &ensemble.members).for_each(&mut plain);
-        let changes = self.budgets.of.iter().flat_map(|budget| &budget.changes);
-        changes.for_each(|change| plain(&change.spec));
+        self.budgets.of.iter().flatten().for_each(|change| plain(&change.spec));
         self.limits.of.iter().for_each(|limit| plain(&limit.spec));
         let cells = self.maps.iter().flat_map(|map| &map.panels).flat_map(|panel| &panel.cells);
         cells.flatten().flatten().for_each(&mut plain);

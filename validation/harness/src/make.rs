@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::Instant;
 
 use base::{
@@ -24,6 +24,7 @@ use crate::{
     context::{self, Context},
     detect,
     runs::{Planned, Sorted, Tier, entry},
+    size::Size,
     store::{Begun, Store},
 };
 
@@ -198,6 +199,38 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
         }
     }
     stored
+}
+
+/// Whole simulations that a bisection takes as long as, or a search for the smallest error that is detected,
+/// about: most of the ten or so that it makes diverge early or are of a short time.
+const SIMULATIONS: f64 = 3.0;
+
+/// Gives each job the time that its run states before its first step. A run that is refused takes none.
+pub fn estimate(jobs: &mut [Job], making: &Making) {
+    jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
+        if let Some(size) = size(job, making.allow_long) {
+            job.planned.seconds = time(&job.planned.spec, &size);
+        }
+    });
+}
+
+/// Processor time of a run, one simulation or several of this size \[s\].
+pub fn time(spec: &RunSpec, size: &Size) -> f64 {
+    if spec.task == Task::Simulate { size.seconds() } else { SIMULATIONS * size.seconds() }
+}
+
+/// The size of the simulation of a job, which ends as soon as it has told it.
+pub fn size(job: &Job, allow_long: bool) -> Option<Size> {
+    let told = OnceLock::new();
+    let tell = |size: &Size| {
+        let _ = told.set(*size); // once
+    };
+    let context =
+        Context { allow_long, estimate: Some(&tell), only_estimate: true, ..Context::default() };
+    let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
+    // What fails here fails again when it is made, and is told then.
+    let _ = catch_unwind(AssertUnwindSafe(|| job.case.run(&spec, &context)));
+    told.into_inner()
 }
 
 /// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails

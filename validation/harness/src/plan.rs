@@ -55,7 +55,6 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
         first.gates.extend(others);
         first.timed |= planned.timed;
         first.spec.measure = first.spec.measure.max(planned.spec.measure);
-        first.seconds = first.seconds.max(planned.seconds);
     }
     merged
 }
@@ -77,13 +76,13 @@ mod tests {
         let all = vec![
             run(20).judged(vec![gate("c.a")]),
             run(40),
-            Planned { seconds: 7.0, ..run(20).judged(vec![gate("c.b")]).timed() },
+            run(20).judged(vec![gate("c.b")]).timed(),
             Planned::new(run(40).spec.measure_all()),
         ];
         let merged = merged(all);
         assert_eq!(merged.len(), 2);
         let first = &merged[0];
-        assert_eq!((first.gates.len(), first.timed, first.seconds), (2, true, 7.0));
+        assert_eq!((first.gates.len(), first.timed), (2, true));
         assert!(!merged[1].timed);
         assert_eq!([0, 1].map(|k| merged[k].spec.measure), [Measure::Headline, Measure::All]);
     }

@@ -6,8 +6,13 @@
 use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-use base::{bits::Bits, breakdown::Breakdown, mutation::Constant, record::*};
-use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
+use base::{
+    bits::Bits,
+    breakdown::Breakdown,
+    mutation::Constant,
+    record::{self, *},
+};
+use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Particle, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -529,6 +534,25 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     pub fn run(mut self, context: &Context) -> Ended {
         self.course.run(&mut self.run, context)
     }
+
+    /// The same, and keeps in a record how the run ended, its cost, and the digest of its state.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn record(mut self, context: &Context, record: &mut Record) -> Result<(), RunError> {
+        (record.status, record.cost) = self.course.run(&mut self.run, context)?;
+        record.state = Some(state(&self.run.simulation.particles()));
+        Ok(())
+    }
+}
+
+/// Digest of positions, velocities and densities, in the order of the scene.
+pub fn state<X>(particles: &[Particle<X>]) -> String {
+    let mut numbers = Vec::new();
+    for p in particles {
+        numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
+    }
+    record::digest(&numbers)
 }
 
 #[cfg(test)]
@@ -542,14 +566,11 @@ mod tests {
 
     use nalgebra::Vector2;
     use solver::{
-        Compose, Continuity, CubicSpline, Domain, Leapfrog, Open, Particle, Pressure, Tait, lattice,
+        Compose, Continuity, CubicSpline, Domain, Leapfrog, Open, Pressure, Tait, lattice,
     };
 
     use super::*;
-    use crate::{
-        method::{Method, Parts},
-        simulate::state,
-    };
+    use crate::method::{Method, Parts};
 
     const DT: f64 = 1e-3;
 

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 pub use base::gate::Judged;
 use base::{
     gate::{Cause, Gate},
-    record::{Record, Status},
+    record::{MetricName, Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
 
@@ -38,17 +38,15 @@ pub struct Planned {
     pub gates: Vec<Gate>,
     /// Are its seconds shown? Then it is made in the quiet phase, while this program does nothing else.
     pub timed: bool,
-    /// Roughly how long it takes \[s\]; only the order counts: long runs start first, so that no core
-    /// waits for the last one.
+    /// How long it takes \[s\], by [`estimate`](crate::make::estimate); long runs start first, so that no
+    /// core waits for the last one.
     pub seconds: f64,
 }
 
 impl Planned {
     /// A run without gates.
     pub fn new(spec: RunSpec) -> Self {
-        // A search makes several simulations, one after another.
-        let seconds = if spec.task == Task::Simulate { 1.0 } else { 10.0 };
-        Self { spec, gates: Vec::new(), timed: false, seconds }
+        Self { spec, gates: Vec::new(), timed: false, seconds: 1.0 }
     }
 
     /// The same run, judged.
@@ -182,6 +180,12 @@ impl Runs {
     /// The record of a run that reached its end.
     pub fn completed(&self, spec: &RunSpec) -> Option<&Record> {
         self.record(spec).filter(|record| record.status == Status::Completed)
+    }
+
+    /// A metric of a run that reached its end; NaN if there is no such run or it was not measured.
+    pub fn value(&self, spec: &RunSpec, metric: impl Into<MetricName>) -> f64 {
+        let record = self.completed(spec);
+        record.and_then(|record| record.value(metric)).unwrap_or(f64::NAN)
     }
 
     /// Runs that were asked for and not planned, in their canonical form.

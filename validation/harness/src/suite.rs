@@ -35,14 +35,16 @@ pub struct CaseResults {
 impl CaseResults {
     /// How its gates ended.
     pub fn counts(&self) -> Counts {
-        Counts::of(self.judged().map(|(_, judged)| judged.judgement.verdict))
+        Counts::of(self.judged().map(|of| of.judged.judgement.verdict))
     }
 
-    /// Every judgement on the case, with the run that was judged, or the study.
-    pub fn judged(&self) -> impl Iterator<Item = (Of<'_>, &Judged)> {
+    /// Every judgement on the case.
+    pub fn judged(&self) -> impl Iterator<Item = JudgedOf<'_>> {
         let runs = self.runs.all.iter().map(|run| (Of::Run(run), &run.judged));
         let studies = self.studies.iter().map(|study| (Of::Study(study), &study.judged));
-        runs.chain(studies).flat_map(|(of, judged)| judged.iter().map(move |judged| (of, judged)))
+        let case = self.case;
+        runs.chain(studies)
+            .flat_map(move |(of, all)| all.iter().map(move |judged| JudgedOf { case, of, judged }))
     }
 
     /// The card that it declares and the run of its best variant there.
@@ -61,6 +63,17 @@ pub enum Of<'a> {
     Study(&'a Study),
 }
 
+/// A judgement with what it is of.
+#[derive(Clone, Copy)]
+pub struct JudgedOf<'a> {
+    /// The case.
+    pub case: &'static dyn Case,
+    /// The run that was judged, or the study.
+    pub of: Of<'a>,
+    /// The judgement.
+    pub judged: &'a Judged,
+}
+
 /// The results of all cases.
 pub struct Suite {
     /// How much was run.
@@ -73,8 +86,8 @@ pub struct Suite {
 
 impl Suite {
     /// Every judgement.
-    pub fn judged(&self) -> impl Iterator<Item = &Judged> {
-        self.cases.iter().flat_map(|case| case.judged().map(|(_, judged)| judged))
+    pub fn judged(&self) -> impl Iterator<Item = JudgedOf<'_>> {
+        self.cases.iter().flat_map(CaseResults::judged)
     }
 
     /// How all gates ended, and how many simulations diverged.
@@ -83,7 +96,7 @@ impl Suite {
         let diverged = records.filter(|record| matches!(record.status, Status::Diverged { .. }));
         Counts {
             diverged: diverged.count(),
-            ..Counts::of(self.judged().map(|judged| judged.judgement.verdict))
+            ..Counts::of(self.judged().map(|of| of.judged.judgement.verdict))
         }
     }
 }

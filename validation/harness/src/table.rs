@@ -102,6 +102,13 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         }
     }
 
+    /// Keeps the particles of the runs that figures show.
+    pub fn keep_particles(&mut self, is_shown: impl Fn(&Row<T, G>) -> bool) {
+        for row in &mut self.rows {
+            row.run.spec.keep.particles = is_shown(row);
+        }
+    }
+
     /// Gives every row the gates that `gates` states of it.
     pub fn judge(&mut self, gates: impl Fn(&Row<T, G>) -> Vec<Gate>) {
         for row in &mut self.rows {

@@ -41,6 +41,6 @@ mod tests {
     pub fn judged(cases: &[&'static dyn Case]) -> Vec<Judged> {
         let sources = |_: &str| String::new();
         let making = Making::new(Tier::Quick, &sources);
-        suite::run(cases, &making).judged().cloned().collect()
+        suite::run(cases, &making).judged().map(|of| of.judged.clone()).collect()
     }
 }

@@ -307,7 +307,7 @@ fn declaration(tier: Tier) -> Declaration {
     let changes = changes.map(|(what, spec)| Change::new(what, "time", spec)).collect();
     let budgets = Budgets {
         about: "A free disk, rim at 0.05 c0, makes a tenth of a revolution.".into(),
-        of: vec![Budget { variant: "bare", changes }],
+        of: vec![changes],
     };
     let stepwise = &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS];
     Declaration { accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }

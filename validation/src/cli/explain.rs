@@ -7,13 +7,12 @@ use ::report;
 use base::gate::{Evidence, Gate, Verdict};
 use base::record;
 use base::settings::by_similarity;
-use base::spec::RunSpec;
 use harness::case::{self, Case, Tier};
 use harness::make::Stored;
 use harness::plan;
 use harness::runs::{self, Judged};
 use harness::store::Store;
-use harness::suite::{self, Of};
+use harness::suite::{self, JudgedOf, Of};
 use validation::cases;
 
 use super::{
@@ -90,17 +89,13 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
 }
 
 /// A judgement, with all that is known of its gate.
-pub fn in_full(case: &dyn Case, of: Of, judged: &Judged) -> String {
+pub fn in_full(JudgedOf { case, of, judged }: &JudgedOf) -> String {
     let (on, status) = match of {
-        Of::Run(run) => (command(case, &run.planned.spec), Some(run.record.status.clone())),
+        Of::Run(run) => (case::command(*case, &run.planned.spec), Some(run.record.status.clone())),
         Of::Study(study) => (of_study(&study.title, case.name()), None),
     };
-    words(&Known { last: Some(judged.clone()), status, ..Known::new(judged.gate.clone(), on) })
-}
-
-/// The command that makes a run.
-fn command(case: &dyn Case, spec: &RunSpec) -> String {
-    case::command(case, &spec.variant, &case::changed(case, spec))
+    let last = Some(Judged::clone(judged));
+    words(&Known { last, status, ..Known::new(judged.gate.clone(), on) })
 }
 
 fn of_study(title: &str, case: &str) -> String {
@@ -113,7 +108,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     for case in world.cases {
         for tier in [Tier::Quick, Tier::Full] {
             for planned in plan::of_case(*case, tier) {
-                let on = command(*case, &planned.spec);
+                let on = case::command(*case, &planned.spec);
                 for gate in planned.gates {
                     match gates.iter_mut().find(|known| known.gate.id == gate.id) {
                         Some(known) => known.tiers.push(tier_name(tier)),

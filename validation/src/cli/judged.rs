@@ -12,7 +12,7 @@ use harness::case::{self, Case, Tier};
 use harness::notes::Notes;
 use harness::runs::{Judged, JudgedRun};
 use harness::study::Study;
-use harness::suite::Suite;
+use harness::suite::{JudgedOf, Suite};
 use serde::{Deserialize, Serialize};
 
 use super::{Failure, output};
@@ -200,7 +200,7 @@ fn junit(suite: &Suite) -> String {
         text += &format!(
             "  <testsuite name=\"{name}\" tests=\"{all}\" failures=\"{failed}\" skipped=\"{skipped}\">\n"
         );
-        for (_, judged) in results.judged() {
+        for JudgedOf { judged, .. } in results.judged() {
             let Judged { gate, judgement, .. } = judged;
             let message = format!("{} {}; {}", value(judgement), gate.bounds(), judged.words());
             let body = match judgement.verdict {

@@ -165,7 +165,7 @@ impl World {
         });
         let made = on_threads(threads, || {
             let mut stored = make::stored(jobs, &making);
-            plan::estimate(&mut stored.missing, &making);
+            make::estimate(&mut stored.missing, &making);
             let finished = finished.as_ref().map(|finished| finished as _);
             Ok(make::make(stored, &Making { progress: Some(&show), finished, ..making }))
         });

@@ -4,20 +4,17 @@
 
 use std::fs::File;
 use std::io::{self, Read};
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::OnceLock;
 
 use ::report::{counted, seconds, sig};
 use base::{
     files,
     record::{Profile, Status},
-    spec::{RunSpec, Task},
+    spec::RunSpec,
 };
 use harness::{
     case::{self, Case, Planned, Tier},
-    context::Context,
-    make::{Job, Made, Making},
+    make::{Job, Made, Making, size, time},
     plan,
     size::{self, Size},
     store::Store,
@@ -101,24 +98,6 @@ fn sweep(
     Ok(jobs)
 }
 
-/// Whole simulations that a bisection takes as long as, or a search for the smallest error that is detected,
-/// about: most of the ten or so that it makes diverge early or are of a short time.
-const SIMULATIONS: f64 = 3.0;
-
-/// Gives each job the time that its run states before its first step. A run that is refused takes none.
-pub fn estimate(jobs: &mut [Job], making: &Making) {
-    jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
-        if let Some(size) = size(job, making.allow_long) {
-            job.planned.seconds = time(&job.planned.spec, &size);
-        }
-    });
-}
-
-/// Processor time of a run, one simulation or several of this size \[s\].
-fn time(spec: &RunSpec, size: &Size) -> f64 {
-    if spec.task == Task::Simulate { size.seconds() } else { SIMULATIONS * size.seconds() }
-}
-
 /// What each run takes, a row a line of the plan with its number for `run --index`; gaps for a run that is
 /// refused.
 fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
@@ -146,20 +125,6 @@ fn sum(jobs: &[Job], sizes: &[Option<Size>]) -> String {
         seconds(size::MOST_SECONDS),
         sig(1e-9 * size::MOST_BYTES, 2),
     )
-}
-
-/// The size of the simulation of a job, which ends as soon as it has told it.
-fn size(job: &Job, allow_long: bool) -> Option<Size> {
-    let told = OnceLock::new();
-    let tell = |size: &Size| {
-        let _ = told.set(*size); // once
-    };
-    let context =
-        Context { allow_long, estimate: Some(&tell), only_estimate: true, ..Context::default() };
-    let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
-    // What fails here fails again when it is made, and is told then.
-    let _ = catch_unwind(AssertUnwindSafe(|| job.case.run(&spec, &context)));
-    told.into_inner()
 }
 
 /// Makes the runs of a plan, one record each.

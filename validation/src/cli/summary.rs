@@ -12,7 +12,7 @@ use harness::{
     declare::Declaration,
     runs::Judged,
     studies::{cost_in_words, headline},
-    suite::{CaseResults, Suite},
+    suite::{CaseResults, JudgedOf, Suite},
 };
 use report::Counts;
 
@@ -66,7 +66,7 @@ fn row(results: &CaseResults) -> Vec<String> {
         ],
         None => Default::default(),
     });
-    let worst = worst(results.judged().map(|(_, judged)| judged));
+    let worst = worst(results.judged().map(|of| of.judged));
     row.push(worst.map_or(String::new(), |judged| judged.gate.id.clone()));
     let margin = worst.and_then(|judged| judged.judgement.margin);
     row.push(margin.map_or(String::new(), |margin| report::percent(margin, 2)));
@@ -86,16 +86,13 @@ pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
 }
 
 fn failures(suite: &Suite) -> String {
-    let of_case = |results| {
-        let judged = CaseResults::judged(results).filter(|(_, j)| j.judgement.verdict.is_failure());
-        judged.map(move |(of, judged)| (results.case, of, judged))
-    };
-    let all: Vec<_> = suite.cases.iter().flat_map(of_case).collect();
+    let failed = suite.judged().filter(|of| of.judged.judgement.verdict.is_failure());
+    let all: Vec<JudgedOf> = failed.collect();
     let mut text = String::new();
-    for (case, of, judged) in all.iter().take(IN_FULL) {
-        text += &format!("\n{}", explain::in_full(*case, *of, judged));
+    for of in all.iter().take(IN_FULL) {
+        text += &format!("\n{}", explain::in_full(of));
     }
-    let more: Vec<&str> = all.iter().skip(IN_FULL).map(|(_, _, j)| j.gate.id.as_str()).collect();
+    let more: Vec<&str> = all.iter().skip(IN_FULL).map(|of| &*of.judged.gate.id).collect();
     if !more.is_empty() {
         let words = report::counted(more.len(), "more gate fails", "more gates fail");
         let words = format!("{words}: {}", more.join(", "));
@@ -189,6 +186,5 @@ pub fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<
     let mut set = case::changed(case, spec);
     set.retain(|assignment| assignment.split('=').next() != Some(name));
     set.push(format!("{name}={half_the_spacing}"));
-    case::spec(case, &spec.variant, &set).ok()?;
-    Some(case::command(case, &spec.variant, &set))
+    Some(case::command(case, &case::spec(case, &spec.variant, &set).ok()?))
 }

@@ -44,7 +44,11 @@ fn show(
     let printed = if of.json {
         output::print_whole(&judged::json(&suite)?)
     } else {
-        let all = if of.all { judged::table(suite.judged()) + "\n" } else { String::new() };
+        let all = if of.all {
+            judged::table(suite.judged().map(|of| of.judged)) + "\n"
+        } else {
+            String::new()
+        };
         output::print(&(all + &summary(&suite)))
     };
     let took = report::seconds(start.elapsed().as_secs_f64());

@@ -205,12 +205,10 @@ fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Re
     // Once a period and at the end.
     let times = (1..).map(|k| f64::from(k) * period).take_while(|t| *t < rules.end);
     let times: Vec<f64> = times.chain([rules.end]).collect();
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
-            .at("history", &|history, simulation, _| history.sample(&*simulation))
-            .run(context)?;
+    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
+        .at("history", &|history, simulation, _| history.sample(&*simulation))
+        .record(context, &mut record)?;
     history.measure(&mut record);
-    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }
 
@@ -325,11 +323,6 @@ fn table(tier: Tier) -> table::Table<HydrostaticSettings, Group> {
     table.over(Group::Disturbed, &["modern"], [&[], &[(0.1, false), (0.0, true)]], |s, start| {
         ((s.jitter, s.uniform), s.end) = (start, 40.0);
     });
-    for Row { variant, settings, run, .. } in &mut table.rows {
-        // Twice as many rows and columns take half the step.
-        let dear = if *variant == "modern" { 1.0 } else { 3.0 };
-        run.seconds = 0.3 * dear * (settings.rows as f64 / 20.0).powi(3);
-    }
     table.judge(gates);
     table
 }

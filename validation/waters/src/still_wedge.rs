@@ -227,14 +227,11 @@ fn run(m: &WaterMethod, s: &Wedge, context: &Context) -> Result<Record, RunError
     let (corners, errors) = ([0.0; 3], Vec::new());
     let (settings, medium) = (s, &medium);
     let mut moments = Moments { settings, medium, samples: 0.0, corners, errors, kinetic: 0.0 };
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
-            .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
-            .run(context)?;
-    let all = simulation.particles();
-    record.state = Some(simulate::state(&all));
+    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
+        .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
+        .record(context, &mut record)?;
     if record.status == Status::Completed {
-        moments.measure(&all, context, &mut record);
+        moments.measure(&simulation.particles(), context, &mut record);
     }
     Ok(record)
 }
@@ -244,12 +241,7 @@ fn table(tier: Tier) -> table::Table<Wedge, ()> {
     let depths: [&[usize]; 2] = [&[10, 14, 20], &[10, 14, 20, 28, 40]];
     table.over((), &["seed"], [&[10, 14], depths[1]], |s, n| s.n = n);
     table.over((), &["modern"], depths, |s, n| s.n = n);
-    for row in &mut table.rows {
-        row.run.seconds = 0.3 * (row.settings.n as f64 / 20.0).powi(3);
-        if row.settings.n == 20 {
-            row.run.spec = row.run.spec.clone().keep_particles();
-        }
-    }
+    table.keep_particles(|row| row.settings.n == 20);
     table.judge(gates);
     table
 }

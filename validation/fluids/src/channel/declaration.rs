@@ -147,12 +147,11 @@ fn budgets(flow: Flow, tier: Tier) -> Budgets {
         (_, Flow::Couette) => &["seed", "plain"],
         (_, Flow::Poiseuille) => &["seed", "plain", "curved"],
     };
-    let of = |variant: &&'static str| Budget { variant, changes: changes(flow, variant, tier) };
-    let about = "Runs have 20 rows and Re 0.5.".into();
-    Budgets { about, of: variants.iter().map(of).collect() }
+    let of = variants.iter().map(|variant| changes(flow, variant, tier)).collect();
+    Budgets { about: "Runs have 20 rows and Re 0.5.".into(), of }
 }
 
-fn changes(flow: Flow, variant: &'static str, tier: Tier) -> Vec<Change> {
+fn changes(flow: Flow, variant: &str, tier: Tier) -> Vec<Change> {
     let case = flow.case();
     let spec = |set: &dyn Fn(&mut ChannelSettings)| case.spec(variant, set);
     // Of a variant that has no rules every run is refused, and its record says why.

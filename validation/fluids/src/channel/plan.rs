@@ -51,11 +51,7 @@ pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
     let levels: &[usize] = &[8, 10, 14, 20, 40, 80];
     table.over(For::Ladder, &ladder(flow), [&levels[..4], levels], |s, rows| s.rows = rows);
     for row in &mut table.rows {
-        match row.group {
-            For::Reynolds => row.run.seconds = row.settings.re / 30.0,
-            For::Waves | For::Map | For::Cures => row.run.spec.allow_unstable = true,
-            _ => {}
-        }
+        row.run.spec.allow_unstable = matches!(row.group, For::Waves | For::Map | For::Cures);
     }
     table.judge(|row| gates(flow, row));
     table

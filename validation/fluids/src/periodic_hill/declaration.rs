@@ -118,7 +118,7 @@ fn budgets() -> Budgets {
     ];
     // The walls are compared with those of `modern`, before it in the list.
     changes[10].against = 9;
-    Budgets { about: about.into(), of: vec![Budget { variant: BEST, changes }] }
+    Budgets { about: about.into(), of: vec![changes] }
 }
 
 /// Profiles at their stations, symbols on lines, and shear along the hill.

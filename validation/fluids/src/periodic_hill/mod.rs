@@ -11,7 +11,7 @@ mod reference;
 mod run;
 mod setup;
 
-use harness::{case::Case, composed::*, context::Context};
+use harness::{composed::*, context::Context};
 use schemes::hill;
 
 use crate::unit_flow::unit_settings;
@@ -76,7 +76,8 @@ const NAME: &str = "periodic_hill";
 /// The variant that is held to the goals.
 const BEST: &str = "carried";
 
-static CASE: Composed<HillSettings> = Composed {
+/// Flow over periodic hills.
+pub static CASE: Composed<HillSettings> = Composed {
     name: NAME,
     problem: "Flow over a row of hills, with separation",
     best: Best {
@@ -93,6 +94,3 @@ static CASE: Composed<HillSettings> = Composed {
     declaration: declaration::declaration,
     plan: |tier| plan::table(tier).plan(),
 };
-
-/// Flow over periodic hills.
-pub const PERIODIC_HILL: &dyn Case = &CASE;

@@ -66,12 +66,7 @@ pub fn table(tier: Tier) -> Table {
     // The flux has filled the period 0.96 times at the end.
     table.over(For::Fast, &[BEST], [&[], &[(1000.0, 10, 12.0, false)]], flow);
     let fine = if tier == Tier::Quick { 10 } else { 20 };
-    for Row { group, settings: HillSettings { n, end, .. }, run, .. } in &mut table.rows {
-        run.seconds = 0.4 * *end * (*n as f64 / 10.0).powi(3);
-        if *group == For::Figures && *n >= fine {
-            run.spec = run.spec.clone().keep_particles();
-        }
-    }
+    table.keep_particles(|row| row.group == For::Figures && row.settings.n >= fine);
     table.judge(gates);
     table
 }

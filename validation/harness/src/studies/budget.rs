@@ -17,14 +17,14 @@ pub fn study(accuracy: &Accuracy, budgets: &Budgets, runs: &Runs) -> Study {
         accuracy.label, budgets.about
     );
     let mut rows = Vec::new();
-    for budget in &budgets.of {
+    for changes in &budgets.of {
         let error = |change: &Change| {
             let record = runs.record(&change.spec);
             record.and_then(|record| error_of(&accuracy.error, record)).unwrap_or(f64::NAN)
         };
-        let errors: Vec<f64> = budget.changes.iter().map(error).collect();
-        for (change, error) in budget.changes.iter().zip(&errors) {
-            rows.push((budget.variant, change, *error, error - errors[change.against]));
+        let errors: Vec<f64> = changes.iter().map(error).collect();
+        for (change, error) in changes.iter().zip(&errors) {
+            rows.push((&*changes[0].spec.variant, change, *error, error - errors[change.against]));
         }
     }
     let table = Columns::<(&str, &Change, f64, f64)>::default()
@@ -42,10 +42,7 @@ mod tests {
     use base::spec::RunSpec;
 
     use super::*;
-    use crate::{
-        declare::Budget,
-        studies::tests::{ERROR, column, runs, spec, tables},
-    };
+    use crate::studies::tests::{ERROR, column, runs, spec, tables};
 
     /// Changes of the run at n = 0, 1, and so on: their names, parts, what they are compared with, errors.
     fn study_of(changes: &[(&str, &'static str, usize, f64)]) -> Study {
@@ -57,10 +54,7 @@ mod tests {
             };
         let budgets = Budgets {
             about: "Made up.".into(),
-            of: vec![Budget {
-                variant: "seed",
-                changes: changes.iter().enumerate().map(change).collect(),
-            }],
+            of: vec![changes.iter().enumerate().map(change).collect()],
         };
         let errors = changes.iter().enumerate().map(|(n, (.., error))| (of(n), *error));
         let runs = runs(errors.filter(|(_, error)| error.is_finite()));

@@ -54,10 +54,7 @@ pub enum Said {
 impl Found {
     /// From the records of a comparison.
     pub fn of(comparison: &Comparison, runs: &Runs) -> Self {
-        let value = |spec: &RunSpec| {
-            let record = runs.completed(spec);
-            record.and_then(|r| r.value(comparison.metric.clone())).unwrap_or(f64::NAN)
-        };
+        let value = |spec: &RunSpec| runs.value(spec, comparison.metric.clone());
         let levels = comparison.levels.iter();
         let levels: Vec<Level> = levels
             .map(|level| Level { spacing: level.spacing, value: value(&level.run.spec) })

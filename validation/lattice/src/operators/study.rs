@@ -1,9 +1,6 @@
 //! The orders of the operators, in h, in the number of neighbours and in disorder.
 
-use base::{
-    gate::*,
-    record::{MetricKey, Record},
-};
+use base::{gate::*, record::MetricKey};
 use harness::{
     case::Tier,
     convergence::Level,
@@ -121,10 +118,9 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         };
         let lines = subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).map(|of| {
             let rows = table.of(refined).filter(|row| row.variant == of.name);
-            let value = |record: &Record| record.value(metric);
             let level = |row: &Row<OperatorSettings, For>| Level {
                 spacing: refined.spacing(&row.settings),
-                value: runs.completed(&row.run.spec).and_then(value).unwrap_or(f64::NAN),
+                value: runs.value(&row.run.spec, metric),
             };
             Line { name: of.name, levels: rows.map(level).collect(), gate: refined.gate(of) }
         });

@@ -28,9 +28,6 @@ pub fn table(tier: Tier) -> Table<CantileverSettings, For> {
     table.over(First, &[LAGRANGIAN, SAINT_VENANT], [&[2.0]; 2], short);
     table.over(Paper, &["seed"], [&[], &[2.0]], short);
     table.judge(gates);
-    for row in &mut table.rows {
-        row.run.seconds = 0.5 * row.settings.end * (row.settings.n as f64 / 5.0).powi(3);
-    }
     table
 }
 

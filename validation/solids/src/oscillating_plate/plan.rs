@@ -45,10 +45,6 @@ pub fn table(tier: Tier) -> Table<PlateSettings, For> {
     );
     table.over(Fast, &[LAGRANGIAN], [&[0.1], &[0.1]], |s, speed| (s.n, s.speed) = (5, speed));
     table.judge(gates);
-    for row in &mut table.rows {
-        let PlateSettings { n, end, poisson, .. } = row.settings;
-        row.run.seconds = (n as f64 / 5.0).powi(3) * end / (1.0 - 2.0 * poisson).sqrt();
-    }
     table
 }
 

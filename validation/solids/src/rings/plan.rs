@@ -55,10 +55,6 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     table.over(Unstressed, &["seed"], [&[], &others], unstressed);
     table.over(Coarse, &["seed", LAGRANGIAN], [COARSE; 2], dx);
     table.over(Coarse, &["leapfrog"], [&[], COARSE], dx);
-    for row in &mut table.rows {
-        // Particles times steps.
-        row.run.seconds = 12.0 * (0.1 / row.settings.spacing).powi(3);
-    }
     table.judge(gates);
     table
 }

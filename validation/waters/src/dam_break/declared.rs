@@ -216,7 +216,7 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
             let is_ladder = ["all", "spacing"].contains(&part);
             Change::new(what, part, if is_ladder { spec } else { spec.allow_unstable() })
         };
-        Budget { variant, changes: has.map(change).collect() }
+        has.map(change).collect()
     };
     Budgets { about: accuracy.about.clone(), of: variants.iter().map(of).collect() }
 }

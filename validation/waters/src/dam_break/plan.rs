@@ -53,17 +53,9 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
         }
     }
     let finest = if tier == Tier::Quick { 30 } else { 120 };
-    for Row { group, variant, settings, run } in &mut table.rows {
-        let whole = if [Tank, Ensemble].contains(group) { 12.0 } else { 6.0 };
-        // Two right-hand sides a step where the seed's integrator is.
-        let dear = if variant.starts_with("modern") { 1.0 } else { 2.5 };
-        run.seconds = whole * dear * (settings.n as f64 / 40.0).powi(3);
-        if *variant == "ghosts" {
-            run.spec = run.spec.clone().allow_unstable();
-        }
-        if *group == Tank && settings.n == finest {
-            run.spec = run.spec.clone().keep_particles();
-        }
+    table.keep_particles(|row| row.group == Tank && row.settings.n == finest);
+    for row in &mut table.rows {
+        row.run.spec.allow_unstable = row.variant == "ghosts";
     }
     table.judge(gates);
     table
