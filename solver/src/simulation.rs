@@ -186,9 +186,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         self
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
-        self.engine.core().restore(from)?;
-        self.integrator = S::Integrator::default();
-        Ok(())
+        self.engine.core().restore(from)
     }
     fn weight(&self, r2: f64) -> f64 {
         self.engine.typed.kernel.w(r2)
@@ -203,7 +201,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         self.engine.data.wall_rates(&self.engine.typed)
     }
     fn bytes(&self) -> usize {
-        self.engine.bytes() + self.integrator.bytes()
+        self.engine.bytes()
     }
     fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
         &mut self.engine.data
@@ -213,15 +211,15 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
 impl<S: Scheme> Steps<S::Extra> for Simulation<S> {
     fn step(&mut self, dt: f64) -> Stepped {
         let mut state = take(&mut self.engine.data.state);
-        let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
+        let stepped = S::Integrator::step(&mut self.engine, &mut state, dt);
         self.engine.data.state = state;
         stepped
     }
     fn synchronise(&mut self) -> Stepped {
-        let Self { engine, integrator } = self;
+        let Self { engine } = self;
         let mut state = take(&mut engine.data.state);
         let synchronised =
-            integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+            S::Integrator::synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
         engine.normalise();
         engine.data.state = state;
         synchronised
@@ -231,7 +229,6 @@ impl<S: Scheme> Steps<S::Extra> for Simulation<S> {
 /// A scene that advances in time. It dereferences to [`ParticleData`], which gives time, work and particles.
 pub struct Simulation<S: Scheme> {
     pub(crate) engine: Engine<PhysicsOf<S>>,
-    pub(crate) integrator: S::Integrator,
 }
 
 impl<S: Scheme> Deref for Simulation<S> {
