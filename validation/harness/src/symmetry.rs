@@ -138,7 +138,7 @@ fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<F
     let outline = Some(sink.clone());
     let context =
         Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
-    let outline = sink.of_run(case.run(spec, &context), case.name())?;
+    let (outline, _) = sink.of_run(case.run(spec, &context), case.name())?;
     Ok((outline, frames.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 

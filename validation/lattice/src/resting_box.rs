@@ -253,7 +253,7 @@ fn table(tier: Tier) -> Table<BoxSettings, ()> {
 
 /// What is judged of a bisection.
 fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
-    let Method { kernel, integrator, .. } = method(variant);
+    let Properties { kernel, integrator, .. } = method(variant).properties;
     let is_damped = s.alpha > 0.0 || s.delta > 0.0;
     let damping = if is_damped { format!(".alpha{}.delta{}", s.alpha, s.delta) } else { "".into() };
     let (h, stiffness) = (s.h_over_dx, stiffness(s));

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-use harness::method::{Medium, Parts, mutate};
+use harness::method::{Medium, Parts, Properties, mutate};
 use lagrangian::*;
 use maths::theory::bending;
 use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
@@ -53,12 +53,12 @@ fn bodies<L: Law>() -> Method {
         }
         Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?))
     }
-    let mut method = Method::with::<Named>(build::<L>);
-    (method.integrator, method.walls) = ("velocity Verlet", "planes that hold");
-    method.law = Some(L::ENERGY);
-    method.limit = Some(step_limit);
-    method.uses.clear();
-    method
+    let mut properties = Properties::of::<Named>();
+    (properties.integrator, properties.walls) = ("velocity Verlet", "planes that hold");
+    properties.law = Some(L::ENERGY);
+    properties.limit = Some(step_limit);
+    properties.uses.clear();
+    Method { properties, build: build::<L> }
 }
 
 /// The bending stiffness of a plate of so many layers over that of an elastic plate, with what the method is
