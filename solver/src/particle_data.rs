@@ -27,14 +27,6 @@ pub struct Work {
 /// reads no clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// What integrators do beside the calls of their engine.
-    Rest,
-    /// Deriving columns of particles and images from a state.
-    Refresh,
-    /// Putting particles in the order of storage, along strips.
-    Sorting,
-    /// Making images and neighbour lists.
-    Search,
     /// The pair sweep over the forces.
     Forces,
     /// The pair sweep over the drift.
@@ -43,6 +35,14 @@ pub enum Phase {
     Both,
     /// The pair sweep over the terms of the walls.
     Walls,
+    /// Deriving columns of particles and images from a state.
+    Refresh,
+    /// Making images and neighbour lists.
+    Search,
+    /// Putting particles in the order of storage, along strips.
+    Sorting,
+    /// What integrators do beside the calls of their engine.
+    Rest,
 }
 
 /// Is told that a phase begins, which ends the one before.

@@ -140,6 +140,6 @@ pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
 /// The case of that name among these.
 pub fn find_in(cases: &[&'static dyn Case], name: &str) -> Result<&'static dyn Case, RunError> {
     let known = || cases.iter().map(|case| case.name()).collect();
-    let unknown = || RunError::Case { name: name.into(), known: known() };
+    let unknown = || RunError::Unknown { what: "case".into(), name: name.into(), known: known() };
     cases.iter().copied().find(|case| case.name() == name).ok_or_else(unknown)
 }

@@ -17,22 +17,11 @@ use crate::{
 /// Why a run was refused before its first step.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// No case of that name.
-    #[error("no case is called {name:?}{}; the cases are {}", hint(.known, .name), .known.join(", "))]
-    Case {
-        /// As given.
-        name: String,
-        /// All names.
-        known: Vec<&'static str>,
-    },
-    /// No variant of that name.
-    #[error(
-        "case {case} has no variant {name:?}{}; its variants are {}",
-        hint(.known, .name), .known.join(", ")
-    )]
-    Variant {
-        /// The case.
-        case: &'static str,
+    /// No case, or no variant of a case, of that name.
+    #[error("no {what} is called {name:?}{}; there are {}", hint(.known, .name), .known.join(", "))]
+    Unknown {
+        /// What is sought.
+        what: String,
         /// As given.
         name: String,
         /// All names.

@@ -556,7 +556,7 @@ mod tests {
             assert!(error.as_ref().is_some_and(|error| error.contains(name)), "{error:?}");
         }
         assert!(matches!(refused("bare", "dt=1e-15"), Some(RunError::TooLong { .. })));
-        assert!(matches!(refused("nothing", "n=40"), Some(RunError::Variant { .. })));
+        assert!(matches!(refused("nothing", "n=40"), Some(RunError::Unknown { .. })));
     }
 
     /// What is a term's own is 0 in the record of a method without it.

@@ -366,7 +366,7 @@ mod tests {
         assert!(matches!(run("modern", |s| s.n = 2), Err(RunError::Settings { .. })));
         assert!(matches!(run("modern", |s| s.xsph = 0.1), Err(RunError::Unused { .. })));
         assert!(matches!(run("modern", |s| s.courant = 3.0), Err(RunError::TimeStep { .. })));
-        assert!(matches!(run("modrn", |_| {}), Err(RunError::Variant { .. })));
+        assert!(matches!(run("modrn", |_| {}), Err(RunError::Unknown { .. })));
     }
 
     /// Four particles that do not see each other, on the axes, moving as the strain and freely falling.
