@@ -179,17 +179,16 @@ fn run(m: &Method, s: &Cavity, context: &Context) -> Result<Record, RunError> {
     let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
     let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
     let mut means = vec![0.0; places.len()];
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
-            .at("mid-lines", &|means, simulation, _| {
-                let particles = simulation.particles();
-                for (mean, place) in means.iter_mut().zip(&places) {
-                    *mean += velocity(place, &particles, dx) / SAMPLES as f64;
-                }
-            })
-            .run(context)?;
+    Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
+        .at("mid-lines", &|means, simulation, _| {
+            let particles = simulation.particles();
+            for (mean, place) in means.iter_mut().zip(&places) {
+                *mean += velocity(place, &particles, dx) / SAMPLES as f64;
+            }
+        })
+        .run(context)?
+        .put(&mut record);
     let mut all = simulation.particles();
-    record.state = Some(simulate::state(&all));
     if record.status == Status::Completed {
         measure(&places, &means, &mut record);
         all.retain(|p| p.role == Role::Fluid);

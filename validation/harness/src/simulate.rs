@@ -1,9 +1,6 @@
 //! From a scene to a record, for cases without further needs: build, step to the end, record the cost.
 
-use base::{
-    number,
-    record::{Record, digest},
-};
+use base::{number, record::Record};
 use nalgebra::Vector2;
 use solver::{Particle, Role, Stepper};
 
@@ -90,9 +87,7 @@ pub fn simulate(
 ) -> Result<Box<dyn Stepper<()>>, RunError> {
     let eos = parts.medium.eos;
     let mut simulation = (method.build)(parts)?;
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, dt, &[end], eos, &mut ()).run(context)?;
-    record.state = Some(state(&simulation.particles()));
+    Drive::new(&mut *simulation, dt, &[end], eos, &mut ()).run(context)?.put(record);
     Ok(simulation)
 }
 
@@ -100,13 +95,4 @@ pub fn simulate(
 pub fn momentum<X>(particles: &[Particle<X>]) -> Vector2<f64> {
     let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
     fluid.fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
-}
-
-/// Digest of positions, velocities and densities, in the order of the scene.
-pub fn state<X>(particles: &[Particle<X>]) -> String {
-    let mut numbers = Vec::new();
-    for p in particles {
-        numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
-    }
-    digest(&numbers)
 }

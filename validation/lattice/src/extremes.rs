@@ -118,15 +118,15 @@ fn run(
     let mut late = 0.0f64;
     let serial = Context { spec: context.spec.clone(), ..Context::default() };
     let mut record = simulate::begin(method, &[(PLANNED_DT, s.dt)], &serial);
-    (record.status, record.cost) = Drive::new(&mut *simulation, s.dt, &times, eos, &mut late)
+    Drive::new(&mut *simulation, s.dt, &times, eos, &mut late)
         .at("samples", &|late, simulation, look| {
             let is_on_time = simulation.work().steps == done(look) as u64;
             let off = (simulation.time() - times[look]).abs();
             *late = late.max(if is_on_time { off } else { f64::INFINITY });
         })
-        .run(context)?;
+        .run(context)?
+        .put(&mut record);
     let end = simulation.particles();
-    record.state = Some(simulate::state(&end));
     if is_resting {
         record.put(HEAT, fastest(&end));
         record.put(CLOCK_ERROR, late);

@@ -189,7 +189,7 @@ fn run(method: &Method, s: &BoxSettings, context: &Context) -> Result<Record, Ru
     let mut simulation = (method.build)(parts(method, s))?;
     let start = energy(&*simulation);
     let mut growth = Growth::new(start, s.steps as u64);
-    let (status, cost) = Drive::new(&mut *simulation, dt, &end, Tait::new(1.0, 1.0), &mut growth)
+    let ended = Drive::new(&mut *simulation, dt, &end, Tait::new(1.0, 1.0), &mut growth)
         .after_step("energy", &watch)
         .run(context)?;
     let numbers = [
@@ -201,13 +201,14 @@ fn run(method: &Method, s: &BoxSettings, context: &Context) -> Result<Record, Ru
     ];
     let serial = Context { spec: context.spec.clone(), ..Context::default() };
     let mut record = simulate::begin(method, &numbers, &serial);
-    let grew = matches!(status, Status::Diverged { .. }) || growth.grew();
+    let grew = matches!(ended.status, Status::Diverged { .. }) || growth.grew();
     record.put(GREW, f64::from(u8::from(grew)));
     record.put(ENERGY, energy(&*simulation) / start);
-    record.state = Some(simulate::state(&simulation.particles()));
+    ended.put(&mut record);
     // A run that is over early because its energy grew beyond doubt is complete.
-    record.status = if growth.beyond_doubt { Status::Completed } else { status };
-    record.cost = cost;
+    if growth.beyond_doubt {
+        record.status = Status::Completed;
+    }
     Ok(record)
 }
 

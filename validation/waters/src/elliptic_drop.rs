@@ -174,17 +174,16 @@ fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Reco
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
     let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let (mut seen, all) = ((&mut history, &mut ledger), context.measures_all());
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
-            .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
-            .at_if(all, "energy ledger by term", &|(_, ledger), s, _| ledger.sample(s))
-            .run(context)?;
+    Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
+        .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
+        .at_if(all, "energy ledger by term", &|(_, ledger), s, _| ledger.sample(s))
+        .run(context)?
+        .put(&mut record);
     history.measure(&mut record);
     let start = shape(&drop.particles);
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
     ledger.measure(kinetic, "initial kinetic energy", context, &mut record);
     let particles = simulation.particles();
-    record.state = Some(simulate::state(&particles));
     if context.spec.keep.particles {
         let centre = shape(&particles).centre;
         let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();

@@ -205,12 +205,11 @@ fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Re
     // Once a period and at the end.
     let times = (1..).map(|k| f64::from(k) * period).take_while(|t| *t < rules.end);
     let times: Vec<f64> = times.chain([rules.end]).collect();
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
-            .at("history", &|history, simulation, _| history.sample(&*simulation))
-            .run(context)?;
+    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
+        .at("history", &|history, simulation, _| history.sample(&*simulation))
+        .run(context)?
+        .put(&mut record);
     history.measure(&mut record);
-    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }
 

@@ -227,12 +227,11 @@ fn run(m: &WaterMethod, s: &Wedge, context: &Context) -> Result<Record, RunError
     let (corners, errors) = ([0.0; 3], Vec::new());
     let (settings, medium) = (s, &medium);
     let mut moments = Moments { settings, medium, samples: 0.0, corners, errors, kinetic: 0.0 };
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
-            .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
-            .run(context)?;
+    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
+        .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
+        .run(context)?
+        .put(&mut record);
     let all = simulation.particles();
-    record.state = Some(simulate::state(&all));
     if record.status == Status::Completed {
         moments.measure(&all, context, &mut record);
     }

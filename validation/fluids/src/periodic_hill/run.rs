@@ -110,16 +110,16 @@ pub fn run(method: &HillMethod, s: &HillSettings, context: &Context) -> Result<R
     let controller = Controller { wanted, response: s.response, force: s.force, last };
     let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
     let mut monitor = Monitor { controller, window: Window::default(), series: vec![start] };
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut monitor)
-            .at("controller and samples", &|monitor, s, _| monitor.look(setup, area, s, stretch))
-            .resumed(&|monitor, simulation| {
-                // Until its first look the force is that of the scene, which may have a deliberate error.
-                if !monitor.series.is_empty() {
-                    simulation.drive(monitor.controller.force);
-                }
-            })
-            .run(context)?;
+    Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut monitor)
+        .at("controller and samples", &|monitor, s, _| monitor.look(setup, area, s, stretch))
+        .resumed(&|monitor, simulation| {
+            // Until its first look the force is that of the scene, which may have a deliberate error.
+            if !monitor.series.is_empty() {
+                simulation.drive(monitor.controller.force);
+            }
+        })
+        .run(context)?
+        .put(&mut record);
     if record.status == Status::Completed {
         measure(setup, &monitor.window, area, &mut record);
         particles(setup, &*simulation, context.spec.keep.particles, &mut record);
@@ -127,7 +127,6 @@ pub fn run(method: &HillMethod, s: &HillSettings, context: &Context) -> Result<R
     let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
     let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
     record.profiles.insert("series".into(), Profile::of_rows(&columns, &monitor.series));
-    record.state = Some(simulate::state(&simulation.particles()));
     Ok(record)
 }
 

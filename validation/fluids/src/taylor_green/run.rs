@@ -97,13 +97,13 @@ pub fn run(method: &Method, s: &VortexSettings, context: &Context) -> Result<Rec
     let times: Vec<f64> = (1..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
     let start = simulation.particles();
     let mut series = vec![[0.0, setup.error(0.0, &start)]];
-    (record.status, record.cost) =
-        Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut series)
-            .at("series", &|series, simulation, _| {
-                let time = simulation.time();
-                series.push([time, setup.error(time, &simulation.particles())]);
-            })
-            .run(context)?;
+    Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut series)
+        .at("series", &|series, simulation, _| {
+            let time = simulation.time();
+            series.push([time, setup.error(time, &simulation.particles())]);
+        })
+        .run(context)?
+        .put(&mut record);
     let end = simulation.particles();
     if record.status == Status::Completed {
         measure(&setup, [&start, &end], &series, &mut record);
@@ -118,7 +118,6 @@ pub fn run(method: &Method, s: &VortexSettings, context: &Context) -> Result<Rec
     }
     let columns = [("t", "L/U"), ("error", "-")];
     record.profiles.insert("series".into(), Profile::of_rows(&columns, &series));
-    record.state = Some(simulate::state(&end));
     Ok(record)
 }
 

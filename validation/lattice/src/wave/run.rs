@@ -195,7 +195,7 @@ pub(super) fn run(
     let (s, Medium { density, sound_speed, h, eos, .. }) = (&wave.settings, wave.medium);
     let (mut projection, end) = (Projection::new(wave), [wave.rules.end]);
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    let (status, cost) = Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
+    let ended = Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
         .after_step("projection", &Projection::after_step)
         .run(context)?;
     let numbers = [
@@ -223,8 +223,8 @@ pub(super) fn run(
         .with("v_along", "c0", column(1))
         .with("v_across", "c0", column(2));
     record.profiles.insert("amplitudes".into(), profile);
+    ended.put(&mut record);
     record.state = Some(record::digest(series.as_flattened()));
-    (record.status, record.cost) = (status, cost);
     Ok(record)
 }
 

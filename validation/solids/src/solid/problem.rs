@@ -7,7 +7,7 @@ use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
 use base::{
     bits::Bits,
-    record::{self, Record},
+    record::Record,
     settings::{self, Settings, Values},
 };
 use harness::{
@@ -202,7 +202,7 @@ fn run(m: &Method<Symmetric>, s: &dyn Problem, context: &Context) -> Result<Reco
     let count = scales.stops.max(1);
     let stops: Vec<f64> = (1..=count).map(|k| scales.end * k as f64 / count as f64).collect();
     let mut seen = (&mut *watch, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
+    Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
         .after_step("measurements", &|(watch, _), simulation| {
             watch.after_step(simulation);
             Flow::Continue
@@ -212,18 +212,8 @@ fn run(m: &Method<Symmetric>, s: &dyn Problem, context: &Context) -> Result<Reco
                 watch.keep(simulation, stop, record);
             }
         })
-        .run(context)?;
-    (record.status, record.cost) = (status, cost);
-    record.state = Some(digest(&simulation.particles()));
+        .run(context)?
+        .put(&mut record);
     watch.measure(&*simulation, &mut record);
     Ok(record)
-}
-
-/// A digest of a state, stress included, in the order of the scene.
-pub fn digest(particles: &[Particle<Symmetric>]) -> String {
-    let numbers = |p: &Particle<Symmetric>| {
-        let Symmetric { xx, yy, xy } = p.extra;
-        [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, xx, yy, xy]
-    };
-    record::digest(&particles.iter().flat_map(numbers).collect::<Vec<f64>>())
 }
