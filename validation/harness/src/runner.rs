@@ -52,7 +52,7 @@ fn state<X: Numbers>(simulation: &dyn Stepper<X>) -> String {
 }
 
 /// A simulation and all that is observed of it.
-trait Observed<X> {
+trait Observed<X: Numbers> {
     /// The simulation, and what sees its steps.
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>);
     /// Calls the k-th of the functions that are called at times, at this one of the times.
@@ -62,7 +62,7 @@ trait Observed<X> {
 }
 
 /// What is observed of a run.
-trait Seen<X> {
+trait Seen<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow;
     /// All that changes of it.
@@ -361,7 +361,7 @@ impl Watch<'_> {
 }
 
 /// A watch with what is observed of the run.
-struct Watching<'w, 'a, X> {
+struct Watching<'w, 'a, X: Numbers> {
     watch: &'w mut Watch<'a>,
     seen: &'w mut dyn Seen<X>,
 }
@@ -434,12 +434,12 @@ type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
 type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
 
 /// What is observed of a run, and what is called of it after every step.
-struct Seeing<'a, X, S> {
+struct Seeing<'a, X: Numbers, S> {
     seen: &'a mut S,
     after_step: Vec<AfterStep<'a, X, S>>,
 }
 
-impl<X, S: Bits> Seen<X> for Seeing<'_, X, S> {
+impl<X: Numbers, S: Bits> Seen<X> for Seeing<'_, X, S> {
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow {
         self.after_step[k](self.seen, simulation)
     }
@@ -449,14 +449,14 @@ impl<X, S: Bits> Seen<X> for Seeing<'_, X, S> {
 }
 
 /// A simulation with the functions of a case.
-struct Run<'a, X, D: ?Sized, S> {
+struct Run<'a, X: Numbers, D: ?Sized, S> {
     simulation: &'a mut D,
     seeing: Seeing<'a, X, S>,
     at: Vec<At<'a, D, S>>,
     resumed: &'a dyn Fn(&S, &mut D),
 }
 
-impl<X, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>) {
         (self.simulation.stepper(), &mut self.seeing)
     }
@@ -472,7 +472,7 @@ impl<X, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
 ///
 /// The functions of a case cannot change what they capture: all that changes is in `S`, which checkpoints
 /// hold.
-pub struct Drive<'a, X, D: ?Sized, S> {
+pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
     run: Run<'a, X, D, S>,
     course: Course<'a>,
 }
