@@ -7,12 +7,13 @@
 
 use std::any::TypeId;
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 use std::time::Duration;
 
 use base::{
     bits::{self, Bits},
     files::FileError,
+    lock,
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
@@ -148,24 +149,20 @@ impl<'a> Checkpoints<'a> {
         Self { every, write, simulations: Mutex::new(simulations) }
     }
 
-    fn simulations(&self) -> MutexGuard<'_, Simulations> {
-        self.simulations.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// What the simulation that begins now goes on from, if it does.
     pub(crate) fn next(&self) -> Option<Vec<u8>> {
-        self.simulations().earlier.pop_front()
+        lock(&self.simulations).earlier.pop_front()
     }
 
     /// Keeps a simulation that has ended for the checkpoints of those that follow it.
     pub(crate) fn keep(&self, ended: Vec<u8>) {
-        self.simulations().ended.push(ended);
+        lock(&self.simulations).ended.push(ended);
     }
 
     /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
     /// one, that of an interrupt, none is written.
     pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), RunError> {
-        let mut simulations = self.simulations();
+        let mut simulations = lock(&self.simulations);
         if simulations.is_over {
             return Ok(());
         }

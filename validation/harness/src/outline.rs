@@ -2,9 +2,12 @@
 //! step. A run whose context asks for it is built and not stepped, or makes a few steps that another observer
 //! sees.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use base::record::{Profile, Record};
+use base::{
+    lock,
+    record::{Profile, Record},
+};
 use solver::{Domain, Numbers, PlaneWall, Role, Stepper};
 
 use crate::{
@@ -66,7 +69,7 @@ impl Sink {
 
     /// How the scene is seen.
     pub fn view(&self) -> View {
-        self.inside().outline.as_ref().map_or_else(View::default, |outline| outline.view)
+        lock(&self.inside).outline.as_ref().map_or_else(View::default, |outline| outline.view)
     }
 
     /// Step \[s\] and times \[s\] of a run whose observers are compared.
@@ -74,7 +77,7 @@ impl Sink {
     /// # Errors
     /// Why they cannot be.
     pub fn early(&self, dt: f64) -> Result<Option<(f64, Vec<f64>)>, RunError> {
-        let (Some(relation), inside) = (self.relation, self.inside()) else { return Ok(None) };
+        let (Some(relation), inside) = (self.relation, lock(&self.inside)) else { return Ok(None) };
         let shifts = inside.method.as_ref().is_some_and(|of| of.uses.contains(&Knob::Shift));
         let reason = match &inside.outline {
             None => Some("the case does not tell what its scene is made of"),
@@ -103,7 +106,7 @@ impl Sink {
         bodies: &[u32],
         view: Result<View, NoSymmetry>,
     ) {
-        let mut inside = self.inside();
+        let mut inside = lock(&self.inside);
         inside.refused = view.err();
         inside.outline.get_or_insert_with(|| Outline {
             medium,
@@ -125,7 +128,7 @@ impl Sink {
         dt: f64,
         pressure: &dyn Fn(f64) -> f64,
     ) {
-        let mut inside = self.inside();
+        let mut inside = lock(&self.inside);
         let first = inside.outline.as_mut().filter(|outline| outline.times.is_empty());
         if let Some(outline) = first {
             let particles = simulation.particles();
@@ -153,7 +156,7 @@ impl Sink {
             Err(RunError::Told) | Ok(_) => {}
             Err(error) => return Err(error),
         }
-        let mut inside = self.inside();
+        let mut inside = lock(&self.inside);
         let method = inside.method.take();
         let outline = inside.outline.take().filter(|of| !of.times.is_empty());
         let none = || {
@@ -167,11 +170,7 @@ impl Sink {
 
     /// Adds what the method is.
     pub fn method(&self, method: Properties) {
-        self.inside().method = Some(method);
-    }
-
-    fn inside(&self) -> MutexGuard<'_, Inside> {
-        self.inside.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.inside).method = Some(method);
     }
 }
 

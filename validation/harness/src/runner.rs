@@ -3,10 +3,9 @@
 //! knows a run of a case by [`Observed`] alone, so it is compiled once for all cases of fluids, and once for
 //! those of solids.
 
-use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-use base::{bits::Bits, mutation::Constant, record::*};
+use base::{bits::Bits, lock, mutation::Constant, record::*};
 use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
@@ -143,7 +142,7 @@ impl Course<'_> {
         }
         if let Some(at_the_end) = context.at_the_end {
             let columns = frames::columns(&simulation.particles(), &self.pressure);
-            *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
+            *lock(at_the_end) = Some(columns);
         }
         Ok(ended)
     }

@@ -1,8 +1,9 @@
 //! Total Lagrangian solids, which have no scheme.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
+use base::lock;
 use harness::method::{Medium, Parts, Properties, mutate};
 use lagrangian::*;
 use maths::theory::bending;
@@ -107,12 +108,11 @@ fn step_limit(medium: &Medium) -> f64 {
 fn stiffness(of: [f64; 3]) -> f64 {
     static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
     let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
-    let found = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = found().get(&key) {
+    if let Some(known) = lock(&FOUND).get(&key) {
         return *known;
     }
     let stiffness = fastest_of_block::<WendlandC2>(h_over_dx, moduli);
-    found().insert(key, stiffness);
+    lock(&FOUND).insert(key, stiffness);
     stiffness
 }
 
