@@ -58,7 +58,7 @@ pub trait Case: Sync {
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError>;
     /// Time step and sound speed that follow from the settings of a run, without making any step.
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
-        Err(RunError::NoRules { case: spec.case.clone() })
+        Err(RunError::NoRules(spec.case.clone()))
     }
     /// The declaration from which the studies common to all cases are made.
     fn declaration(&self, _tier: Tier) -> Declaration {

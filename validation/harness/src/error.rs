@@ -60,11 +60,8 @@ pub enum RunError {
         allowed: String,
     },
     /// A case that states no rules for the choice of its time step.
-    #[error("case {case} states no rules for its time step")]
-    NoRules {
-        /// The case.
-        case: String,
-    },
+    #[error("case {0} states no rules for its time step")]
+    NoRules(String),
     /// A time step beyond the theoretical limit.
     #[error(
         "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} \
