@@ -5,7 +5,6 @@
 //! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
 //! it goes on.
 
-use std::any::TypeId;
 use std::collections::VecDeque;
 use std::sync::Mutex;
 use std::time::Duration;
@@ -17,7 +16,7 @@ use base::{
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Numbers, Particle, Past, Progress, Stepper, Symmetric, Work};
+use solver::{Checkpoint, Numbers, Particle, Past, Progress, Stepper, Work};
 
 use crate::{
     error::RunError,
@@ -95,7 +94,7 @@ pub(crate) fn save<X: Numbers>(
     stage: &Stage,
     seen: &dyn Bits,
 ) -> Result<Vec<u8>, RunError> {
-    if size_of::<X>() > 0 && TypeId::of::<X>() != TypeId::of::<Symmetric>() {
+    if size_of::<X>() > 0 && stress(&X::default()).is_none() {
         return Err(RunError::Checkpoint(
             "particles with other extra fields than a deviatoric stress",
         ));
