@@ -21,7 +21,7 @@ pub const INTEGRATOR: &str = "integrator";
 pub const WALLS: &str = "walls";
 
 /// A record of the run of a context, with what its rules chose: numbers by name, a kernel, an integrator,
-/// walls.
+/// walls. It is begun before the first step: the outline of a run has its method from here.
 pub fn begin(method: &Properties, numbers: &[(&str, f64)], context: &Context) -> Record {
     if let Some(outline) = &context.outline {
         outline.method(method.clone());

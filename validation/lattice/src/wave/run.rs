@@ -194,10 +194,6 @@ pub(super) fn run(
     let mut simulation = (method.build)(wave.parts(context))?;
     let (s, Medium { density, sound_speed, h, eos, .. }) = (&wave.settings, wave.medium);
     let (mut projection, end) = (Projection::new(wave), [wave.rules.end]);
-    // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    let ended = Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
-        .after_step("projection", &Projection::after_step)
-        .run(context)?;
     let numbers = [
         ("h/dx", s.h_over_dx),
         ("c0 [m/s]", sound_speed),
@@ -206,6 +202,11 @@ pub(super) fn run(
         ("omega dt", wave.mode.omega * wave.rules.dt()),
     ];
     let mut record = simulate::begin(method, &numbers, context);
+    // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
+    Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
+        .after_step("projection", &Projection::after_step)
+        .run(context)?
+        .put(&mut record);
     let Projection { series, momentum, .. } = projection;
     compare(wave, method.theory, &series, &mut record);
     let scale = density * s.length * s.length * s.amplitude * sound_speed;
@@ -223,7 +224,6 @@ pub(super) fn run(
         .with("v_along", "c0", column(1))
         .with("v_across", "c0", column(2));
     record.profiles.insert("amplitudes".into(), profile);
-    ended.put(&mut record);
     record.state = Some(record::digest(series.as_flattened()));
     Ok(record)
 }
