@@ -1,6 +1,7 @@
 //! Time integration. A physics together with an integrator is a scheme.
 
-use std::mem::swap;
+use std::marker::PhantomData;
+use std::mem::{swap, take};
 
 use nalgebra::Vector2;
 
@@ -18,17 +19,17 @@ use crate::{
 /// Whether a step stayed within the bounds of its scene.
 pub type Stepped = Result<(), Fault>;
 
-/// An explicit time integration of (x, v, ρ) of the physics `P`. A value of the type holds memory that steps
-/// use; what the next step needs of the ones before is in [`crate::ParticleData`].
-pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
+/// An explicit time integration of (x, v, ρ) of the physics `P`. What the next step needs of the ones before,
+/// and memory that steps use, is in [`crate::ParticleData`].
+pub trait Integrator<P: Physics>: 'static {
     /// Its name in settings and reports.
     const NAME: &'static str;
 
     /// Advances the state by dt \[s\].
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped;
+    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped;
 
     /// Brings every quantity to the same time, until the next step.
-    fn synchronise(&mut self, _engine: &mut Engine<P>, _state: &mut State<P>) -> Stepped {
+    fn synchronise(_engine: &mut Engine<P>, _state: &mut State<P>) -> Stepped {
         Ok(())
     }
 
@@ -36,11 +37,6 @@ pub trait Integrator<P: Physics>: Default + Send + Sync + 'static {
     /// They are computed by the same pair sweeps that a step uses.
     fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_one_sweep()
-    }
-
-    /// Memory in addition to the state \[bytes\].
-    fn bytes(&self) -> usize {
-        0
     }
 }
 
@@ -98,26 +94,23 @@ fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Update<X> {
 ///
 /// Two right-hand sides per step. Weakly unstable for undamped sound: the amplitude grows by a factor of
 /// about 1 + (ω dt)⁴/8 per step.
-#[derive(Debug, Default)]
-pub struct PredictorCorrector<X = ()> {
-    midpoint: Vec<Evolved<X>>,
-}
+#[derive(Debug)]
+pub struct PredictorCorrector;
 
-impl<P: Physics> Integrator<P> for PredictorCorrector<P::Extra> {
+impl<P: Physics> Integrator<P> for PredictorCorrector {
     const NAME: &'static str = "predictor-corrector";
 
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
-        self.midpoint.clear();
-        self.midpoint.extend_from_slice(state);
-        engine.sweep_all(&mut self.midpoint, &each(advance(0.5 * dt)));
-        engine.refresh(&self.midpoint)?;
+        let mut midpoint = take(&mut engine.data.stages[0]);
+        midpoint.clear();
+        midpoint.extend_from_slice(state);
+        engine.sweep_all(&mut midpoint, &each(advance(0.5 * dt)));
+        let refreshed = engine.refresh(&midpoint);
+        engine.data.stages[0] = midpoint;
+        refreshed?;
         engine.sweep_all(state, &each(advance(dt)));
         Ok(())
-    }
-
-    fn bytes(&self) -> usize {
-        self.midpoint.capacity() * size_of::<Evolved<P::Extra>>()
     }
 }
 
@@ -129,34 +122,27 @@ impl<P: Physics> Integrator<P> for PredictorCorrector<P::Extra> {
 /// its own terms, so together they make one right-hand side. Sound is neither damped nor amplified up to
 /// ω dt = 2. With both sums at the old velocity the scheme would be forward Euler for sound, and unstable
 /// at every dt. `K` advances the velocities, by default [`ForwardKick`].
-#[derive(Debug, Default)]
-pub struct Leapfrog<K = ForwardKick> {
-    kick: K,
-}
+#[derive(Debug)]
+pub struct Leapfrog<K = ForwardKick>(PhantomData<K>);
 
 /// How a [`Leapfrog`] advances velocities while positions and densities stay as they are.
-pub trait Kick<P: Physics>: Default + Send + Sync + 'static {
+pub trait Kick<P: Physics>: 'static {
     /// Name of the leapfrog that has it.
     const NAME: &'static str;
 
     /// Advances the velocities of fluid particles by the first of these times \[s\], and then moves the
     /// particles with them for the second.
-    fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped;
-
-    /// Memory that it holds \[bytes\].
-    fn bytes(&self) -> usize {
-        0
-    }
+    fn kick(engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped;
 }
 
 /// v + dt a(v): forces that depend on the velocity use that of half a step earlier, first order in dt.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct ForwardKick;
 
 impl<P: Physics> Kick<P> for ForwardKick {
     const NAME: &'static str = "leapfrog";
 
-    fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
+    fn kick(engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
         engine.sweep_forces(state, &each(kick(dt)));
         Ok(())
     }
@@ -165,11 +151,11 @@ impl<P: Physics> Kick<P> for ForwardKick {
 impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     const NAME: &'static str = K::NAME;
 
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.data.stagger(state);
         engine.begin(state)?;
         let (lag, half) = (engine.data.lag, 0.5 * dt);
-        self.kick.kick(engine, state, [lag + half, half])?;
+        K::kick(engine, state, [lag + half, half])?;
         engine.refresh(state)?;
         // Wall particles have a velocity too, but do not move.
         let update = drift(dt, engine.data.fluid_count());
@@ -178,21 +164,17 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         Ok(())
     }
 
-    fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
+    fn synchronise(engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
         if engine.data.is_staggered() {
             engine.begin(state)?;
             engine.data.hold(state);
-            self.kick.kick(engine, state, [engine.data.lag, 0.0])?;
+            K::kick(engine, state, [engine.data.lag, 0.0])?;
         }
         Ok(())
     }
 
     fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_two_sweeps()
-    }
-
-    fn bytes(&self) -> usize {
-        self.kick.bytes()
     }
 }
 
@@ -205,11 +187,8 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
 /// there. s is the least odd number, from 3 on, that allows the step (for an even s the stiffest wave would
 /// not decay at the limit). So the stiff force limits no step, but costs s − 1 pair sweeps in addition to
 /// the two of the leapfrog.
-#[derive(Debug, Default)]
-pub struct SuperSteps<X = ()> {
-    /// dv/dt by all forces at the start of a kick, and v less its value there in two successive stages.
-    stages: [Vec<Evolved<X>>; 3],
-}
+#[derive(Debug)]
+pub struct SuperSteps;
 
 /// The number of stages of a step that is so many times as long as the explicit limit: at most 999, so that a
 /// step beyond 249,749 limits is not stable instead of never ending.
@@ -226,22 +205,24 @@ fn weight(j: u32) -> f64 {
 }
 
 impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kick<P>
-    for SuperSteps<P::Extra>
+    for SuperSteps
 {
     const NAME: &'static str = "super-leapfrog";
 
-    fn kick(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
+    fn kick(engine: &mut Engine<P>, state: &mut State<P>, dt: [f64; 2]) -> Stepped {
         const { assert!(!T::NORMALISES, "moments are not summed for a part") };
         let Split(_, stiff, limit) = engine.typed.terms.0.clone();
         let count = stages(dt[0] / limit);
         let s = f64::from(count);
         let length = 4.0 * dt[0] / (s * s + s - 2.0);
-        for stage in &mut self.stages {
+        let mut stages = take(&mut engine.data.stages);
+        for stage in &mut stages {
             stage.clear();
             stage.extend_from_slice(state);
             stage.iter_mut().for_each(|evolved| evolved.velocity = Vector2::zeros());
         }
-        let [start, older, newer] = &mut self.stages;
+        // dv/dt by all forces, and v less its value at the start in two successive stages.
+        let [start, older, newer] = &mut stages;
         let take = |_, start: &mut Evolved<_>, rate: &Rate<_>| start.velocity = rate.velocity;
         engine.sweep_forces(start, &each(take));
         for (newer, start) in newer.iter_mut().zip(&*start) {
@@ -264,11 +245,8 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
             evolved.velocity += difference.velocity;
             evolved.position += evolved.velocity * dt[1];
         }
+        engine.data.stages = stages;
         Ok(())
-    }
-
-    fn bytes(&self) -> usize {
-        self.stages.iter().map(Vec::capacity).sum::<usize>() * size_of::<Evolved<P::Extra>>()
     }
 }
 
@@ -284,13 +262,13 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
 /// limit. Sound has about a third of it: stable up to ω dt = 1/√2, where the leapfrog is up to 2; below, it
 /// is damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
 /// velocities.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct SingleSweep;
 
 impl<P: Physics> Integrator<P> for SingleSweep {
     const NAME: &'static str = "single-sweep";
 
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.data.stagger(state);
         engine.begin(state)?;
         let (lag, half, fluid) = (engine.data.lag, 0.5 * dt, engine.data.fluid_count());
@@ -327,25 +305,19 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         Ok(())
     }
 
-    fn synchronise(&mut self, engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
-        if engine.data.is_staggered() {
-            engine.begin(state)?;
-            engine.data.hold(state);
-            let update = kick([engine.data.lag, 0.0]);
-            engine.sweep_forces(state, &each(update));
-        }
-        Ok(())
+    fn synchronise(engine: &mut Engine<P>, state: &mut State<P>) -> Stepped {
+        <Leapfrog as Integrator<P>>::synchronise(engine, state)
     }
 }
 
 /// Forward Euler: yⁿ⁺¹ = yⁿ + dt f(yⁿ). Unstable for sound at every dt; used only in tests.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Debug)]
 pub struct Euler;
 
 impl<P: Physics> Integrator<P> for Euler {
     const NAME: &'static str = "euler";
 
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
         engine.sweep_all(state, &each(advance(dt)));
         Ok(())

@@ -27,14 +27,6 @@ pub struct Work {
 /// reads no clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// What integrators do beside the calls of their engine.
-    Rest,
-    /// Deriving columns of particles and images from a state.
-    Refresh,
-    /// Putting particles in the order of storage, along strips.
-    Sorting,
-    /// Making images and neighbour lists.
-    Search,
     /// The pair sweep over the forces.
     Forces,
     /// The pair sweep over the drift.
@@ -43,6 +35,14 @@ pub enum Phase {
     Both,
     /// The pair sweep over the terms of the walls.
     Walls,
+    /// Deriving columns of particles and images from a state.
+    Refresh,
+    /// Making images and neighbour lists.
+    Search,
+    /// Putting particles in the order of storage, along strips.
+    Sorting,
+    /// What integrators do beside the calls of their engine.
+    Rest,
 }
 
 /// Is told that a phase begins, which ends the one before.
@@ -202,6 +202,8 @@ pub struct ParticleData<X = ()> {
     pub(crate) held: Vec<Vector2<f64>>,
     /// In the order of `state`; empty for integrators that keep nothing.
     pub(crate) past: Vec<Past<X>>,
+    /// States inside a step, of integrators that have some.
+    pub(crate) stages: [Vec<Evolved<X>>; 3],
     /// What was found in each block while filling columns, and of what was not filled.
     pub(crate) extents: Vec<Extent>,
     /// What was found of particles that need not be filled again until lists are built: those of walls that
@@ -375,6 +377,7 @@ impl<X: Numbers> ParticleData<X> {
             + self.order.capacity() * size_of::<u32>()
             + self.held.capacity() * size_of::<Vector2<f64>>()
             + self.past.capacity() * size_of::<Past<X>>()
+            + self.stages.iter().map(Vec::capacity).sum::<usize>() * size_of::<Evolved<X>>()
             + self.extents.capacity() * size_of::<Extent>()
             + self.extrapolated.capacity() * size_of::<Evolved<X>>()
             + self.neighbours.bytes()

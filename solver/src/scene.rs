@@ -98,7 +98,7 @@ impl<S: Scheme> Scene<S> {
         let (h, mirrors) = (self.setting.h, self.walls.mirrors());
         let data = self.setting.ready(S::Kernel::SUPPORT, mirrors, S::Walls::FEET)?;
         let engine = Engine::new(h, (self.forces, self.drift), &self.walls, data);
-        Ok(Simulation { engine, integrator: S::Integrator::default() })
+        Ok(Simulation { engine })
     }
 }
 

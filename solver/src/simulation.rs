@@ -47,7 +47,7 @@ pub enum Flow {
 }
 
 /// Observes a run. `()` is an observer that does nothing.
-pub trait Observer<X> {
+pub trait Observer<X: Numbers> {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
 
@@ -59,7 +59,7 @@ pub trait Observer<X> {
     }
 }
 
-impl<X> Observer<X> for () {
+impl<X: Numbers> Observer<X> for () {
     fn after_step(&mut self, _: &dyn Stepper<X>) -> Flow {
         Flow::Continue
     }
@@ -68,7 +68,7 @@ impl<X> Observer<X> for () {
 /// A simulation without the type of its scheme, as a harness uses it: `&dyn Stepper<X>` is any simulation
 /// whose particles integrate the extra fields `X`. It dereferences to [`ParticleData`], which gives time,
 /// work and particles.
-pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
+pub trait Stepper<X: Numbers>: Deref<Target = ParticleData<X>> {
     /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
     /// quantity to that time, unless the observer does without. The next step undoes that, so the times at
     /// which a run is observed do not change it, but for the length of equal steps between them.
@@ -80,7 +80,13 @@ pub trait Stepper<X>: Deref<Target = ParticleData<X>> {
     /// # Panics
     /// If `until` is earlier than the present time or not finite, or if `dt_max` is not above 0 or is so
     /// small that the number of steps is 10¹⁵ or more: the run would never end.
-    fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome;
+    fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome {
+        advance(self.stepper(), until, dt_max, observer)
+    }
+    /// One time step by dt \[s\], of which [`Stepper::advance`] makes some.
+    fn step(&mut self, dt: f64) -> Stepped;
+    /// Brings every quantity to the same time, and refreshes the derived data, for [`Stepper::advance`].
+    fn synchronise(&mut self) -> Stepped;
     /// Goes back or on to a [`ParticleData::checkpoint`] of a simulation of the same scene: its particles
     /// replace the present ones, and what follows has the bits of that simulation.
     ///
@@ -126,17 +132,9 @@ pub struct Potential {
     pub loads: f64,
 }
 
-/// A simulation by its time step, for [`advance`].
-pub trait Steps<X>: Stepper<X> {
-    /// One time step by dt \[s\].
-    fn step(&mut self, dt: f64) -> Stepped;
-    /// Brings every quantity to the same time, and refreshes the derived data.
-    fn synchronise(&mut self) -> Stepped;
-}
-
-/// [`Stepper::advance`] of a simulation by its time step.
-pub fn advance<X: Numbers>(
-    simulation: &mut dyn Steps<X>,
+/// [`Stepper::advance`] by time steps.
+fn advance<X: Numbers>(
+    simulation: &mut dyn Stepper<X>,
     until: f64,
     dt: f64,
     observer: &mut dyn Observer<X>,
@@ -179,16 +177,26 @@ fn diverged<X: Numbers>(data: &ParticleData<X>, fault: Fault) -> Outcome {
 }
 
 impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
-    fn advance(&mut self, until: f64, dt: f64, observer: &mut dyn Observer<S::Extra>) -> Outcome {
-        advance(self, until, dt, observer)
+    fn step(&mut self, dt: f64) -> Stepped {
+        let mut state = take(&mut self.engine.data.state);
+        let stepped = S::Integrator::step(&mut self.engine, &mut state, dt);
+        self.engine.data.state = state;
+        stepped
+    }
+    fn synchronise(&mut self) -> Stepped {
+        let Self { engine } = self;
+        let mut state = take(&mut engine.data.state);
+        let synchronised =
+            S::Integrator::synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+        engine.normalise();
+        engine.data.state = state;
+        synchronised
     }
     fn stepper(&mut self) -> &mut dyn Stepper<S::Extra> {
         self
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
-        self.engine.core().restore(from)?;
-        self.integrator = S::Integrator::default();
-        Ok(())
+        self.engine.core().restore(from)
     }
     fn weight(&self, r2: f64) -> f64 {
         self.engine.typed.kernel.w(r2)
@@ -203,35 +211,16 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         self.engine.data.wall_rates(&self.engine.typed)
     }
     fn bytes(&self) -> usize {
-        self.engine.bytes() + self.integrator.bytes()
+        self.engine.bytes()
     }
     fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
         &mut self.engine.data
     }
 }
 
-impl<S: Scheme> Steps<S::Extra> for Simulation<S> {
-    fn step(&mut self, dt: f64) -> Stepped {
-        let mut state = take(&mut self.engine.data.state);
-        let stepped = self.integrator.step(&mut self.engine, &mut state, dt);
-        self.engine.data.state = state;
-        stepped
-    }
-    fn synchronise(&mut self) -> Stepped {
-        let Self { engine, integrator } = self;
-        let mut state = take(&mut engine.data.state);
-        let synchronised =
-            integrator.synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
-        engine.normalise();
-        engine.data.state = state;
-        synchronised
-    }
-}
-
 /// A scene that advances in time. It dereferences to [`ParticleData`], which gives time, work and particles.
 pub struct Simulation<S: Scheme> {
     pub(crate) engine: Engine<PhysicsOf<S>>,
-    pub(crate) integrator: S::Integrator,
 }
 
 impl<S: Scheme> Deref for Simulation<S> {

@@ -79,13 +79,12 @@ impl Random {
 type Still<K, X> = Compose<K, (), (), Open, NoStep, X>;
 
 /// Makes no step.
-#[derive(Default)]
 struct NoStep;
 
 impl<P: Physics> Integrator<P> for NoStep {
     const NAME: &'static str = "none";
 
-    fn step(&mut self, _: &mut Engine<P>, _: &mut State<P>, _: f64) -> Stepped {
+    fn step(_: &mut Engine<P>, _: &mut State<P>, _: f64) -> Stepped {
         Ok(())
     }
 }

@@ -11,7 +11,7 @@ use fluids::channel::{ChannelSettings, Flow, Setup, TIMES};
 use harness::{
     case::{self, Case},
     context::Context,
-    method::Method,
+    method::{Method, Properties},
     simulate::{INTEGRATOR, KERNEL, WALLS},
 };
 use maths::theory::time_step::Integrator;
@@ -168,7 +168,7 @@ fn check_steps(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) {
     let setup = setup(method, rows, wall_curvature, flow);
     let mut simulation = simulation(method, &setup);
     let model = reduced(method.kernel, &setup, rule(&setup, method.walls));
-    let Method { kernel, walls, integrator, .. } = method;
+    let Properties { kernel, walls, integrator, .. } = &method.properties;
     let name = format!("{flow:?}, {kernel}, {walls}, {integrator}, {:?}", setup.settings);
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in [0.005, 0.02, 0.1, 0.5, 2.0] {
@@ -263,7 +263,7 @@ fn check_exponential(method: &Method, wall_curvature: bool) {
         let model = reduced(method.kernel, &setup, rule(&setup, method.walls));
         let exact = model.at(setup.time(tau)).expect("regular");
         let apart = apart(&setup, &extrapolated(method, &setup, tau), &model, &exact);
-        let Method { kernel, walls, integrator, .. } = method;
+        let Properties { kernel, walls, integrator, .. } = &method.properties;
         let name = format!("{kernel} {walls} {wall_curvature} {integrator} {flow:?} at {tau}");
         assert!(apart < ALLOWED, "{name}: {apart:e} V");
     }

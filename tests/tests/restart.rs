@@ -131,7 +131,7 @@ fn the_predictor_corrector_goes_on_with_the_same_bits() {
 /// Leaves velocities where steps left them.
 struct PositionsOnly;
 
-impl<X> Observer<X> for PositionsOnly {
+impl<X: Numbers> Observer<X> for PositionsOnly {
     fn after_step(&mut self, _: &dyn Stepper<X>) -> Flow {
         Flow::Continue
     }

@@ -102,7 +102,7 @@ fn unknown_names_are_refused_with_the_nearest() {
     refused(&["frobnicate"], &["unrecognized subcommand"]);
     refused(&["run", "couete"], &["did you mean couette?", "poiseuille"]);
     refused(&["list", "Couette"], &["did you mean couette?"]);
-    refused(&["verify", "lid"], &["no case is called \"lid\"; the cases are"]);
+    refused(&["verify", "lid"], &["no case is called \"lid\"; there are"]);
     refused(&["run", "couette", "--variant", "modrn"], &["did you mean modern?", "seed"]);
     refused(&["run", "couette", "--set", "row=8"], &["did you mean rows?"]);
     refused(&["run", "couette", "--set", "rows"], &["key=value"]);

@@ -60,7 +60,7 @@ fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() 
     };
     let odd = [
         (couette("x/../../../../EVIL", "{}", ""), "letters, digits, - and _ (column "),
-        (couette("sed", "{}", ""), "has no variant \"sed\" (did you mean seed?)"),
+        (couette("sed", "{}", ""), "no variant of couette is called \"sed\" (did you mean seed?)"),
         (couette("seed", "null", ""), "null, expected an object of settings by name"),
         (
             couette("seed", "{\"re\":1,\"re\":2}", ""),

@@ -3,12 +3,11 @@
 
 use nalgebra::Vector2;
 use solver::{
-    Checkpoint, Domain, Kernel, Leapfrog, Limits, Observer, Outcome, Particle, ParticleData, Phase,
-    Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
+    Checkpoint, Domain, Kernel, Leapfrog, Limits, Particle, ParticleData, Phase, Potential, Rate,
+    Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
     particles::{Column, Common},
     scene::{Part, require},
-    simulation::{self, Steps},
     walls::Walls,
 };
 
@@ -121,7 +120,7 @@ impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
     }
 }
 
-impl<K: Kernel, L: Law, C: Load> Steps<Symmetric> for Solid<K, L, C> {
+impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     fn step(&mut self, dt: f64) -> Stepped {
         let half = 0.5 * dt;
         for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
@@ -137,12 +136,6 @@ impl<K: Kernel, L: Law, C: Load> Steps<Symmetric> for Solid<K, L, C> {
     }
     fn synchronise(&mut self) -> Stepped {
         self.data.check_bounds()
-    }
-}
-
-impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
-    fn advance(&mut self, until: f64, dt: f64, seen: &mut dyn Observer<Symmetric>) -> Outcome {
-        simulation::advance(self, until, dt, seen)
     }
     fn stepper(&mut self) -> &mut dyn Stepper<Symmetric> {
         self

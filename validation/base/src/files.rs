@@ -21,10 +21,12 @@ use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 use std::time::{Duration, SystemTime};
 
 use thiserror::Error;
+
+use crate::lock;
 
 /// Why a file was not written.
 #[derive(Debug, Error)]
@@ -61,15 +63,11 @@ pub enum FileError {
 /// Temporary files that exist now.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 /// Removes every temporary file of this process, for the handler of an interruption, just before the process
 /// ends: a write that is under way on another thread then fails instead of leaving a file behind, and any
 /// thread that then begins to write a file waits for the end of the process.
 pub fn remove_unfinished() {
-    let mut paths = unfinished();
+    let mut paths = lock(&UNFINISHED);
     remove_all(&mut paths);
     std::mem::forget(paths);
 }
@@ -155,7 +153,7 @@ impl Temporary {
         loop {
             let random = RandomState::new().build_hasher().finish(); // its keys are random
             let path = path.with_file_name(format!("{PREFIX}{random:016x}-{name}"));
-            let mut paths = unfinished(); // held, so that no interruption comes in between
+            let mut paths = lock(&UNFINISHED); // held, so that no interruption comes in between
             match OpenOptions::new().write(true).create_new(true).open(&path) {
                 Err(reason) if reason.kind() == io::ErrorKind::AlreadyExists => {}
                 opened => {
@@ -169,14 +167,14 @@ impl Temporary {
 
     fn persist(self, path: &Path) -> io::Result<()> {
         fs::rename(&self.0, path)?;
-        unfinished().remove(&self.0);
+        lock(&UNFINISHED).remove(&self.0);
         Ok(())
     }
 }
 
 impl Drop for Temporary {
     fn drop(&mut self) {
-        let mut paths = unfinished();
+        let mut paths = lock(&UNFINISHED);
         if paths.contains(&self.0) {
             let _ = fs::remove_file(&self.0);
             paths.remove(&self.0);
@@ -261,9 +259,9 @@ impl OutputFolder {
 
 /// Tests that write files share the registry of temporary files, so they take turns.
 #[cfg(test)]
-fn turn() -> MutexGuard<'static, ()> {
+fn turn() -> std::sync::MutexGuard<'static, ()> {
     static TURN: Mutex<()> = Mutex::new(());
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+    lock(&TURN)
 }
 
 #[cfg(test)]
@@ -287,7 +285,7 @@ mod tests {
         write_atomically(&path, b"new").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["record.json"]);
-        assert!(unfinished().is_empty());
+        assert!(lock(&UNFINISHED).is_empty());
     }
 
     /// Written in place, a file is half there for a while, and a reader of the old one loses the rest of it.
@@ -370,7 +368,7 @@ mod tests {
         assert_eq!(names(folder.path()), ["occupied"]);
         assert!(write_atomically(&folder.path().join("no/such/folder"), b"").is_err());
         assert!(write_atomically(Path::new("/"), b"").is_err());
-        assert!(unfinished().is_empty());
+        assert!(lock(&UNFINISHED).is_empty());
     }
 
     /// A process id repeats, in containers always: what a process that was killed left behind is in the way
@@ -439,11 +437,11 @@ mod tests {
         let (temporary, mut file) = Temporary::beside(&path).unwrap();
         file.write_all(b"half a ro").unwrap();
         assert_eq!(names(folder.path()).len(), 1);
-        assert_eq!(remove_all(&mut unfinished()), 1);
+        assert_eq!(remove_all(&mut lock(&UNFINISHED)), 1);
         assert!(names(folder.path()).is_empty());
         assert!(temporary.persist(&path).is_err(), "a write under way cannot finish");
         assert!(names(folder.path()).is_empty());
-        assert_eq!(remove_all(&mut unfinished()), 0);
+        assert_eq!(remove_all(&mut lock(&UNFINISHED)), 0);
     }
 
     #[test]

@@ -17,3 +17,11 @@ pub mod spec;
 pub mod submission;
 pub mod text;
 pub mod vtk;
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What a mutex holds. That a thread which had it has panicked does not matter: nothing is left half done
+/// where it is used, and the panic is told elsewhere.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

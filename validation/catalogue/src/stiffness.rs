@@ -29,7 +29,7 @@ impl Row {
             Ok(Self { case: case.name(), variant: variant.name, rules: rules? })
         };
         let all = case.variants().into_iter().map(row);
-        all.filter(|row| !matches!(row, Err(RunError::NoRules { .. }))).collect()
+        all.filter(|row| !matches!(row, Err(RunError::NoRules(_)))).collect()
     }
 
     /// Steps of the run.

@@ -8,7 +8,7 @@ use base::{
 use harness::{
     case::{Case, RunError},
     context::Context,
-    method::Medium,
+    method::{Medium, Properties},
     outline::{Outline, Sink},
     plan,
     relation::Relation,
@@ -32,6 +32,8 @@ pub struct Problem {
     pub about: &'static str,
     /// What scene and drive are made of.
     pub outline: Outline,
+    /// What our own method is.
+    pub method: Properties,
     /// What a run of these settings is judged by.
     pub gates: Vec<Gate>,
     /// Of a sealed problem, what it was drawn from.
@@ -101,9 +103,9 @@ impl Problem {
         let sink = Sink::of(relation, false);
         let context =
             Context { outline: Some(sink.clone()), allow_long: true, ..Context::default() };
-        let outline = sink.of_run(case.run(&spec, &context), case.name())?;
+        let (outline, method) = sink.of_run(case.run(&spec, &context), case.name())?;
         let gates = if relation.is_none() { plan::gates_of(case, &spec) } else { Vec::new() };
-        Ok(Self { spec, about: case.about(), outline, gates, sealed: None, relation })
+        Ok(Self { spec, about: case.about(), outline, method, gates, sealed: None, relation })
     }
 
     /// The particles that the other code moves: their numbers in the problem.
@@ -119,7 +121,8 @@ impl Problem {
 
     /// The document.
     pub fn to_json(&self) -> Value {
-        let Outline { medium: m, domain, mirrors, times, dt, method, .. } = &self.outline;
+        let Self { outline, method, .. } = self;
+        let Outline { medium: m, domain, mirrors, times, dt, .. } = outline;
         let plane = |wall: &solver::PlaneWall| {
             json!({
                 "point": with_unit(wall.point.as_slice(), "m"),
@@ -185,7 +188,7 @@ impl Problem {
     /// The equations in words.
     pub fn equations(&self) -> [(&'static str, &'static str); 3] {
         let continuity = ("continuity", "dρ/dt = -ρ ∇·v");
-        if let Some(energy) = self.outline.method.law {
+        if let Some(energy) = self.method.law {
             let momentum = "ρ0 dv/dt = ∇·P + ρ0 g, P = ∂w/∂F, in the configuration without stress";
             return [continuity, ("momentum", momentum), ("stored energy, plane strain", energy)];
         }

@@ -299,7 +299,7 @@ impl Entry {
             Division::Open => self.own_ids(&mut flaws),
         };
         let all = problem.outline.particles.column("id").len();
-        let support = problem.outline.method.support * problem.outline.medium.h;
+        let support = problem.method.support * problem.outline.medium.h;
         for (frame, (file, line)) in frames.iter().zip(places) {
             if flaws.len() >= MOST_FLAWS {
                 flaws.push(Flaw::of(

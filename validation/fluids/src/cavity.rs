@@ -184,7 +184,8 @@ fn run(m: &Method, s: &Cavity, context: &Context) -> Result<Record, RunError> {
                 *mean += velocity(place, &particles, dx) / SAMPLES as f64;
             }
         })
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     let mut all = simulation.particles();
     if record.status == Status::Completed {
         measure(&places, &means, &mut record);

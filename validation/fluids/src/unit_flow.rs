@@ -42,8 +42,8 @@ impl UnitFlow {
     ///
     /// # Errors
     /// If the step is not stable, or the run takes too long.
-    pub fn new<D: ?Sized>(
-        method: &Method<(), D>,
+    pub fn new(
+        method: &Properties,
         medium: Medium,
         [courant, viscous, skin, end]: [f64; 4],
         Scales { speed, force, area, dt }: Scales,
@@ -99,9 +99,9 @@ macro_rules! unit_settings {
 
         impl $Struct {
             /// Follows the rules for a method.
-            fn flow<D: ?Sized>(
+            fn flow(
                 &self,
-                method: &harness::method::Method<(), D>,
+                method: &harness::method::Properties,
                 scales: $crate::unit_flow::Scales,
                 context: &harness::context::Context,
             ) -> Result<$crate::unit_flow::UnitFlow, harness::case::RunError> {

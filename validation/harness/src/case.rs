@@ -58,7 +58,7 @@ pub trait Case: Sync {
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError>;
     /// Time step and sound speed that follow from the settings of a run, without making any step.
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
-        Err(RunError::NoRules { case: spec.case.clone() })
+        Err(RunError::NoRules(spec.case.clone()))
     }
     /// The declaration from which the studies common to all cases are made.
     fn declaration(&self, _tier: Tier) -> Declaration {
@@ -140,6 +140,6 @@ pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
 /// The case of that name among these.
 pub fn find_in(cases: &[&'static dyn Case], name: &str) -> Result<&'static dyn Case, RunError> {
     let known = || cases.iter().map(|case| case.name()).collect();
-    let unknown = || RunError::Case { name: name.into(), known: known() };
+    let unknown = || RunError::Unknown { what: "case".into(), name: name.into(), known: known() };
     cases.iter().copied().find(|case| case.name() == name).ok_or_else(unknown)
 }

@@ -5,18 +5,18 @@
 //! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
 //! it goes on.
 
-use std::any::TypeId;
 use std::collections::VecDeque;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 use std::time::Duration;
 
 use base::{
     bits::{self, Bits},
     files::FileError,
+    lock,
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Numbers, Particle, Past, Progress, Stepper, Symmetric, Work};
+use solver::{Checkpoint, Numbers, Particle, Past, Progress, Stepper, Work};
 
 use crate::{
     error::RunError,
@@ -94,7 +94,7 @@ pub(crate) fn save<X: Numbers>(
     stage: &Stage,
     seen: &dyn Bits,
 ) -> Result<Vec<u8>, RunError> {
-    if size_of::<X>() > 0 && TypeId::of::<X>() != TypeId::of::<Symmetric>() {
+    if size_of::<X>() > 0 && stress(&X::default()).is_none() {
         return Err(RunError::Checkpoint(
             "particles with other extra fields than a deviatoric stress",
         ));
@@ -148,24 +148,20 @@ impl<'a> Checkpoints<'a> {
         Self { every, write, simulations: Mutex::new(simulations) }
     }
 
-    fn simulations(&self) -> MutexGuard<'_, Simulations> {
-        self.simulations.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// What the simulation that begins now goes on from, if it does.
     pub(crate) fn next(&self) -> Option<Vec<u8>> {
-        self.simulations().earlier.pop_front()
+        lock(&self.simulations).earlier.pop_front()
     }
 
     /// Keeps a simulation that has ended for the checkpoints of those that follow it.
     pub(crate) fn keep(&self, ended: Vec<u8>) {
-        self.simulations().ended.push(ended);
+        lock(&self.simulations).ended.push(ended);
     }
 
     /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
     /// one, that of an interrupt, none is written.
     pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), RunError> {
-        let mut simulations = self.simulations();
+        let mut simulations = lock(&self.simulations);
         if simulations.is_over {
             return Ok(());
         }

@@ -129,9 +129,10 @@ impl Composition {
     /// That of a name among those of a case.
     fn named(case: &'static str, mut all: Vec<Self>, variant: &str) -> Result<Self, RunError> {
         let known: Vec<_> = all.iter().map(|of| of.variant.name).collect();
+        let (what, name) = (format!("variant of {case}"), variant.into());
         match known.iter().position(|name| *name == variant) {
             Some(place) => Ok(all.swap_remove(place)),
-            None => Err(RunError::Variant { case, name: variant.into(), known }),
+            None => Err(RunError::Unknown { what, name, known }),
         }
     }
 

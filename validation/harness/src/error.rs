@@ -17,22 +17,11 @@ use crate::{
 /// Why a run was refused before its first step.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// No case of that name.
-    #[error("no case is called {name:?}{}; the cases are {}", hint(.known, .name), .known.join(", "))]
-    Case {
-        /// As given.
-        name: String,
-        /// All names.
-        known: Vec<&'static str>,
-    },
-    /// No variant of that name.
-    #[error(
-        "case {case} has no variant {name:?}{}; its variants are {}",
-        hint(.known, .name), .known.join(", ")
-    )]
-    Variant {
-        /// The case.
-        case: &'static str,
+    /// No case, or no variant of a case, of that name.
+    #[error("no {what} is called {name:?}{}; there are {}", hint(.known, .name), .known.join(", "))]
+    Unknown {
+        /// What is sought.
+        what: String,
         /// As given.
         name: String,
         /// All names.
@@ -71,11 +60,8 @@ pub enum RunError {
         allowed: String,
     },
     /// A case that states no rules for the choice of its time step.
-    #[error("case {case} states no rules for its time step")]
-    NoRules {
-        /// The case.
-        case: String,
-    },
+    #[error("case {0} states no rules for its time step")]
+    NoRules(String),
     /// A time step beyond the theoretical limit.
     #[error(
         "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} \

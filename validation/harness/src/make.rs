@@ -7,11 +7,12 @@ use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
 use base::{
     files::FileError,
+    lock,
     manifest::UNKNOWN,
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
@@ -387,13 +388,9 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    fn tally(&self) -> MutexGuard<'_, Tally> {
-        self.tally.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Tells how far it is after a change.
     fn tell(&self, change: impl FnOnce(&mut Tally)) {
-        let mut tally = self.tally();
+        let mut tally = lock(&self.tally);
         change(&mut tally);
         if let Some(progress) = self.making.progress {
             let (share, left) = (tally.share(), tally.left());
@@ -402,14 +399,10 @@ impl Batch<'_> {
         }
     }
 
-    fn made(&self) -> MutexGuard<'_, Made> {
-        self.made.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Keeps a record, in the store too if there is one, or notes why it could not be written there.
     fn keep(&self, record: Record) {
         let written = self.making.store.map(|store| store.write(&record));
-        let mut made = self.made();
+        let mut made = lock(&self.made);
         if let Some(Err(error)) = written {
             entry(&mut made.not_kept, record.key(), || error);
         }
@@ -432,10 +425,10 @@ impl Batch<'_> {
             let took = of_batch(job, self.making, start.elapsed().as_secs_f64());
             self.tell(|tally| tally.finish(&key, name, took));
         }
-        let is_last = self.tally().end(&key);
+        let is_last = lock(&self.tally).end(&key);
         let Some(finished) = self.making.finished.filter(|_| is_last) else { return };
         if !self.making.is_interrupted() {
-            let made = self.made();
+            let made = lock(&self.made);
             let Made { reused, of_other_sources, .. } = *made;
             let (records, submissions) = (made.records.clone(), made.submissions.clone());
             drop(made);
@@ -471,7 +464,7 @@ impl Batch<'_> {
             }
             Err(failed) => {
                 begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
-                entry(&mut self.made().failed, spec.key(), || failed);
+                entry(&mut lock(&self.made).failed, spec.key(), || failed);
                 None
             }
         }
@@ -482,7 +475,7 @@ impl Batch<'_> {
 /// soon as it is there, and again with the timings of the later rounds.
 fn alone(jobs: &[&Job], batch: &Batch) {
     jobs.iter().for_each(|job| batch.make(job));
-    let record = |job: &Job| batch.made().records.get(&job.planned.spec.key()).cloned();
+    let record = |job: &Job| lock(&batch.made).records.get(&job.planned.spec.key()).cloned();
     let is_cheap = |record: &Record| {
         record.cost.alone_s.iter().any(|seconds| *seconds < timed_again_below(batch.making.tier))
     };

@@ -2,15 +2,19 @@
 //! step. A run whose context asks for it is built and not stepped, or makes a few steps that another observer
 //! sees.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 
-use base::record::{Profile, Record};
+use base::{
+    lock,
+    record::{Profile, Record},
+};
 use solver::{Domain, Numbers, PlaneWall, Role, Stepper};
 
 use crate::{
     error::RunError,
     frames,
-    medium::Medium,
+    medium::{Knob, Medium},
+    method::Properties,
     relation::{NoSymmetry, Relation, TIME, View},
 };
 
@@ -31,27 +35,8 @@ pub struct Outline {
     pub times: Vec<f64>,
     /// Time step that our method takes \[s\].
     pub dt: f64,
-    /// What our own method is.
-    pub method: MethodWords,
     /// How all of it is seen.
     pub view: View,
-}
-
-/// A method by the names of its parts.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct MethodWords {
-    /// Name of the kernel.
-    pub kernel: &'static str,
-    /// Support radius of the kernel \[h\].
-    pub support: f64,
-    /// Name of the integrator.
-    pub integrator: &'static str,
-    /// Name of the walls.
-    pub walls: &'static str,
-    /// The stored energy as an equation, of a method whose forces derive from one.
-    pub law: Option<&'static str>,
-    /// Does it shift particles in proportion to the largest speed of the scene?
-    pub shifts: bool,
 }
 
 /// Steps of ours after which observers are compared: early, before the motion amplifies round-off. Strong
@@ -71,7 +56,7 @@ pub struct Sink {
 #[derive(Debug, Default)]
 struct Inside {
     outline: Option<Outline>,
-    method: MethodWords,
+    method: Option<Properties>,
     refused: Option<NoSymmetry>,
 }
 
@@ -84,7 +69,7 @@ impl Sink {
 
     /// How the scene is seen.
     pub fn view(&self) -> View {
-        self.inside().outline.as_ref().map_or_else(View::default, |outline| outline.view)
+        lock(&self.inside).outline.as_ref().map_or_else(View::default, |outline| outline.view)
     }
 
     /// Step \[s\] and times \[s\] of a run whose observers are compared.
@@ -92,12 +77,13 @@ impl Sink {
     /// # Errors
     /// Why they cannot be.
     pub fn early(&self, dt: f64) -> Result<Option<(f64, Vec<f64>)>, RunError> {
-        let (Some(relation), inside) = (self.relation, self.inside()) else { return Ok(None) };
+        let (Some(relation), inside) = (self.relation, lock(&self.inside)) else { return Ok(None) };
+        let shifts = inside.method.as_ref().is_some_and(|of| of.uses.contains(&Knob::Shift));
         let reason = match &inside.outline {
             None => Some("the case does not tell what its scene is made of"),
             Some(of)
                 if relation == Relation::Boosted
-                    && (self.steps && inside.method.shifts && of.medium.shift > 0.0) =>
+                    && (self.steps && shifts && of.medium.shift > 0.0) =>
             {
                 Some("its shifting takes the largest speed of the scene")
             }
@@ -120,7 +106,7 @@ impl Sink {
         bodies: &[u32],
         view: Result<View, NoSymmetry>,
     ) {
-        let mut inside = self.inside();
+        let mut inside = lock(&self.inside);
         inside.refused = view.err();
         inside.outline.get_or_insert_with(|| Outline {
             medium,
@@ -130,7 +116,6 @@ impl Sink {
             particles: Profile::default(),
             times: Vec::new(),
             dt: 0.0,
-            method: MethodWords::default(),
             view: view.unwrap_or_default(),
         });
     }
@@ -143,7 +128,7 @@ impl Sink {
         dt: f64,
         pressure: &dyn Fn(f64) -> f64,
     ) {
-        let mut inside = self.inside();
+        let mut inside = lock(&self.inside);
         let first = inside.outline.as_mut().filter(|outline| outline.times.is_empty());
         if let Some(outline) = first {
             let particles = simulation.particles();
@@ -158,17 +143,21 @@ impl Sink {
         }
     }
 
-    /// The outline of a run of a case that ended so.
+    /// The outline of a run of a case that ended so, and what our own method is.
     ///
     /// # Errors
     /// If the run was refused, or is none of a scene.
-    pub fn of_run(&self, ended: Result<Record, RunError>, case: &str) -> Result<Outline, RunError> {
+    pub fn of_run(
+        &self,
+        ended: Result<Record, RunError>,
+        case: &str,
+    ) -> Result<(Outline, Properties), RunError> {
         match ended {
             Err(RunError::Told) | Ok(_) => {}
             Err(error) => return Err(error),
         }
-        let mut inside = self.inside();
-        let method = inside.method;
+        let mut inside = lock(&self.inside);
+        let method = inside.method.take();
         let outline = inside.outline.take().filter(|of| !of.times.is_empty());
         let none = || {
             RunError::Playback(format!(
@@ -176,16 +165,12 @@ impl Sink {
                  states"
             ))
         };
-        outline.map(|outline| Outline { method, ..outline }).ok_or_else(none)
+        outline.zip(method).ok_or_else(none)
     }
 
     /// Adds what the method is.
-    pub fn method(&self, method: MethodWords) {
-        self.inside().method = method;
-    }
-
-    fn inside(&self) -> MutexGuard<'_, Inside> {
-        self.inside.lock().unwrap_or_else(PoisonError::into_inner)
+    pub fn method(&self, method: Properties) {
+        lock(&self.inside).method = Some(method);
     }
 }
 

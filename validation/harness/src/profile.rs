@@ -25,17 +25,8 @@ pub const SORTING: &str = "sorting";
 /// What is left of a step.
 pub const REST: &str = "rest of the integrator";
 
-/// The phases of a step and their names.
-const PHASES: [(Phase, &str); 8] = [
-    (Phase::Forces, FORCES),
-    (Phase::Drift, DRIFT),
-    (Phase::Both, BOTH),
-    (Phase::Walls, WALLS),
-    (Phase::Refresh, REFRESH),
-    (Phase::Search, SEARCH),
-    (Phase::Sorting, SORTING),
-    (Phase::Rest, REST),
-];
+/// The names of the phases of a step, by their numbers.
+const PHASES: [&str; 8] = [FORCES, DRIFT, BOTH, WALLS, REFRESH, SEARCH, SORTING, REST];
 
 /// Frames for ParaView.
 pub const FRAMES: &str = "frames";
@@ -81,7 +72,8 @@ struct Lists {
 /// Profiles a run: phases by number, then observers, and last what is neither.
 pub(crate) struct Profiler {
     clock: Arc<Clock>,
-    observers: Vec<&'static str>,
+    /// Of all parts but the last.
+    names: Vec<&'static str>,
     /// Of a run that this one goes on with.
     earlier: Breakdown,
     lists: Lists,
@@ -97,15 +89,16 @@ impl Profiler {
         observers: Vec<&'static str>,
         earlier: Breakdown,
     ) -> Self {
-        let parts = (0..=PHASES.len() + observers.len()).map(|_| Default::default()).collect();
-        let (part, since) = (AtomicUsize::new(PHASES.len() + observers.len()), AtomicU64::new(0));
+        let names = [&PHASES[..], &observers].concat();
+        let parts = (0..=names.len()).map(|_| Default::default()).collect();
+        let (part, since) = (AtomicUsize::new(names.len()), AtomicU64::new(0));
         let clock = Arc::new(Clock { start: Instant::now(), part, since, parts });
         let watch = Arc::clone(&clock);
         let enter = move |phase| watch.enter(phase as usize);
         simulation.data_mut().watch = Some(Box::new(enter));
         let work = simulation.work();
         let before = [work.steps, work.list_builds];
-        Self { clock, observers, earlier, lists: Lists::default(), sampled: 0, before }
+        Self { clock, names, earlier, lists: Lists::default(), sampled: 0, before }
     }
 
     /// Stepping begins. What comes between an observer and the next phase of a step counts as observing.
@@ -115,13 +108,13 @@ impl Profiler {
 
     /// One of the observers begins.
     pub fn observe(&self, observer: &str) {
-        let place = self.observers.iter().position(|name| *name == observer);
-        self.clock.enter(PHASES.len() + place.unwrap_or(self.observers.len()));
+        let place = self.names.iter().position(|name| *name == observer);
+        self.clock.enter(place.unwrap_or(self.names.len()));
     }
 
     /// Neither stepping nor observing begins.
     pub fn pause(&self) {
-        self.clock.enter(PHASES.len() + self.observers.len());
+        self.clock.enter(self.names.len());
     }
 
     /// Looks at the lists of a simulation that was brought to a time, if the last look is long ago.
@@ -153,15 +146,10 @@ impl Profiler {
     /// What was found so far.
     pub fn breakdown<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Breakdown {
         let mut all = self.earlier.clone();
-        let of_clock = |parts: &mut Vec<Part>, name: &str, number: usize| {
-            let [nanoseconds, times] = [0, 1].map(|k| self.clock.parts[number][k].load(Relaxed));
+        for (k, (name, part)) in self.names.iter().zip(&self.clock.parts).enumerate() {
+            let parts = if k < PHASES.len() { &mut all.stepping } else { &mut all.observing };
+            let [nanoseconds, times] = part.each_ref().map(|number| number.load(Relaxed));
             add(parts, name, 1e-9 * nanoseconds as f64, times);
-        };
-        for (phase, name) in PHASES {
-            of_clock(&mut all.stepping, name, phase as usize);
-        }
-        for (k, name) in self.observers.iter().enumerate() {
-            of_clock(&mut all.observing, name, PHASES.len() + k);
         }
         let work = simulation.work();
         all.steps += work.steps - self.before[0];

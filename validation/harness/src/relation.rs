@@ -1,14 +1,13 @@
 //! Exact symmetries of the equations: the same problem as another observer sees it, and back.
 
-use std::any::Any;
-
 use base::{
     functions::{cos, sin},
     random::Random,
 };
 use nalgebra::{Matrix2, Vector2};
-use solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
+use solver::{Domain, Numbers, Particle, PlaneWall};
 
+use crate::frames::{stress, stressed};
 use crate::medium::Medium;
 
 /// How another observer differs. A solver of the equations must tell both the same.
@@ -214,12 +213,11 @@ impl View {
 
     /// A particle at the start.
     pub fn particle<X: Numbers>(&self, p: &Particle<X>) -> Particle<X> {
-        let mut extra = X::default().advanced(self.scale(PRESSURE), p.extra);
-        if let Some(stress) = (&mut extra as &mut dyn Any).downcast_mut::<Symmetric>() {
-            let Symmetric { xx, yy, xy } = *stress;
+        let scaled = X::default().advanced(self.scale(PRESSURE), p.extra);
+        let extra = stress(&scaled).map_or(scaled, |[xx, yy, xy]| {
             let turned = self.turn * Matrix2::new(xx, xy, xy, yy) * self.turn.transpose();
-            *stress = Symmetric { xx: turned.m11, yy: turned.m22, xy: turned.m12 };
-        }
+            stressed([turned.m11, turned.m22, turned.m12])
+        });
         let (position, velocity) = (self.place(p.position), self.velocity(p.velocity));
         let (density, mass) = (p.density * self.scale(DENSITY), p.mass * self.units[2]);
         Particle { position, velocity, density, mass, extra, ..*p }

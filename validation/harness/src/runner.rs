@@ -3,16 +3,10 @@
 //! knows a run of a case by [`Observed`] alone, so it is compiled once for all cases of fluids, and once for
 //! those of solids.
 
-use std::sync::PoisonError;
 use std::time::{Duration, Instant};
 
-use base::{
-    bits::Bits,
-    breakdown::Breakdown,
-    mutation::Constant,
-    record::{self, *},
-};
-use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Particle, Stepper};
+use base::{bits::Bits, lock, mutation::Constant, record::*};
+use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -29,11 +23,35 @@ use crate::{
 /// Wall time after which it is shown again how far a run is.
 const SHOW_EVERY: Duration = Duration::from_millis(200);
 
-/// How a run ended, and what it took.
-pub type Ended = Result<(Status, Cost), RunError>;
+/// What every record states of the end of a run.
+#[derive(Debug)]
+pub struct Ended {
+    /// How it ended.
+    pub status: Status,
+    /// What it took.
+    pub cost: Cost,
+    /// Digest of positions, velocities, densities and stresses, in the order of the scene.
+    pub state: String,
+}
+
+impl Ended {
+    /// Puts it in a record.
+    pub fn put(self, record: &mut Record) {
+        (record.status, record.cost, record.state) = (self.status, self.cost, Some(self.state));
+    }
+}
+
+fn state<X: Numbers>(simulation: &dyn Stepper<X>) -> String {
+    let mut numbers = Vec::new();
+    for p in simulation.particles() {
+        numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
+        numbers.extend(frames::stress(&p.extra).into_iter().flatten());
+    }
+    digest(&numbers)
+}
 
 /// A simulation and all that is observed of it.
-trait Observed<X> {
+trait Observed<X: Numbers> {
     /// The simulation, and what sees its steps.
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>);
     /// Calls the k-th of the functions that are called at times, at this one of the times.
@@ -43,7 +61,7 @@ trait Observed<X> {
 }
 
 /// What is observed of a run.
-trait Seen<X> {
+trait Seen<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow;
     /// All that changes of it.
@@ -71,7 +89,7 @@ struct Course<'a> {
 impl Course<'_> {
     /// Steps a run through the times. [`simulate`](crate::simulate::simulate) has it compiled here for
     /// fluids.
-    fn run<X: Numbers>(&self, run: Running<X>, context: &Context) -> Ended {
+    fn run<X: Numbers>(&self, run: Running<X>, context: &Context) -> Result<Ended, RunError> {
         let (simulation, _) = run.parts();
         let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
         let (dt, least) = (self.dt * factor, self.least as f64 / factor);
@@ -113,20 +131,20 @@ impl Course<'_> {
             watch.profiler = Some(Profiler::new(simulation, names, earlier));
         }
         watch.show(simulation, dt);
-        let (status, cost) = match ended {
-            Some(status) => (status, watch.cost.clone()),
+        let ended = match ended {
+            Some(status) => Ended { status, cost: watch.cost.clone(), state: state(simulation) },
             None => watch.step_through(run, dt, least),
         };
         let (simulation, seen) = run.parts();
         if let Some(checkpoints) = context.checkpoints {
-            let stage = watch.stage(cost.clone(), Some(status.clone()));
+            let stage = watch.stage(ended.cost.clone(), Some(ended.status.clone()));
             checkpoints.keep(checkpoint::save(simulation, &stage, seen.bits())?);
         }
         if let Some(at_the_end) = context.at_the_end {
             let columns = frames::columns(&simulation.particles(), &self.pressure);
-            *at_the_end.lock().unwrap_or_else(PoisonError::into_inner) = Some(columns);
+            *lock(at_the_end) = Some(columns);
         }
-        Ok((status, cost))
+        Ok(ended)
     }
 }
 
@@ -162,21 +180,28 @@ impl Watch<'_> {
         }
     }
 
-    /// What the run took until now.
-    fn cost<X: Numbers>(&self, simulation: &dyn Stepper<X>, now: Reading) -> Cost {
-        let mut cost = self.cost.clone();
-        if simulation.work().steps > self.steps {
-            cost.largest_dt_s = cost.largest_dt_s.max(simulation.dt());
+    /// What the run took until now, of which the last stepping took so long.
+    fn cost<X: Numbers>(&self, simulation: &dyn Stepper<X>, stepping: Reading) -> Cost {
+        let work = simulation.work();
+        let last = if work.steps > self.steps { simulation.dt() } else { 0.0 };
+        Cost {
+            wall_s: self.cost.wall_s + stepping.wall,
+            cpu_s: self.cost.cpu_s + stepping.cpu,
+            steps: work.steps,
+            largest_dt_s: self.cost.largest_dt_s.max(last),
+            pair_interactions: work.pair_interactions,
+            particle_rhs: work.right_hand_sides,
+            particles: simulation.fluid_count(),
+            solver_bytes: simulation.bytes() as u64,
+            breakdown: self.profiler.as_ref().map(|profiler| profiler.breakdown(simulation)),
+            ..self.cost.clone()
         }
-        let stepping = now - self.start;
-        cost.wall_s += stepping.wall;
-        cost.cpu_s += stepping.cpu;
-        cost
     }
 
-    /// Where the time went until now, if anyone wants to know.
-    fn breakdown<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Option<Breakdown> {
-        self.profiler.as_ref().map(|profiler| profiler.breakdown(simulation))
+    /// What a record states of a run that ends now, after its last stepping.
+    fn ended<X: Numbers>(&self, simulation: &dyn Stepper<X>, status: Status) -> Ended {
+        let cost = self.cost(simulation, Reading::default());
+        Ended { status, cost, state: state(simulation) }
     }
 
     /// How far the run is, after a step or at its end.
@@ -215,7 +240,7 @@ impl Watch<'_> {
                 || self.context.is_interrupted())
         {
             self.profiler.iter().for_each(|profiler| profiler.observe(profile::CHECKPOINTS));
-            let cost = Cost { breakdown: self.breakdown(simulation), ..self.cost(simulation, now) };
+            let cost = self.cost(simulation, now - self.start);
             let saved = checkpoint::save(simulation, &self.stage(cost, None), seen.bits());
             let is_last = self.context.is_interrupted();
             let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
@@ -235,7 +260,7 @@ impl Watch<'_> {
         self.profiler.iter().for_each(Profiler::step);
         let outcome = simulation.advance(until, dt, &mut Watching { watch: self, seen });
         self.profiler.iter().for_each(Profiler::pause);
-        self.cost = self.cost(simulation, self.context.now());
+        self.cost = self.cost(simulation, self.context.now() - self.start);
         if let Some(profiler) = &mut self.profiler {
             profiler.sample(simulation);
         }
@@ -250,8 +275,8 @@ impl Watch<'_> {
     }
 
     /// Steps through the times that are left, with steps of at most `dt` \[s\] and at least so many to each,
-    /// observes each, and writes the last frame; how the run ended, and what it took.
-    fn step_through<X: Numbers>(&mut self, run: Running<X>, dt: f64, least: f64) -> (Status, Cost) {
+    /// observes each, and writes the last frame.
+    fn step_through<X: Numbers>(&mut self, run: Running<X>, dt: f64, least: f64) -> Ended {
         let Course { times, at, .. } = self.course;
         while let Some(&until) = times.get(self.reached) {
             let start = self.reached.checked_sub(1).map_or(0.0, |before| times[before]);
@@ -261,7 +286,7 @@ impl Watch<'_> {
             self.synchronises =
                 is_last || is_told || at.iter().any(|(_, synchronised)| *synchronised);
             if let Some(ended) = self.step_to(run, until, dt) {
-                return (ended, self.counted(run.parts().0));
+                return self.ended(run.parts().0, ended);
             }
             let start = self.context.now();
             if let Some(tell) = self.context.at_times {
@@ -279,11 +304,15 @@ impl Watch<'_> {
         if let Some(frames) = &mut self.frames {
             frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
         }
-        (Status::Completed, self.counted(simulation))
+        self.ended(simulation, Status::Completed)
     }
 
     /// Shows every frame of another code to the observers, and calls what is to be called at its times.
-    fn play<X: Numbers>(&mut self, run: Running<X>, playback: &Playback) -> Ended {
+    fn play<X: Numbers>(
+        &mut self,
+        run: Running<X>,
+        playback: &Playback,
+    ) -> Result<Ended, RunError> {
         let (times, end) = (self.course.times, self.end);
         if let Some(time) = playback::missing(playback.frames, times).first() {
             return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
@@ -293,7 +322,7 @@ impl Watch<'_> {
             let (simulation, seen) = run.parts();
             let time = next(self.reached).copied().unwrap_or(frame.time);
             if let Some(ended) = playback::put(frame, time, simulation)? {
-                return Ok((ended, self.counted(simulation)));
+                return Ok(self.ended(simulation, ended));
             }
             Watching { watch: self, seen }.after_step(simulation);
             // A time may be stated twice, such as that of a sample and of a picture.
@@ -302,7 +331,7 @@ impl Watch<'_> {
                 self.reached += 1;
             }
         }
-        Ok((Status::Completed, self.counted(run.parts().0)))
+        Ok(self.ended(run.parts().0, Status::Completed))
     }
 
     /// Goes on from a checkpoint if there is one; how the simulation ended, if it did.
@@ -328,24 +357,10 @@ impl Watch<'_> {
         run.resumed();
         Ok(ended)
     }
-
-    /// What was counted.
-    fn counted<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Cost {
-        let work = simulation.work();
-        Cost {
-            steps: work.steps,
-            pair_interactions: work.pair_interactions,
-            particle_rhs: work.right_hand_sides,
-            particles: simulation.fluid_count(),
-            solver_bytes: simulation.bytes() as u64,
-            breakdown: self.breakdown(simulation),
-            ..self.cost.clone()
-        }
-    }
 }
 
 /// A watch with what is observed of the run.
-struct Watching<'w, 'a, X> {
+struct Watching<'w, 'a, X: Numbers> {
     watch: &'w mut Watch<'a>,
     seen: &'w mut dyn Seen<X>,
 }
@@ -397,7 +412,7 @@ fn outlined<X: Numbers>(
     (dt, times): (f64, &[f64]),
     pressure: &dyn Fn(f64) -> f64,
     context: &Context,
-) -> Ended {
+) -> Result<Ended, RunError> {
     let early = outline.early(dt)?;
     let (dt, times) = early.as_ref().map_or((dt, times), |(dt, times)| (*dt, &times[..]));
     outline.drive(simulation, times, dt, pressure);
@@ -418,12 +433,12 @@ type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
 type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
 
 /// What is observed of a run, and what is called of it after every step.
-struct Seeing<'a, X, S> {
+struct Seeing<'a, X: Numbers, S> {
     seen: &'a mut S,
     after_step: Vec<AfterStep<'a, X, S>>,
 }
 
-impl<X, S: Bits> Seen<X> for Seeing<'_, X, S> {
+impl<X: Numbers, S: Bits> Seen<X> for Seeing<'_, X, S> {
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow {
         self.after_step[k](self.seen, simulation)
     }
@@ -433,14 +448,14 @@ impl<X, S: Bits> Seen<X> for Seeing<'_, X, S> {
 }
 
 /// A simulation with the functions of a case.
-struct Run<'a, X, D: ?Sized, S> {
+struct Run<'a, X: Numbers, D: ?Sized, S> {
     simulation: &'a mut D,
     seeing: Seeing<'a, X, S>,
     at: Vec<At<'a, D, S>>,
     resumed: &'a dyn Fn(&S, &mut D),
 }
 
-impl<X, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
+impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>) {
         (self.simulation.stepper(), &mut self.seeing)
     }
@@ -456,7 +471,7 @@ impl<X, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
 ///
 /// The functions of a case cannot change what they capture: all that changes is in `S`, which checkpoints
 /// hold.
-pub struct Drive<'a, X, D: ?Sized, S> {
+pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
     run: Run<'a, X, D, S>,
     course: Course<'a>,
 }
@@ -524,35 +539,15 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
         self
     }
 
-    /// Steps through the times. Returns how the run ended, and its cost: that of the stepping, and separately
-    /// that of what is observed.
+    /// Steps through the times. The cost is that of the stepping, and separately that of what is observed.
     ///
     /// # Errors
     /// If it would take more time or memory than a run may, the folder of frames cannot be made, or it does
     /// not fit the checkpoint that it goes on from. A frame or a checkpoint that cannot be written is told to
     /// [`Context::lost`].
-    pub fn run(mut self, context: &Context) -> Ended {
+    pub fn run(mut self, context: &Context) -> Result<Ended, RunError> {
         self.course.run(&mut self.run, context)
     }
-
-    /// The same, and keeps in a record how the run ended, its cost, and the digest of its state.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn record(mut self, context: &Context, record: &mut Record) -> Result<(), RunError> {
-        (record.status, record.cost) = self.course.run(&mut self.run, context)?;
-        record.state = Some(state(&self.run.simulation.particles()));
-        Ok(())
-    }
-}
-
-/// Digest of positions, velocities and densities, in the order of the scene.
-pub fn state<X>(particles: &[Particle<X>]) -> String {
-    let mut numbers = Vec::new();
-    for p in particles {
-        numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
-    }
-    record::digest(&numbers)
 }
 
 #[cfg(test)]
@@ -566,7 +561,7 @@ mod tests {
 
     use nalgebra::Vector2;
     use solver::{
-        Compose, Continuity, CubicSpline, Domain, Leapfrog, Open, Pressure, Tait, lattice,
+        Compose, Continuity, CubicSpline, Domain, Leapfrog, Open, Particle, Pressure, Tait, lattice,
     };
 
     use super::*;
@@ -612,10 +607,11 @@ mod tests {
         let set = || flag.store(true, Ordering::Relaxed);
         let slow = Slow { each: Duration::ZERO, at: (3, set) };
         let (times, mut wave) = ([1000.0 * DT], wave());
-        let (status, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("slow", &|_, simulation| slow.after_step(simulation))
-            .run(&context)
-            .unwrap();
+        let Ended { status, cost, .. } =
+            Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
+                .after_step("slow", &|_, simulation| slow.after_step(simulation))
+                .run(&context)
+                .unwrap();
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
         assert!(cost.steps <= 4, "{} steps", cost.steps);
     }
@@ -624,9 +620,10 @@ mod tests {
     #[test]
     fn a_divergence_is_told_after_the_steps_that_were_completed() {
         let mut wave = wave();
-        let (status, cost) = Drive::new(&mut *wave, 1.0, &[100.0], Tait::new(1.0, 1.0), &mut ())
-            .run(&Context::default())
-            .unwrap();
+        let Ended { status, cost, .. } =
+            Drive::new(&mut *wave, 1.0, &[100.0], Tait::new(1.0, 1.0), &mut ())
+                .run(&Context::default())
+                .unwrap();
         let Status::Diverged { step, .. } = status else { panic!("the run is {status}") };
         assert_eq!(step, cost.steps, "completed steps, as the message and as the cost have them");
     }
@@ -644,7 +641,7 @@ mod tests {
                 .after_step("slow", &|_, simulation| slow.after_step(simulation))
                 .run(&context)
                 .unwrap();
-            states.push((state(&wave.particles()), wave.work().steps));
+            states.push((state(&*wave), wave.work().steps));
         }
         assert_eq!(states[0], states[1]);
         let shown = shown.into_inner().unwrap();
@@ -687,7 +684,7 @@ mod tests {
         if observer.is_some() {
             drive = drive.after_step("observer", &observe);
         }
-        let (status, cost) = drive.run(&context).unwrap();
+        let Ended { status, cost, .. } = drive.run(&context).unwrap();
         assert_eq!((status, cost.steps), (Status::Completed, 40));
         (cost, clock.reads.into_inner())
     }
@@ -739,7 +736,7 @@ mod tests {
             flag.store(Some(simulation.work().steps) == stop_at, Ordering::Relaxed);
             Flow::Continue
         };
-        let (_, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
+        let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("stop", &stop)
             .run(&context)
             .unwrap();
@@ -783,7 +780,7 @@ mod tests {
             clock: Some(&tell),
             ..Context::default()
         };
-        let (status, cost) =
+        let Ended { status, cost, .. } =
             Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ()).run(&context).unwrap();
         assert_eq!((status, cost.steps), (Status::Completed, 40));
         let lost = lost.into_inner().unwrap();
@@ -848,10 +845,11 @@ mod tests {
                     flag.store(stop && is_last, Ordering::Relaxed);
                     Flow::Continue
                 };
-                let (_, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                    .after_step("stop", &after)
-                    .run(&context)
-                    .unwrap();
+                let Ended { cost, .. } =
+                    Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
+                        .after_step("stop", &after)
+                        .run(&context)
+                        .unwrap();
                 (cost.steps, cost.resumed)
             });
             (costs, kept.into_inner().unwrap())
@@ -872,7 +870,7 @@ mod tests {
             flag.store(true, Ordering::Relaxed);
             Flow::Continue
         };
-        let (status, _) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
+        let Ended { status, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("stop", &stop)
             .run(&context)
             .unwrap();
@@ -885,13 +883,13 @@ mod tests {
     fn profiled(profile: bool) -> (String, solver::Work, Cost, usize) {
         let slow = Slow { each: Duration::from_micros(200), at: (0, || ()) };
         let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
-        let (_, cost) = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
+        let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("slow", &|_, simulation| slow.after_step(simulation))
             .after_step("quick", &|_, _| Flow::Continue)
             .at("pause", &|_, _, _| std::thread::sleep(Duration::from_millis(20)))
             .run(&Context { profile, ..Context::default() })
             .unwrap();
-        (state(&wave.particles()), wave.work(), cost, wave.column_bytes)
+        (state(&*wave), wave.work(), cost, wave.column_bytes)
     }
 
     #[test]

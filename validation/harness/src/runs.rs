@@ -1,7 +1,7 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
 use std::cmp::Reverse;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 pub use base::gate::Judged;
 use base::{
@@ -156,7 +156,7 @@ impl Runs {
         let found = find(&self.by_key, &spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
-            let mut unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut unplanned = base::lock(&self.unplanned);
             entry(&mut unplanned, spec.canonical(), || ());
         }
         found
@@ -190,7 +190,7 @@ impl Runs {
 
     /// Runs that were asked for and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
-        let unplanned = self.unplanned.lock().unwrap_or_else(PoisonError::into_inner);
+        let unplanned = base::lock(&self.unplanned);
         unplanned.iter().map(|(asked, ())| asked.clone()).collect()
     }
 }

@@ -4,12 +4,10 @@ use base::{number, record::Record};
 use nalgebra::Vector2;
 use solver::{Particle, Role, Stepper};
 
-pub use crate::runner::state;
 use crate::{
     context::Context,
     error::RunError,
-    method::{Knob, Medium, Method, Parts},
-    outline::MethodWords,
+    method::{Medium, Method, Parts, Properties},
     rules::Rules,
     runner::{Drive, check_size},
     size::Size,
@@ -23,20 +21,10 @@ pub const INTEGRATOR: &str = "integrator";
 pub const WALLS: &str = "walls";
 
 /// A record of the run of a context, with what its rules chose: numbers by name, a kernel, an integrator,
-/// walls.
-pub fn begin<X, D: ?Sized>(
-    method: &Method<X, D>,
-    numbers: &[(&str, f64)],
-    context: &Context,
-) -> Record {
-    let &Method { kernel, support, integrator, walls, law, .. } = method;
-    let shifts = method.uses.contains(&Knob::Shift);
-    begin_of(MethodWords { kernel, support, integrator, walls, law, shifts }, numbers, context)
-}
-
-fn begin_of(method: MethodWords, numbers: &[(&str, f64)], context: &Context) -> Record {
+/// walls. It is begun before the first step: the outline of a run has its method from here.
+pub fn begin(method: &Properties, numbers: &[(&str, f64)], context: &Context) -> Record {
     if let Some(outline) = &context.outline {
-        outline.method(method);
+        outline.method(method.clone());
     }
     let mut record = Record::of(&context.spec, context.threads.max(1));
     let words = [(KERNEL, method.kernel), (INTEGRATOR, method.integrator), (WALLS, method.walls)];
@@ -63,11 +51,7 @@ pub fn check_step(
 }
 
 /// The size of a run of so many steps and particles, before these are made.
-pub fn size<X, D: ?Sized>(
-    method: &Method<X, D>,
-    medium: &Medium,
-    steps_and_particles: [f64; 2],
-) -> Size {
+pub fn size(method: &Properties, medium: &Medium, steps_and_particles: [f64; 2]) -> Size {
     Size::new(steps_and_particles, method.support * medium.h / medium.dx)
 }
 
@@ -76,8 +60,8 @@ pub fn size<X, D: ?Sized>(
 ///
 /// # Errors
 /// What is too large, by how much, and which settings to change.
-pub fn check<X, D: ?Sized>(
-    method: &Method<X, D>,
+pub fn check(
+    method: &Properties,
     medium: &Medium,
     rules: &Rules,
     particles: f64,
@@ -103,7 +87,7 @@ pub fn simulate(
 ) -> Result<Box<dyn Stepper<()>>, RunError> {
     let eos = parts.medium.eos;
     let mut simulation = (method.build)(parts)?;
-    Drive::new(&mut *simulation, dt, &[end], eos, &mut ()).record(context, record)?;
+    Drive::new(&mut *simulation, dt, &[end], eos, &mut ()).run(context)?.put(record);
     Ok(simulation)
 }
 

@@ -4,11 +4,12 @@
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime};
 
 use base::{
     files::{self, FileError, OutputFolder},
+    lock,
     record::{Record, Status},
     spec::RunSpec,
 };
@@ -62,7 +63,7 @@ impl Begun<'_> {
 
     /// A sign of life, if the last one was long ago.
     pub fn beat(&self) {
-        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut last = lock(&self.last);
         if last.elapsed() >= SIGN_EVERY {
             *last = Instant::now();
             self.sign();

@@ -3,7 +3,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use base::{record::Profile, spec::RunSpec};
+use base::{lock, record::Profile, spec::RunSpec};
 use nalgebra::Vector2;
 
 use crate::{
@@ -133,12 +133,12 @@ fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<F
             density: Some(of("density", k)),
         };
         let particles = (0..particles.column("id").len()).map(placed).collect();
-        frames.lock().unwrap_or_else(PoisonError::into_inner).push(Frame { time, particles });
+        lock(&frames).push(Frame { time, particles });
     };
     let outline = Some(sink.clone());
     let context =
         Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
-    let outline = sink.of_run(case.run(spec, &context), case.name())?;
+    let (outline, _) = sink.of_run(case.run(spec, &context), case.name())?;
     Ok((outline, frames.into_inner().unwrap_or_else(PoisonError::into_inner)))
 }
 

@@ -83,7 +83,7 @@ fn variants() -> Compositions<ExtremeSettings> {
     let pressed = "does it under pressure? Wendland function";
     let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
     let bullet = "does a block that hits another keep the momentum?";
-    let rules = |_: &_, _: &_| Err(RunError::NoRules { case: EXTREMES.name.into() });
+    let rules = |_: &_, _: &_| Err(RunError::NoRules(EXTREMES.name.into()));
     let all_but = |uses: &[&str]| {
         let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
         names.filter(|name| !uses.contains(name)).collect()
@@ -124,7 +124,8 @@ fn run(
             let off = (simulation.time() - times[look]).abs();
             *late = late.max(if is_on_time { off } else { f64::INFINITY });
         })
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     let end = simulation.particles();
     if is_resting {
         record.put(HEAT, fastest(&end));

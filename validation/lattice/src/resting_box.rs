@@ -200,7 +200,8 @@ fn run(method: &Method, s: &BoxSettings, context: &Context) -> Result<Record, Ru
     let mut record = simulate::begin(method, &numbers, &serial);
     Drive::new(&mut *simulation, dt, &end, Tait::new(1.0, 1.0), &mut growth)
         .after_step("energy", &watch)
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     let grew = matches!(record.status, Status::Diverged { .. }) || growth.grew();
     record.put(GREW, f64::from(u8::from(grew)));
     record.put(ENERGY, energy(&*simulation) / start);
@@ -253,7 +254,7 @@ fn table(tier: Tier) -> Table<BoxSettings, ()> {
 
 /// What is judged of a bisection.
 fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
-    let Method { kernel, integrator, .. } = method(variant);
+    let Properties { kernel, integrator, .. } = method(variant).properties;
     let is_damped = s.alpha > 0.0 || s.delta > 0.0;
     let damping = if is_damped { format!(".alpha{}.delta{}", s.alpha, s.delta) } else { "".into() };
     let (h, stiffness) = (s.h_over_dx, stiffness(s));

@@ -38,20 +38,16 @@ pub fn scene<I: Integrator<Fluid<()>>>(side: usize, parallel: bool) -> Scene<Flu
     scene
 }
 
-/// Moves all particles to and fro and starts a step: sorts them and builds their lists. The "time
-/// step" is the distance, which must be more than half a skin.
-#[derive(Debug, Default)]
-pub struct Rebuilding {
-    is_away: bool,
-}
+/// Moves all particles along x and starts a step: sorts them and builds their lists. The "time step" is the
+/// distance, which must be more than half a skin.
+#[derive(Debug)]
+pub struct Rebuilding;
 
 impl<P: Physics> Integrator<P> for Rebuilding {
     const NAME: &'static str = "rebuilding";
 
-    fn step(&mut self, engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
-        self.is_away = !self.is_away;
-        let shift = if self.is_away { dt } else { -dt };
-        state.iter_mut().for_each(|evolved| evolved.position.x += shift);
+    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+        state.iter_mut().for_each(|evolved| evolved.position.x += dt);
         engine.begin(state)
     }
 }

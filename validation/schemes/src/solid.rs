@@ -13,14 +13,13 @@ use solver::{walls::Walls, *};
 use crate::{methods, stepped};
 
 type Method = crate::Method<Symmetric>;
-type Midpoint = PredictorCorrector<Symmetric>;
 
 /// (9), (10) and (12) with the artificial stress `R`, and (15) with (16) and (17).
 type Stabilised<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>);
 /// The same of a body that has weight.
 type Heavy<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>, BodyForce);
 /// The paper's terms: the forces `F` and XSPH (22).
-type Rubber<F, I = Midpoint, W = Open> =
+type Rubber<F, I = PredictorCorrector, W = Open> =
     Compose<CubicSpline, F, (Continuity, JaumannRate, Xsph), W, I, Symmetric>;
 /// The leapfrog without XSPH.
 type Leaping<F, W = Open> =
@@ -43,9 +42,9 @@ methods! { stepped => Method:
     /// The paper's terms with the leapfrog.
     leapfrog: Rubber<Stabilised<PrincipalStress>, Leapfrog>;
     /// The paper's, clamped.
-    clamped_seed: Rubber<Stabilised<PrincipalStress>, Midpoint, Clamp>;
+    clamped_seed: Rubber<Stabilised<PrincipalStress>, PredictorCorrector, Clamp>;
     /// The same of a body that has weight.
-    heavy_seed: Rubber<Heavy<PrincipalStress>, Midpoint, Clamp>;
+    heavy_seed: Rubber<Heavy<PrincipalStress>, PredictorCorrector, Clamp>;
     /// The terms of [`leapfrog`] without XSPH, clamped.
     clamped_plain: Leaping<Stabilised<PrincipalStress>, Clamp>;
     /// The same with corrected gradients, not clamped.

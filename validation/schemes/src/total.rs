@@ -1,9 +1,10 @@
 //! Total Lagrangian solids, which have no scheme.
 
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
-use harness::method::{Medium, Parts, mutate};
+use base::lock;
+use harness::method::{Medium, Parts, Properties, mutate};
 use lagrangian::*;
 use maths::theory::bending;
 use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
@@ -53,12 +54,12 @@ fn bodies<L: Law>() -> Method {
         }
         Ok(Box::new(scene(parts, ()).build::<WendlandC2, L>()?))
     }
-    let mut method = Method::with::<Named>(build::<L>);
-    (method.integrator, method.walls) = ("velocity Verlet", "planes that hold");
-    method.law = Some(L::ENERGY);
-    method.limit = Some(step_limit);
-    method.uses.clear();
-    method
+    let mut properties = Properties::of::<Named>();
+    (properties.integrator, properties.walls) = ("velocity Verlet", "planes that hold");
+    properties.law = Some(L::ENERGY);
+    properties.limit = Some(step_limit);
+    properties.uses.clear();
+    Method { properties, build: build::<L> }
 }
 
 /// The bending stiffness of a plate of so many layers over that of an elastic plate, with what the method is
@@ -107,12 +108,11 @@ fn step_limit(medium: &Medium) -> f64 {
 fn stiffness(of: [f64; 3]) -> f64 {
     static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
     let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
-    let found = || FOUND.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some(known) = found().get(&key) {
+    if let Some(known) = lock(&FOUND).get(&key) {
         return *known;
     }
     let stiffness = fastest_of_block::<WendlandC2>(h_over_dx, moduli);
-    found().insert(key, stiffness);
+    lock(&FOUND).insert(key, stiffness);
     stiffness
 }
 

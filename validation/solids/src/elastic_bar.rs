@@ -105,6 +105,7 @@ impl Problem for BarSettings {
         };
         Scales {
             dx,
+            length: self.length,
             speed: self.speed * self.wave(),
             end: self.end.unwrap_or(auto) * 2.0 * self.length / self.wave(),
             count: (bodies * self.n * rows) as f64,
@@ -508,10 +509,14 @@ mod tests {
             p.extra.xx = -1000.0;
             p.velocity.x = if p.position.x < 0.0 { -0.2 } else { 0.5 };
         }
-        let (dx, method) = (s.dx(), schemes::solid::bare());
+        let method = schemes::solid::bare();
         let mut watch = Motion::new(&s, &particles, 0.0);
-        let parts =
-            Parts::new(s.medium(&method, dx), s.scales().domain, particles, &Context::default());
+        let parts = Parts::new(
+            solid::medium(&s, &method),
+            s.scales().domain,
+            particles,
+            &Context::default(),
+        );
         let simulation = (method.build)(parts).expect("a scene");
         watch.after_step(&*simulation);
         let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));
@@ -551,7 +556,7 @@ mod tests {
             assert!(error.as_ref().is_some_and(|error| error.contains(name)), "{error:?}");
         }
         assert!(matches!(refused("bare", "dt=1e-15"), Some(RunError::TooLong { .. })));
-        assert!(matches!(refused("nothing", "n=40"), Some(RunError::Variant { .. })));
+        assert!(matches!(refused("nothing", "n=40"), Some(RunError::Unknown { .. })));
     }
 
     /// What is a term's own is 0 in the record of a method without it.

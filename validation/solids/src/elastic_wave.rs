@@ -123,9 +123,10 @@ fn run(
     let mut record = simulate::begin(method, &numbers, context);
     let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
     let (times, eos) = ([rules.end], RUBBER.eos());
-    (record.status, record.cost) = Drive::new(&mut *simulation, dt, &times, eos, &mut watch)
+    Drive::new(&mut *simulation, dt, &times, eos, &mut watch)
         .after_step("projection", &Watch::after_step)
-        .run(context)?;
+        .run(context)?
+        .put(&mut record);
     record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * watch.angle()) / (omega * dt) - 1.0).abs());
     Ok(record)
 }

@@ -66,6 +66,7 @@ impl Problem for DiskSettings {
         let speed = self.speed * self.material().sound_speed();
         Scales {
             dx: self.radius / self.n as f64,
+            length: 2.0 * self.radius,
             speed,
             end: self.end * TAU * self.radius / speed,
             count: PI * (self.n as f64).powi(2),
@@ -353,9 +354,9 @@ mod tests {
             .iter_mut()
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
-        let (dx, method) = (s.dx(), schemes::solid::bare());
+        let method = schemes::solid::bare();
         let parts =
-            Parts::new(s.medium(&method, dx), Domain::open(), particles, &Context::default());
+            Parts::new(solid::medium(&s, &method), Domain::open(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");
         let [inside, rim] = mistaken(&*simulation, 0.03);
         assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");

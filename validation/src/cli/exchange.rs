@@ -63,7 +63,7 @@ fn solve(
     let add = |results: Profile, (name, unit, _): &Head| results.with(name, unit, Vec::new());
     let results = Mutex::new(written.fold(Profile::default(), add));
     let tell = |time: f64, particles: Profile| {
-        let mut results = results.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut results = base::lock(&results);
         if results.column("t").last() == Some(&time) {
             return; // stated twice
         }

@@ -1,7 +1,7 @@
 //! How far it is: on a terminal only, so that logs and tests stay quiet.
 
 use std::io::{self, IsTerminal};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use harness::{context::Progress, make::Done};
@@ -87,7 +87,7 @@ impl Bar {
 
     fn is_time(&self) -> bool {
         let now = Instant::now();
-        let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut next = base::lock(&self.next);
         let is_time = !self.bar.is_hidden() && now >= *next;
         if is_time {
             *next = now + EVERY;

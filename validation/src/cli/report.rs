@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime};
 
 use ::report::{self, check_page, counted};
@@ -106,7 +106,7 @@ fn early(
     folder: &OutputFolder,
     last: &Mutex<Option<(Instant, Duration)>>,
 ) -> Option<String> {
-    let mut last = last.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut last = base::lock(last);
     if last.is_some_and(|(at, took)| at.elapsed() < SHARE_OF_EARLY * took) {
         return None;
     }

@@ -5,12 +5,13 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+use std::sync::{Mutex, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use base::{
     files::{self, FileError, OutputFolder},
     gate::Gate,
+    lock,
     record::{NOT_ASKED, Profile, Record, Status},
 };
 use harness::{
@@ -160,16 +161,12 @@ struct Lost {
 }
 
 impl Lost {
-    fn good(&self) -> MutexGuard<'_, Option<SystemTime>> {
-        self.good.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Says so of the first of them.
     fn tell(&self, error: &RunError, folder: Option<&Folder>) {
         if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
             return;
         }
-        let good = folder.zip(*self.good()).map_or(String::new(), |(folder, time)| {
+        let good = folder.zip(*lock(&self.good)).map_or(String::new(), |(folder, time)| {
             let (path, time) = (folder.checkpoint(), format_rfc3339_seconds(time));
             format!("; the last good checkpoint is {} of {time}", path.display())
         });
@@ -200,7 +197,7 @@ fn compute(
     let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let write = |simulations: &[Vec<u8>]| match folder {
         Some(folder) => checkpoint::write(&folder.output, asked, simulations)
-            .map(|()| *lost.good() = Some(SystemTime::now())),
+            .map(|()| *lock(&lost.good) = Some(SystemTime::now())),
         None => Ok(()),
     };
     let every = asked.every.map(|seconds| Duration::from_secs(seconds.into()));

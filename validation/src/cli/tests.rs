@@ -76,8 +76,8 @@ impl Case for Staged {
         let mut settings = json!({ "re": 1.0 });
         let known: Vec<&'static str> = self.variants().iter().map(|known| known.name).collect();
         if !known.contains(&variant) {
-            let (case, name) = (self.name, variant.into());
-            return Err(RunError::Variant { case, name, known });
+            let (what, name) = (format!("variant of {}", self.name), variant.into());
+            return Err(RunError::Unknown { what, name, known });
         }
         for (key, value) in set.iter().filter_map(|text| text.split_once('=')) {
             settings[key] = value.parse::<f64>().map_or(value.into(), Value::from);

@@ -177,7 +177,8 @@ fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Reco
     Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
         .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
         .at_if(all, "energy ledger by term", &|(_, ledger), s, _| ledger.sample(s))
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     history.measure(&mut record);
     let start = shape(&drop.particles);
     let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
@@ -359,7 +360,7 @@ mod tests {
         assert!(matches!(run("modern", |s| s.n = 2), Err(RunError::Settings { .. })));
         assert!(matches!(run("modern", |s| s.xsph = 0.1), Err(RunError::Unused { .. })));
         assert!(matches!(run("modern", |s| s.courant = 3.0), Err(RunError::TimeStep { .. })));
-        assert!(matches!(run("modrn", |_| {}), Err(RunError::Variant { .. })));
+        assert!(matches!(run("modrn", |_| {}), Err(RunError::Unknown { .. })));
     }
 
     /// Four particles that do not see each other, on the axes, moving as the strain and freely falling.

@@ -207,7 +207,8 @@ fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Re
     let times: Vec<f64> = times.chain([rules.end]).collect();
     Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
         .at("history", &|history, simulation, _| history.sample(&*simulation))
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     history.measure(&mut record);
     Ok(record)
 }

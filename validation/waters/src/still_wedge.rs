@@ -229,7 +229,8 @@ fn run(m: &WaterMethod, s: &Wedge, context: &Context) -> Result<Record, RunError
     let mut moments = Moments { settings, medium, samples: 0.0, corners, errors, kinetic: 0.0 };
     Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
         .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     if record.status == Status::Completed {
         moments.measure(&simulation.particles(), context, &mut record);
     }

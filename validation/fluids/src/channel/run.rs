@@ -30,7 +30,7 @@ pub fn run(
         all
     };
     let mut seen = (&mut mode, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
+    Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
         .steps(s.least_steps, setup.rules.sweeps())
         .after_step_if(s.watch_mode, "pressure mode", &|(mode, _), simulation| {
             mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
@@ -39,10 +39,9 @@ pub fn run(
         .at("profiles and errors", &|(_, record), simulation, k| {
             measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
         })
-        .run(context)?;
-    (record.status, record.cost) = (status, cost);
+        .run(context)?
+        .put(&mut record);
     let all = simulation.particles();
-    record.state = Some(simulate::state(&all));
     if record.status == Status::Completed {
         measure::at_the_end(setup, &fluid(all), &mut record);
     }

@@ -118,7 +118,8 @@ pub fn run(method: &HillMethod, s: &HillSettings, context: &Context) -> Result<R
                 simulation.drive(monitor.controller.force);
             }
         })
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     if record.status == Status::Completed {
         measure(setup, &monitor.window, area, &mut record);
         particles(setup, &*simulation, context.spec.keep.particles, &mut record);

@@ -102,7 +102,8 @@ pub fn run(method: &Method, s: &VortexSettings, context: &Context) -> Result<Rec
             let time = simulation.time();
             series.push([time, setup.error(time, &simulation.particles())]);
         })
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     let end = simulation.particles();
     if record.status == Status::Completed {
         measure(&setup, [&start, &end], &series, &mut record);

@@ -9,6 +9,8 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Deref;
+
 use base::mutation::{Constant, Disorder, Mutation};
 use maths::theory::{Stepping, lattice::SquareLattice, time_step};
 use nalgebra::Vector2;
@@ -117,8 +119,26 @@ fn setting<X: Numbers>(mut parts: Parts<X>) -> (Medium, Vec<PlaneWall>, Setting<
     (medium, mirrors, Setting { feet, skin, skin_share, limits, parallel_from, ..usual })
 }
 
-/// A scheme without its type. `D` is what a case needs of a simulation beyond [`Stepper`].
+/// A scheme without its type: its properties, to which it dereferences, and how it is built. `D` is what a
+/// case needs of a simulation beyond [`Stepper`].
 pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
+    /// What is known of it.
+    pub properties: Properties,
+    /// The simulation of a scene with these parts.
+    pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
+}
+
+impl<X, D: ?Sized> Deref for Method<X, D> {
+    type Target = Properties;
+
+    fn deref(&self) -> &Properties {
+        &self.properties
+    }
+}
+
+/// What is known of a method before anything is built.
+#[derive(Clone, Debug)]
+pub struct Properties {
     /// Name of the kernel.
     pub kernel: &'static str,
     /// Name of the integrator.
@@ -139,8 +159,6 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub limit: Option<fn(&Medium) -> f64>,
     /// The settings that only its terms and walls read.
     pub uses: Vec<Knob>,
-    /// The simulation of a scene with these parts.
-    pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
     /// W from h and r².
     weight: fn(f64, f64) -> f64,
     /// The square lattice as its kernel sees it, from h/dx and η²/h².
@@ -149,9 +167,9 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub is_corrected: bool,
 }
 
-impl<X: Numbers, D: ?Sized> Method<X, D> {
-    /// The method of a scheme; `build` is `|parts| Ok(Box::new(scene::<S>(parts).build()?))`.
-    pub fn with<S: Standard<Extra = X>>(build: fn(Parts<X>) -> Result<Box<D>, SceneError>) -> Self {
+impl Properties {
+    /// Those of a scheme.
+    pub fn of<S: Standard>() -> Self {
         let mut uses = Vec::new();
         S::Forces::uses(&mut uses);
         S::Drift::uses(&mut uses);
@@ -167,7 +185,6 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
             theory: S::Integrator::THEORY,
             limit: None,
             uses,
-            build,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
             lattice: SquareLattice::of::<S::Kernel>,
             is_corrected: S::Forces::NORMALISES,
@@ -209,6 +226,13 @@ impl<X: Numbers, D: ?Sized> Method<X, D> {
     /// η²/h².
     pub fn limits(&self, lattice: [f64; 2], n: usize, medium: &time_step::Medium) -> Limits {
         Limits::of(&time_step::modes(&self.square(lattice), n, medium), self.theory)
+    }
+}
+
+impl<X: Numbers, D: ?Sized> Method<X, D> {
+    /// The method of a scheme; `build` is `|parts| Ok(Box::new(scene::<S>(parts).build()?))`.
+    pub fn with<S: Standard<Extra = X>>(build: fn(Parts<X>) -> Result<Box<D>, SceneError>) -> Self {
+        Self { properties: Properties::of::<S>(), build }
     }
 }
 

@@ -205,7 +205,8 @@ pub(super) fn run(
     // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
     Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
         .after_step("projection", &Projection::after_step)
-        .record(context, &mut record)?;
+        .run(context)?
+        .put(&mut record);
     let Projection { series, momentum, .. } = projection;
     compare(wave, method.theory, &series, &mut record);
     let scale = density * s.length * s.length * s.amplitude * sound_speed;

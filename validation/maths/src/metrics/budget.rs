@@ -106,7 +106,7 @@ impl<X, R: Rest> WaterDrift<X> for (Continuity, DensityDiffusion<R>) {}
 impl<X, R: Rest> WaterDrift<X> for (Continuity, Xsph, DensityDiffusion<R>) {}
 
 /// A simulation of water that can say what each of its terms does to the energy.
-pub trait Metered<X>: Stepper<X> {
+pub trait Metered<X: Numbers>: Stepper<X> {
     /// The powers of its forces, of its drift and of the terms of its walls, after [`Stepper::advance`]
     /// reached a time; and the force of all pairs on the fluid \[N/m\].
     fn powers(&mut self, slope: Slope<X>) -> (Powers, Vector2<f64>);

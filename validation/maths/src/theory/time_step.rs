@@ -69,7 +69,7 @@ pub trait Stepping {
     const THEORY: Integrator;
 }
 
-impl<X> Stepping for PredictorCorrector<X> {
+impl Stepping for PredictorCorrector {
     const THEORY: Integrator = Integrator::PredictorCorrector;
 }
 
@@ -77,7 +77,7 @@ impl Stepping for Leapfrog {
     const THEORY: Integrator = Integrator::Leapfrog;
 }
 
-impl<X> Stepping for Leapfrog<SuperSteps<X>> {
+impl Stepping for Leapfrog<SuperSteps> {
     const THEORY: Integrator = Integrator::SuperLeapfrog;
 }
 

@@ -124,7 +124,7 @@ mod tests {
     fn the_end_is_half_a_spacing_beyond_the_last_column() {
         let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
         let method = schemes::total::hencky();
-        let (medium, domain) = (s.medium(&method, s.dx()), Domain::open());
+        let (medium, domain) = (solid::medium(&s, &method), Domain::open());
         let parts = Parts::new(medium, domain, s.particles(), &Context::default());
         let mut simulation =
             (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");

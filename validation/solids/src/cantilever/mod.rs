@@ -6,7 +6,7 @@ mod plan;
 
 use ::lagrangian::*;
 use base::{gate::*, mutation::Constant, record::*};
-use harness::{case::*, composed::*, context::Context, declare::*, method::Method, table::*};
+use harness::{case::*, composed::*, declare::*, table::*};
 use nalgebra::Vector2;
 use schemes::total;
 use solver::*;
@@ -130,13 +130,6 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     found.number("harmonic_y").is_some().then_some(found)
 }
 
-impl CantileverSettings {
-    /// Columns of particles outside of the clamp: as nearly as wide as the layers are thick.
-    fn columns(&self) -> usize {
-        (self.length / self.dx()).round() as usize
-    }
-}
-
 impl Problem for CantileverSettings {
     /// The speed is that of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to
     /// either side; at most that of a rigid bar that falls to the vertical.
@@ -152,10 +145,6 @@ impl Problem for CantileverSettings {
             gravity: Vector2::new(0.0, -gravity),
             ..solid::of_layers(self.n, [length, thickness])
         }
-    }
-
-    fn check(&self, _: &Method<Symmetric>, _: &Context) -> Result<(), RunError> {
-        solid::check_length(self.dx(), self.length)
     }
 
     /// Free particles, row by row from the clamp, then those of the clamp. The columns are as wide as the

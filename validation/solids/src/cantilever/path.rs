@@ -49,34 +49,26 @@ fn mean_and_amplitude(rows: &[[f64; 3]], axis: usize) -> [f64; 2] {
     [0.5 * (high + low), 0.5 * (high - low)]
 }
 
-/// The quantities of [`COMPARED`](super::COMPARED); averages, harmonics and the frequency need two falls,
-/// and the least height of the first swing needs to be passed.
-pub fn measure(path: &Path) -> [(MetricKey, Option<f64>); 10] {
+/// The quantities of [`COMPARED`](super::COMPARED), in this order; averages, harmonics and the frequency need
+/// two falls, and the least height of the first swing needs to be passed.
+pub fn measure(path: &Path) -> Vec<(MetricKey, Option<f64>)> {
     let [[mean_x, amplitude_x], [mean_y, amplitude_y]] =
         [0, 1].map(|axis| mean_and_amplitude(&path.0, axis));
     let falls = |(time, falls)| if falls { Some(time) } else { None };
     let times: Vec<f64> = passes(&path.0, 2, mean_y).filter_map(falls).collect();
     let second = times.get(1).copied().unwrap_or(f64::INFINITY);
     let swing = &path.0[..path.0.partition_point(|row| row[0] < second)];
-    let whole = if let [first, .., last] = times[..] {
+    let periods = if let [first, .., last] = times[..] {
         let frequency = (times.len() - 1) as f64 / (last - first);
         let (average, harmonic) = fourier(path, [first, last], frequency);
         [frequency, average.x, average.y, harmonic.x, harmonic.y].map(Some)
     } else {
         [None; 5]
     };
-    [
-        (MEAN_X, Some(mean_x)),
-        (MEAN_Y, Some(mean_y)),
-        (AMPLITUDE_X, Some(amplitude_x)),
-        (AMPLITUDE_Y, Some(amplitude_y)),
-        (FREQUENCY, whole[0]),
-        (AVERAGE_X, whole[1]),
-        (AVERAGE_Y, whole[2]),
-        (HARMONIC_X, whole[3]),
-        (HARMONIC_Y, whole[4]),
-        (FIRST_LEAST_Y, extremes(swing, 1)[1]),
-    ]
+    let all = [mean_x, mean_y, amplitude_x, amplitude_y].map(Some);
+    let [_, first_least_y] = extremes(swing, 1);
+    let values = all.into_iter().chain(periods).chain([first_least_y]);
+    COMPARED.into_iter().map(|(metric, _)| metric).zip(values).collect()
 }
 
 /// Mean between two times \[s\], and amplitude of the sinusoid of this frequency \[Hz\].

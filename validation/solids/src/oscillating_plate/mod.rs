@@ -4,7 +4,7 @@ mod plan;
 
 use ::lagrangian::{Hencky, Law as _};
 use base::{functions::*, gate::*, record::*};
-use harness::{case::*, composed::*, context::Context, declare::*, method::Method, table::*};
+use harness::{case::*, composed::*, declare::*, table::*};
 use maths::metrics::history::passes;
 use nalgebra::Vector2;
 use solver::*;
@@ -103,13 +103,6 @@ fn mode(x: f64) -> f64 {
     f(x) / f(1.0)
 }
 
-impl PlateSettings {
-    /// Columns of particles outside of the clamp.
-    fn columns(&self) -> usize {
-        (self.length / self.dx()).round() as usize
-    }
-}
-
 impl Problem for PlateSettings {
     fn scales(&self) -> Scales {
         Scales {
@@ -117,10 +110,6 @@ impl Problem for PlateSettings {
             end: self.end * thin_plate_period(self),
             ..solid::of_layers(self.n, [self.length, self.thickness])
         }
-    }
-
-    fn check(&self, _: &Method<Symmetric>, _: &Context) -> Result<(), RunError> {
-        solid::check_length(self.dx(), self.length)
     }
 
     /// Free particles, column by column from the clamp, then those of the clamp.
@@ -154,6 +143,11 @@ pub struct Tip {
 harness::observed! { Tip: changes(until, series), stays(settings, energy) }
 
 impl Tip {
+    fn new(s: &PlateSettings, start: &[Particle<Symmetric>]) -> Self {
+        let energy = Energy::of_all(start, &s.material()).kinetic;
+        Self { settings: s.clone(), until: 0, energy, series: vec![[0.0; 3]] }
+    }
+
     /// Times at which the tip passes its height of rest \[s\].
     fn passes(&self) -> Vec<f64> {
         passes(&self.series, 2, 0.0).map(|(time, _)| time).collect()
@@ -166,6 +160,19 @@ impl Tip {
             [_, whole, ..] => Some(whole),
             [] => None,
         }
+    }
+
+    fn measure_swing(&self, record: &mut Record) {
+        let first = self.passes().first().copied().unwrap_or(f64::INFINITY);
+        let swing = self.series.iter().take_while(|row| row[0] <= first);
+        let highest = swing.map(|row| row[2]).fold(f64::NEG_INFINITY, f64::max);
+        let (thin, speed) = (thin_plate_period(&self.settings), self.settings.speed());
+        let period = self.period();
+        let never = "the tip does not pass its height of rest again";
+        record.put_or(PERIOD, period, never);
+        record.put_or(PERIOD_EXCESS, period.map(|period| period / thin - 1.0), never);
+        let ratio = period.map(|period| highest * TAU / (period * speed));
+        record.put_or(AMPLITUDE_RATIO, ratio, never);
     }
 }
 
@@ -203,26 +210,6 @@ impl Watch for Tip {
     }
 }
 
-impl Tip {
-    fn new(s: &PlateSettings, start: &[Particle<Symmetric>]) -> Self {
-        let energy = Energy::of_all(start, &s.material()).kinetic;
-        Self { settings: s.clone(), until: 0, energy, series: vec![[0.0; 3]] }
-    }
-
-    fn measure_swing(&self, record: &mut Record) {
-        let first = self.passes().first().copied().unwrap_or(f64::INFINITY);
-        let swing = self.series.iter().take_while(|row| row[0] <= first);
-        let highest = swing.map(|row| row[2]).fold(f64::NEG_INFINITY, f64::max);
-        let (thin, speed) = (thin_plate_period(&self.settings), self.settings.speed());
-        let period = self.period();
-        let never = "the tip does not pass its height of rest again";
-        record.put_or(PERIOD, period, never);
-        record.put_or(PERIOD_EXCESS, period.map(|period| period / thin - 1.0), never);
-        let ratio = period.map(|period| highest * TAU / (period * speed));
-        record.put_or(AMPLITUDE_RATIO, ratio, never);
-    }
-}
-
 /// Finite elements of the last column of particles of a plate, for the law that the variant solves: that of
 /// the paper is (10) to (12). `None` where nothing was computed.
 fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
@@ -243,7 +230,7 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::{case::Case, method::Parts};
+    use harness::{case::Case, context::Context, method::Parts};
 
     /// A tip at a sin(2 pi t/T), at times that do not divide the period.
     fn swing(s: &PlateSettings, periods: f64) -> Record {
@@ -283,10 +270,10 @@ mod tests {
         for p in particles.iter_mut().filter(|p| p.position.x > end - 1e-6) {
             p.position.y = 1.5 * p.position.y + 0.001;
         }
-        let (dx, method) = (s.dx(), schemes::solid::clamped_bare());
+        let method = schemes::solid::clamped_bare();
         let mut tip = Tip::new(&s, &particles);
         let parts =
-            Parts::new(s.medium(&method, dx), Domain::open(), particles, &Context::default());
+            Parts::new(solid::medium(&s, &method), Domain::open(), particles, &Context::default());
         let simulation = (method.build)(parts).expect("a scene");
         tip.after_step(&*simulation);
         assert!(tip.series[1][1].abs() < 1e-15);

@@ -46,6 +46,7 @@ impl Problem for RingSettings {
         let most = 2.0 * (self.material().p_wave_speed() + speed);
         Scales {
             dx,
+            length: 2.0 * self.outer,
             speed,
             end: self.end / c0,
             count: TAU * (self.outer * self.outer - self.inner * self.inner) / (dx * dx),

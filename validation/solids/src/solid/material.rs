@@ -2,10 +2,10 @@
 
 use harness::{
     limits::{Limits, Mechanism},
-    method::{Medium, Method},
+    method::{Medium, Properties},
 };
 use maths::theory::time_step;
-use solver::{Linear, Symmetric, Tait};
+use solver::{Linear, Tait};
 
 use super::lagrangian;
 
@@ -49,7 +49,7 @@ impl Material {
     }
 
     /// The medium of a method at this spacing \[m\] and smoothing length \[m\], without any stabilisation.
-    pub fn medium<D: ?Sized>(&self, method: &Method<Symmetric, D>, lengths: [f64; 2]) -> Medium {
+    pub fn medium(&self, method: &Properties, lengths: [f64; 2]) -> Medium {
         let Linear { density, sound_speed } = self.eos();
         let eos = Tait { density, sound_speed, gamma: 7, background: 0.0 };
         Medium { shear_modulus: self.shear, ..method.medium(eos, lengths) }
@@ -64,8 +64,8 @@ const LIMIT_BOX: usize = 24;
 ///
 /// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so
 /// its α counts as α c₀/c_p of c_p. Bodies may meet at the speed `approach` \[m/s\]; where none do it is 0.
-pub fn limits<D: ?Sized>(
-    method: &Method<Symmetric, D>,
+pub fn limits(
+    method: &Properties,
     material: &Material,
     medium: &Medium,
     h_over_dx: f64,
@@ -167,10 +167,10 @@ mod tests {
     /// 1.0067, the factor of gradients at h = 1.5 dx: without correction the limit is as much shorter.
     #[test]
     fn correction_lengthens_the_step_by_the_factor_of_gradients() {
-        fn limit(method: Method<Symmetric>) -> f64 {
+        fn limit(method: Properties) -> f64 {
             limits(&method, &RUBBER, &RUBBER.medium(&method, [1.0, 1.5]), 1.5, 0.0).together
         }
-        let ratio = limit(corrected()) / limit(bare());
+        let ratio = limit(corrected().properties) / limit(bare().properties);
         let factor = bare().square([1.5, 0.0]).gradient_factor();
         assert!((ratio / factor - 1.0).abs() < 1e-12 && factor > 1.006, "{ratio} {factor}");
     }

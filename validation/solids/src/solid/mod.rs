@@ -18,7 +18,7 @@ pub use material::{Material, limits};
 pub use maths::{geometry::corners, metrics::norms::largest};
 pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};
 pub use problem::{
-    Problem, Scales, SharedSettings, Watch, check_length, digest, leave_out, no_variants, variants,
+    Problem, Scales, SharedSettings, Watch, leave_out, medium, no_variants, variants,
 };
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its

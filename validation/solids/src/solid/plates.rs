@@ -23,7 +23,7 @@ pub fn thin_plate_period(
 /// Scales of a plate of so many layers, of this length and thickness \[m\].
 pub fn of_layers(n: usize, [length, thickness]: [f64; 2]) -> Scales {
     let (dx, decisive) = (thickness / n as f64, "end, dt, n, length or thickness");
-    Scales { dx, count: length / dx * n as f64, decisive, ..Scales::default() }
+    Scales { dx, length, count: length / dx * n as f64, decisive, ..Scales::default() }
 }
 
 /// The plane at x = 0 that holds a plate without held particles.

@@ -7,14 +7,14 @@ use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
 use base::{
     bits::Bits,
-    record::{self, Record},
+    record::Record,
     settings::{self, Settings, Values},
 };
 use harness::{
     case::{Rules, RunError, Step},
     composed::Variants,
     context::Context,
-    method::{Medium, Method, Parts},
+    method::{Medium, Method, Parts, Properties},
     outline::Sink,
     runner::{self, Drive},
     simulate,
@@ -22,18 +22,14 @@ use harness::{
 };
 use maths::theory::time_step::Integrator;
 
-/// Settings of a problem by [`solid_settings!`](crate::solid_settings!).
-pub trait SharedSettings: Problem + Settings {
+/// What every problem is set by, as [`solid_settings!`](crate::solid_settings!) has it.
+pub trait SharedSettings: Values {
     /// The material.
     fn material(&self) -> Material;
     /// h/dx.
     fn h_over_dx(&self) -> f64;
     /// Time step \[s\] and Courant number dt (c_p + V)/h, if they are given.
     fn given_step(&self) -> [Option<f64>; 2];
-    /// What terms are made from, at this spacing \[m\].
-    fn medium(&self, method: &Method<Symmetric>, dx: f64) -> Medium {
-        self.material().medium(method, [dx, self.h_over_dx() * dx]).set_by(self)
-    }
 }
 
 /// What follows from the settings of a problem before its particles are made.
@@ -41,6 +37,8 @@ pub trait SharedSettings: Problem + Settings {
 pub struct Scales {
     /// Spacing \[m\].
     pub dx: f64,
+    /// Length of a body along x \[m\].
+    pub length: f64,
     /// Largest speed at the start \[m/s\].
     pub speed: f64,
     /// End of the run \[s\].
@@ -63,12 +61,16 @@ pub struct Scales {
 }
 
 /// A problem of elasticity, stated by its settings: what differs between solid cases.
-pub trait Problem {
+pub trait Problem: SharedSettings {
     /// Spacing, speed, end and the like.
     fn scales(&self) -> Scales;
     /// Spacing \[m\].
     fn dx(&self) -> f64 {
         self.scales().dx
+    }
+    /// Columns of particles along a body, as wide as the spacing, or as nearly as its length allows.
+    fn columns(&self) -> usize {
+        (self.scales().length / self.dx()).round() as usize
     }
     /// Largest speed at the start \[m/s\].
     fn speed(&self) -> f64 {
@@ -112,16 +114,12 @@ pub trait Watch: Bits {
 type Alike<P> = Variants<P, Method<Symmetric>>;
 
 /// No variants yet, of a problem that any method runs.
-pub fn no_variants<P: SharedSettings>() -> Alike<P> {
-    let run = |m: &_, s: &P, context: &Context| {
-        s.check(m, context)?;
-        run(m, s, (s.material(), rules(m, s), s.medium(m, s.dx())), s.h_over_dx(), context)
-    };
-    Variants::of(run, |m, s| Ok(rules(m, s)))
+pub fn no_variants<P: Problem + Settings>() -> Alike<P> {
+    Variants::of(|m, s: &P, context| run(m, s, context), |m, s| Ok(rules(m, s)))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
-pub fn variants<P: SharedSettings>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
+pub fn variants<P: Problem + Settings>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
     let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
                   principal axes, XSPH";
     let alone = "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what \
@@ -132,18 +130,6 @@ pub fn variants<P: SharedSettings>([seed, bare]: [Method<Symmetric>; 2]) -> Alik
         .with(LAGRANGIAN, TOTAL, schemes::total::hencky(), |s| lagrangian::choose(s))
 }
 
-/// Refuses a body of less than two columns of particles.
-///
-/// # Errors
-/// How long a spacing is, and which settings to change.
-pub fn check_length(dx: f64, length: f64) -> Result<(), RunError> {
-    let (what, value, most) = ("the spacing in lengths of the body", dx / length, 0.5);
-    if value > most {
-        return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
-    }
-    Ok(())
-}
-
 /// Sets the strengths of terms that a method lacks to 0.
 pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
     for name in names {
@@ -151,13 +137,20 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
     }
 }
 
+/// What terms are made from.
+pub fn medium(settings: &dyn Problem, method: &Properties) -> Medium {
+    let Scales { dx, gravity, .. } = settings.scales();
+    let medium = settings.material().medium(method, [dx, settings.h_over_dx() * dx]);
+    Medium { acceleration: gravity, ..medium }.set_by(settings)
+}
+
 /// N of the step N (h/F)^(1/2) of a body force F, the usual one.
 const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
-fn rules<P: SharedSettings>(method: &Method<Symmetric>, settings: &P) -> Rules {
-    let Scales { dx, speed, end, meet, gravity, .. } = settings.scales();
-    let (material, medium) = (settings.material(), settings.medium(method, dx));
+fn rules(method: &Properties, settings: &dyn Problem) -> Rules {
+    let Scales { speed, end, meet, gravity, .. } = settings.scales();
+    let (material, medium) = (settings.material(), medium(settings, method));
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
     let [dt, courant] = settings.given_step();
     let courant = courant.unwrap_or(usual);
@@ -171,16 +164,16 @@ fn rules<P: SharedSettings>(method: &Method<Symmetric>, settings: &P) -> Rules {
 }
 
 /// One run with a method.
-fn run(
-    m: &Method<Symmetric>,
-    s: &dyn Problem,
-    (material, rules, medium): (Material, Rules, Medium),
-    h_over_dx: f64,
-    context: &Context,
-) -> Result<Record, RunError> {
+fn run(m: &Method<Symmetric>, s: &dyn Problem, context: &Context) -> Result<Record, RunError> {
+    s.check(m, context)?;
     let scales = s.scales();
+    let (what, value, most) =
+        ("the spacing in lengths of the body", scales.dx / scales.length, 0.5);
+    if value > most {
+        return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
+    }
+    let (material, rules, medium) = (s.material(), rules(m, s), medium(s, m));
     simulate::check_step(m.integrator, &rules, context)?;
-    let medium = Medium { acceleration: scales.gravity, ..medium };
     let size = simulate::size(m, &medium, [rules.end / rules.dt(), scales.count]);
     let size = Size { samples: size.steps, ..size };
     runner::check_size(size, scales.decisive, context)?;
@@ -189,7 +182,7 @@ fn run(
         ("mu [Pa]", material.shear),
         ("c_p [m/s]", material.p_wave_speed()),
     ];
-    let numbers = [&rules.numbers([h_over_dx, medium.dx])[..], &own].concat();
+    let numbers = [&rules.numbers([s.h_over_dx(), medium.dx])[..], &own].concat();
     let mut record = simulate::begin(m, &numbers, context);
     let (eos, particles) = (material.eos(), s.particles());
     let is_held = particles.iter().any(|p| p.role == Role::Wall);
@@ -209,7 +202,7 @@ fn run(
     let count = scales.stops.max(1);
     let stops: Vec<f64> = (1..=count).map(|k| scales.end * k as f64 / count as f64).collect();
     let mut seen = (&mut *watch, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
+    Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
         .after_step("measurements", &|(watch, _), simulation| {
             watch.after_step(simulation);
             Flow::Continue
@@ -219,18 +212,8 @@ fn run(
                 watch.keep(simulation, stop, record);
             }
         })
-        .run(context)?;
-    (record.status, record.cost) = (status, cost);
-    record.state = Some(digest(&simulation.particles()));
+        .run(context)?
+        .put(&mut record);
     watch.measure(&*simulation, &mut record);
     Ok(record)
-}
-
-/// A digest of a state, stress included, in the order of the scene.
-pub fn digest(particles: &[Particle<Symmetric>]) -> String {
-    let numbers = |p: &Particle<Symmetric>| {
-        let Symmetric { xx, yy, xy } = p.extra;
-        [p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, xx, yy, xy]
-    };
-    record::digest(&particles.iter().flat_map(numbers).collect::<Vec<f64>>())
 }

@@ -40,7 +40,7 @@ pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<R
     let filled = water_mass(&simulation.particles());
     let (times, pictured) = stops(dam);
     let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
-    let (status, cost) = Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
+    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
         .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
         .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
         .at_if(is_balanced, "energy ledger and momentum", &|(.., ledger, _), s, _| ledger.sample(s))
@@ -51,8 +51,8 @@ pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<R
                 pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
             }
         })
-        .run(context)?;
-    (record.status, record.cost) = (status, cost);
+        .run(context)?
+        .put(&mut record);
     record.put(REACHED, simulation.time() / times[times.len() - 1]);
     let particles = simulation.particles();
     let mass = water_mass(&particles);
@@ -70,7 +70,6 @@ pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<R
         }
         reference::compare(dam, &mut record);
     }
-    record.state = Some(simulate::state(&particles));
     Ok(record)
 }
 

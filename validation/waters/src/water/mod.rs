@@ -5,7 +5,7 @@ pub mod ledger;
 
 use harness::{
     limits::Limits,
-    method::{FirstRow, Medium, Method},
+    method::{FirstRow, Medium, Properties},
 };
 use maths::{exact, geometry::Tank};
 use nalgebra::Vector2;
@@ -18,12 +18,7 @@ const ETA2: f64 = 0.01;
 
 /// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every
 /// pair and the terms of the method. `c0` is the largest sound speed \[m/s\].
-pub fn limits<D: ?Sized>(
-    method: &Method<(), D>,
-    medium: &Medium,
-    [h_over_dx, c0]: [f64; 2],
-    n: usize,
-) -> Limits {
+pub fn limits(method: &Properties, medium: &Medium, [h_over_dx, c0]: [f64; 2], n: usize) -> Limits {
     let waves = maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
     method.limits([h_over_dx, ETA2], n, &waves)
 }
