@@ -35,8 +35,8 @@ pub(crate) trait Equations<X>: Sync {
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64);
     /// Derives the columns of wall particles from these.
     fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]);
-    /// The pair sweep over wall particles, if their terms are any.
-    fn wall_sweep<'a>(&'a self, of: &'a ParticleData<X>) -> Option<Box<dyn PairSweep<X> + 'a>>;
+    /// Shows the pair sweep over wall particles, if their terms are any.
+    fn wall_sweep(&self, of: &ParticleData<X>, show: &mut dyn FnMut(&dyn PairSweep<X>));
 }
 
 /// What an engine does that does not depend on its equations.
@@ -187,17 +187,23 @@ impl<X: Numbers> ParticleData<X> {
         targets: &mut [Evolved<X>],
         update: &BlockUpdate<X>,
     ) {
-        let sweep = equations.wall_sweep(self).filter(|_| self.counts[1] > 0);
-        let Some(sweep) = sweep else { return };
-        self.enter(Phase::Walls);
-        sweep::run(&*sweep, &self.neighbours.wall_lists, targets, update);
+        if self.counts[1] > 0 {
+            equations.wall_sweep(self, &mut |sweep| {
+                self.enter(Phase::Walls);
+                sweep::run(sweep, &self.neighbours.wall_lists, targets, update);
+            });
+        }
     }
 
     /// The rates of wall particles by the terms of the walls, for the state that the columns were
     /// refreshed for last; none where these do not give rates but extrapolate.
     pub(crate) fn wall_rates(&self, equations: &dyn Equations<X>) -> Vec<Rate<X>> {
-        let sweep = equations.wall_sweep(self).filter(|_| !self.extrapolates);
-        sweep.map_or(Vec::new(), |sweep| sweep::rates(&*sweep, &self.neighbours.wall_lists))
+        let mut rates = Vec::new();
+        if !self.extrapolates {
+            let lists = &self.neighbours.wall_lists;
+            equations.wall_sweep(self, &mut |sweep| rates = sweep::rates(sweep, lists));
+        }
+        rates
     }
 
     /// The role and the extra fields of a particle, in the fluid without any of images.
@@ -257,12 +263,11 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for Typed<P> {
         derive_all(&self.terms, &of.fixed[at.clone()], walls, &mut self.columns[at]);
     }
 
-    fn wall_sweep<'a>(&'a self, of: &'a ParticleData<X>) -> Option<Box<dyn PairSweep<X> + 'a>> {
-        if <P::Walls as Walls<X>>::Terms::IS_EMPTY {
-            return None;
+    fn wall_sweep(&self, of: &ParticleData<X>, show: &mut dyn FnMut(&dyn PairSweep<X>)) {
+        if !<P::Walls as Walls<X>>::Terms::IS_EMPTY {
+            let select = at_feet::<X, P::Walls, _>(of.counts[0], &of.neighbours.feet);
+            show(&self.sweep(&self.wall_terms, select, false));
         }
-        let select = at_feet::<X, P::Walls, _>(of.counts[0], &of.neighbours.feet);
-        Some(Box::new(self.sweep(&self.wall_terms, select, false)))
     }
 }
 

@@ -11,9 +11,10 @@ use std::{
 
 use nalgebra::Vector2;
 use solver::{
-    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, Flow, Ghosts, Integrator, Leapfrog,
-    Numbers, Observer, Open, Outcome, PlaneWall, PredictorCorrector, Pressure, Scene, Scheme,
-    Shifting, Smoothing, Split, Stepper, SuperSteps, Tait, Viscosity,
+    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, ExtrapolatingWall, Flow, Ghosts,
+    Integrator, InterfaceWall, Leapfrog, Numbers, Observer, Open, Outcome, PlaneWall,
+    PredictorCorrector, Pressure, Role, Scene, Scheme, Shifting, Smoothing, Split, Stepper,
+    SuperSteps, Tait, Viscosity, Walls,
 };
 use touchstone_tests::patch;
 
@@ -39,9 +40,10 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static COUNTING: Counting = Counting;
 
-type Method<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
+type Sums = (Pressure<Tait>, Viscosity);
+type Method<I> = Compose<CubicSpline, Sums, Continuity, Open, I>;
 type Stabilised = (Continuity, DensityDiffusion, Shifting);
-type Channel = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Stabilised, Ghosts, Leapfrog>;
+type Channel = Compose<CubicSpline, Sums, Stabilised, Ghosts, Leapfrog>;
 
 /// Stops when rows have been built this often.
 struct Builds(u64);
@@ -54,20 +56,21 @@ impl<X: Numbers> Observer<X> for Builds {
 
 const H: f64 = 1.3 / 24.0;
 
-fn forces() -> (Pressure<Tait>, Viscosity) {
+fn forces() -> Sums {
     let pressure = Pressure::new(Tait { background: 0.3, ..Tait::new(1.0, 1.0) });
     (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H })
 }
 
-fn check<S: Scheme>(mut scene: Scene<S>) {
+/// After so many builds of lists, in which buffers find their size, 20 more.
+fn check<S: Scheme>(mut scene: Scene<S>, builds: u64) {
     // So that lists are built often, before the patch comes to rest.
     scene.setting.skin = 0.12 * H;
     let (h, mut simulation) = (H, scene.build().unwrap());
     // The patch orders itself while it warms up, so rows and images grow no more after it.
-    assert_eq!(simulation.advance(1e3, 0.2 * h, &mut Builds(40)), Outcome::Stopped);
+    assert_eq!(simulation.advance(1e3, 0.2 * h, &mut Builds(builds)), Outcome::Stopped);
     let (work, before) = (simulation.work(), ALLOCATIONS.get());
     assert!(before > 0, "the counter counts");
-    assert_eq!(simulation.advance(2e3, 0.2 * h, &mut Builds(60)), Outcome::Stopped);
+    assert_eq!(simulation.advance(2e3, 0.2 * h, &mut Builds(builds + 20)), Outcome::Stopped);
     let allocations = ALLOCATIONS.get() - before;
     let steps = simulation.work().steps - work.steps;
     assert!(steps > 20, "{steps} steps with 20 builds");
@@ -81,7 +84,7 @@ fn periodic<I: Integrator<Method<()>>>() -> Scene<Method<I>> {
 
 #[test]
 fn a_step_of_leapfrog_allocates_nothing_even_when_rows_are_rebuilt() {
-    check(periodic::<Leapfrog>());
+    check(periodic::<Leapfrog>(), 40);
 }
 
 #[test]
@@ -97,12 +100,12 @@ fn a_step_of_super_time_stepping_allocates_nothing_even_when_rows_are_rebuilt() 
     // Seven stages.
     let forces = Split(pressure, viscosity, 0.02 * H);
     let domain = Domain::torus(1.0, 1.0);
-    check(Scene::<Super>::new(H, domain, patch(24, 0.3, 3), forces, Continuity, Open));
+    check(Scene::<Super>::new(H, domain, patch(24, 0.3, 3), forces, Continuity, Open), 40);
 }
 
 #[test]
 fn a_step_of_the_predictor_corrector_allocates_nothing_even_when_rows_are_rebuilt() {
-    check(periodic::<PredictorCorrector>());
+    check(periodic::<PredictorCorrector>(), 40);
 }
 
 /// Ghosts come and go with the particles near the walls, and every stabiliser is at work.
@@ -114,5 +117,20 @@ fn a_step_between_ghost_walls_allocates_nothing_either() {
     let w = Smoothing::<CubicSpline>::new(H).w(dx * dx);
     let drift = (Continuity, DensityDiffusion::new(0.1 * H), Shifting::new(0.5, H, w));
     let particles = patch(24, 0.3, 3);
-    check(Scene::<Channel>::new(H, Domain::channel(1.0), particles, forces(), drift, walls));
+    check(Scene::<Channel>::new(H, Domain::channel(1.0), particles, forces(), drift, walls), 40);
+}
+
+/// A third of the patch are wall particles, over which the walls' own terms are summed.
+fn walled<W: Walls<()>>(walls: W) -> Scene<Compose<CubicSpline, Sums, Continuity, W, Leapfrog>> {
+    let mut particles = patch(24, 0.3, 3);
+    for particle in particles.iter_mut().filter(|particle| particle.position.y < 0.33) {
+        (particle.role, particle.velocity) = (Role::Wall, Vector2::zeros());
+    }
+    Scene::new(H, Domain::torus(1.0, 1.0), particles, forces(), Continuity, walls)
+}
+
+#[test]
+fn a_step_beside_wall_particles_allocates_nothing_either() {
+    check(walled(InterfaceWall), 60);
+    check(walled(ExtrapolatingWall::<Tait>::new(Tait::new(1.0, 1.0), Vector2::zeros())), 60);
 }
