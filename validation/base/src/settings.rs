@@ -198,13 +198,11 @@ pub fn of_json<S: Settings>(json: &serde_json::Value) -> Result<S, SettingError>
     Ok(settings)
 }
 
-/// The same, into settings that have any values; on error some of them are changed.
+/// The same, into settings that have any values, which missing keys keep; on error some of them are changed.
 pub fn read(settings: &mut dyn Values, json: &serde_json::Value) -> Result<(), SettingError> {
     let given = json.as_object().ok_or_else(|| {
         SettingError(format!("settings are {json}; allowed is an object of settings by name"))
     })?;
-    let defaults: Vec<_> = settings.fields().iter().map(|field| (field.default)()).collect();
-    settings.put(&defaults);
     given.iter().try_for_each(|(key, value)| set(settings, key, &text(value)))
 }
 
