@@ -1,6 +1,6 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
 //! a state and then makes the pair sweeps. What does not depend on the equations of the scene knows them as
-//! [`Equations`], and is compiled once, not for each scheme.
+//! `Equations`, and is compiled once, not for each scheme.
 
 use std::mem::take;
 

@@ -3,10 +3,13 @@
 use exchange::read::{Renamed, read};
 use nalgebra::Vector2;
 
-/// Two atoms at one time, and what they are read as: id, place, velocity, density.
-fn read_as(renamed: &Renamed) -> Vec<(u32, Vector2<f64>, Vector2<f64>, Option<f64>)> {
-    let text = "ITEM: TIMESTEP\n7\nITEM: TIME\n0.5\nITEM: NUMBER OF ATOMS\n2\nITEM: ATOMS id x y vx vy c_rho\n\
-                2 3 4 5 6 1010\n1 0 1 2 -2 990\n";
+/// Id, place, velocity and density.
+type Row = (u32, Vector2<f64>, Vector2<f64>, Option<f64>);
+
+/// What two atoms at one time are read as.
+fn read_as(renamed: &Renamed) -> Vec<Row> {
+    let text = "ITEM: TIMESTEP\n7\nITEM: TIME\n0.5\nITEM: NUMBER OF ATOMS\n2\n\
+                ITEM: ATOMS id x y vx vy c_rho\n2 3 4 5 6 1010\n1 0 1 2 -2 990\n";
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.dump"), text).unwrap();
     let results = read(folder.path(), renamed).map_err(|flaws| flaws[0].to_string()).unwrap();

@@ -1,6 +1,6 @@
 //! Steps a simulation through the times of interest: the only time loop of the program. It measures the
 //! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs. The loop
-//! knows a run of a case by [`Observed`] alone, so it is compiled once for all cases of fluids, and once for
+//! knows a run of a case by `Observed` alone, so it is compiled once for all cases of fluids, and once for
 //! those of solids.
 
 use std::time::{Duration, Instant};
