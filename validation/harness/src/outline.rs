@@ -14,7 +14,7 @@ use crate::{
     error::RunError,
     frames,
     medium::{Knob, Medium},
-    method::Properties,
+    method::properties::Properties,
     relation::{NoSymmetry, Relation, TIME, View},
 };
 

@@ -1,0 +1,115 @@
+//! What is known of a method before anything is built.
+
+use maths::theory::{Stepping, lattice::SquareLattice, time_step};
+use nalgebra::Vector2;
+use solver::{Integrator as _, Kernel, Scheme, Smoothing, Tait, Term, walls::Walls as _};
+
+use super::terms::{Boundary, FirstRow, FromMedium};
+use crate::{
+    limits::Limits,
+    medium::{Knob, Medium},
+};
+
+/// A scheme whose terms and walls can be constructed from a medium.
+pub trait Standard:
+    Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary, Integrator: Stepping>
+{
+}
+
+impl<S> Standard for S where
+    S: Scheme<Forces: FromMedium, Drift: FromMedium, Walls: Boundary, Integrator: Stepping>
+{
+}
+
+/// What is known of a method before anything is built.
+#[derive(Clone, Debug)]
+pub struct Properties {
+    /// Name of the kernel.
+    pub kernel: &'static str,
+    /// Name of the integrator.
+    pub integrator: &'static str,
+    /// Name of the walls.
+    pub walls: &'static str,
+    /// Where the first row of boundary particles lies.
+    pub first_row: FirstRow,
+    /// Do its walls read [`Parts::surface`](super::Parts::surface)?
+    pub has_feet: bool,
+    /// The stored energy as an equation, of a method whose forces derive from one.
+    pub law: Option<&'static str>,
+    /// Support radius \[h\].
+    pub support: f64,
+    /// The theory of its time step.
+    pub theory: time_step::Integrator,
+    /// The largest stable step in a medium at rest \[s\], of a method whose waves are not those of terms.
+    pub limit: Option<fn(&Medium) -> f64>,
+    /// The settings that only its terms and walls read.
+    pub uses: Vec<Knob>,
+    /// W from h and r².
+    weight: fn(f64, f64) -> f64,
+    /// The square lattice as its kernel sees it, from h/dx and η²/h².
+    lattice: fn(f64, f64) -> SquareLattice,
+    /// Are gradients corrected by the inverse of the moments?
+    pub is_corrected: bool,
+}
+
+impl Properties {
+    /// Those of a scheme.
+    pub fn of<S: Standard>() -> Self {
+        let mut uses = Vec::new();
+        S::Forces::uses(&mut uses);
+        S::Drift::uses(&mut uses);
+        uses.extend(S::Walls::USES);
+        Self {
+            kernel: S::Kernel::NAME,
+            integrator: S::Integrator::NAME,
+            walls: S::Walls::NAME,
+            first_row: S::Walls::FIRST_ROW,
+            has_feet: S::Walls::FEET,
+            law: None,
+            support: S::Kernel::SUPPORT,
+            theory: S::Integrator::THEORY,
+            limit: None,
+            uses,
+            weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
+            lattice: SquareLattice::of::<S::Kernel>,
+            is_corrected: S::Forces::NORMALISES,
+        }
+    }
+
+    /// A medium with this equation of state, spacing \[m\] and smoothing length \[m\], and nothing else.
+    pub fn medium(&self, eos: Tait, [dx, h]: [f64; 2]) -> Medium {
+        Medium {
+            eos,
+            density: eos.density,
+            sound_speed: eos.sound_speed,
+            dx,
+            h,
+            w_at_spacing: (self.weight)(h, dx * dx),
+            stiffest: self.square([h / dx, 0.0]).stiffest(),
+            nu: 0.0,
+            shear_modulus: 0.0,
+            acceleration: Vector2::zeros(),
+            wall_acceleration: Vector2::zeros(),
+            eta2_over_h2: 0.0,
+            alpha: 0.0,
+            beta: 0.0,
+            xsph: 0.0,
+            xi: 0.0,
+            exponent: 1,
+            diffusion: 0.0,
+            shift: 0.0,
+        }
+    }
+
+    /// The square lattice with these h/dx and η²/h², as its forces see it.
+    pub fn square(&self, [h_over_dx, eta2_over_h2]: [f64; 2]) -> SquareLattice {
+        let lattice = (self.lattice)(h_over_dx, eta2_over_h2);
+        if self.is_corrected { lattice.corrected() } else { lattice }
+    }
+
+    /// The limits of a step by the waves of a periodic square lattice of n × n particles with these h/dx and
+    /// η²/h².
+    pub fn limits(&self, lattice: [f64; 2], n: usize, medium: &time_step::Medium) -> Limits {
+        Limits::of(&time_step::modes(&self.square(lattice), n, medium), self.theory)
+    }
+}
