@@ -62,7 +62,7 @@ pub fn shortest_first(case: &'static dyn Case, planned: Vec<Planned>) -> Vec<Pla
 /// the paper's, if they have one.
 fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
     let planned = shortest_first(case, plan::of_case(case, Tier::Quick));
-    let best = case.best();
+    let recommended = case.recommended();
     let of = |variant: &'static str| {
         let is_one = |spec: &RunSpec| spec.variant == variant && spec.task == Task::Simulate;
         let specs = planned.iter().map(|planned| planned.spec.clone()).filter(is_one);
@@ -71,7 +71,7 @@ fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
         let record = records.find(|record| record.status == Status::Completed)?;
         Some((variant.to_string(), record))
     };
-    let named = [Some(best.variant), best.papers].into_iter().flatten();
+    let named = [Some(recommended.variant), recommended.papers].into_iter().flatten();
     let others = case.variants().into_iter().map(|variant| variant.name);
     named.chain(others).filter_map(of).take(2).collect()
 }

@@ -180,7 +180,7 @@ fn run(m: &Method, _: &Decay, context: &Context) -> Result<Record, RunError> {
 const FLAWED: Composed<Decay> = Composed {
     name: "flawed",
     problem: "a patch of fluid",
-    best: Best { variant: "sound", because: "the others are wrong", papers: None },
+    recommended: Recommended { variant: "sound", because: "the others are wrong", papers: None },
     about: "A patch of fluid in disorder.",
     variants: || {
         Variants::of(run, |_, _| Ok(Rules::REFUSED))

@@ -11,16 +11,17 @@ use report::{Cell, Section};
 /// A run with its profile.
 type Profiled<'a> = (&'a Record, &'a Breakdown);
 
-/// The largest run of the best variant of a case among those that were profiled.
+/// The largest run of the recommended variant of a case among those that were profiled.
 fn largest(results: &CaseResults) -> Option<Profiled<'_>> {
-    let (_, best) = results.best()?;
-    let profiled = results.runs.simulations().filter(|record| record.variant == best.variant);
+    let (_, recommended) = results.recommended()?;
+    let profiled =
+        results.runs.simulations().filter(|record| record.variant == recommended.variant);
     profiled
         .filter_map(|record| Some((record, record.cost.breakdown.as_ref()?)))
         .max_by_key(|(record, _)| record.cost.pair_interactions)
 }
 
-/// A row for each main case whose best variant was profiled.
+/// A row for each main case whose recommended variant was profiled.
 pub fn section(suite: &Suite) -> Section {
     let share = |names: &'static [&str]| move |(_, b): &Profiled| Cell::percent(b.share(names), 3);
     let each = |record: &Record, seconds: f64| {
@@ -41,8 +42,8 @@ pub fn section(suite: &Suite) -> Section {
         .num(["inside the support", ""], |(_, b)| Cell::percent(b.inside, 3))
         .num(["moved", "kB/step"], |(_, b)| Cell::num(1e-3 * b.bytes_a_step, 3))
         .table(
-            "Where the time goes, in the largest run of the best variant of each main case that was timed \
-             alone. Stepping and observing: nanoseconds of wall time a fluid particle and time step. Sweeps, \
+            "Where the time goes, in the largest run of the recommended variant of each main case that was \
+             timed alone. Stepping and observing: nanoseconds of wall time a fluid particle and time step. Sweeps, \
              refresh, search and rest: shares of the stepping. Inside the support: the share of the \
              neighbours visited that are nearer than the support of the kernel. `touchstone run CASE \
              --profile` shows the same of any run.",

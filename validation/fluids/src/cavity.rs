@@ -55,18 +55,18 @@ fn variants() -> Compositions<Cavity> {
         .with("seed", seed, flow::cavity_seed(), old)
         .with("modern", modern, flow::cavity_modern(), |_| {})
         .with("carried", carried, flow::cavity_carried(), strong)
-        .with(BEST, consistent, flow::cavity_consistent(), strong)
+        .with(RECOMMENDED, consistent, flow::cavity_consistent(), strong)
         .all
 }
 
-const BEST: &str = "consistent";
+const RECOMMENDED: &str = "consistent";
 
 /// The cavity.
 pub static CASE: Composed<Cavity> = Composed {
     name: NAME,
     problem: "A closed box whose lid moves",
-    best: Best {
-        variant: BEST,
+    recommended: Recommended {
+        variant: RECOMMENDED,
         because: "its velocity is the nearest at every spacing, although its densities rise",
         papers: Some("seed"),
     },
@@ -208,12 +208,12 @@ fn table(tier: Tier) -> table::Table<Cavity, f64> {
     let mut table = table::Table::new(&CASE, tier);
     let side = |s: &mut Cavity, n: usize| s.n = n;
     table.over(100.0, &["seed", "modern"], [&[16], &[16]], side);
-    table.over(100.0, &["carried", BEST], [&[14, 16, 22], &[16, 22, 32, 45, 64]], side);
-    table.over(1000.0, &["carried", BEST], [&[], &[32, 45, 64]], |s, n| {
+    table.over(100.0, &["carried", RECOMMENDED], [&[14, 16, 22], &[16, 22, 32, 45, 64]], side);
+    table.over(1000.0, &["carried", RECOMMENDED], [&[], &[32, 45, 64]], |s, n| {
         (s.re, s.n, s.end) = (1000.0, n, 50.0);
     });
     let finest = if tier == Tier::Quick { 22 } else { 64 };
-    table.keep_particles(|row| row.variant == BEST && row.settings.n == finest);
+    table.keep_particles(|row| row.variant == RECOMMENDED && row.settings.n == finest);
     table.judge(gates);
     table
 }
@@ -278,7 +278,7 @@ fn declaration(tier: Tier) -> Declaration {
         about: format!(
             "The lid-driven cavity at Re {re}, steady, against finite differences of this project."
         ),
-        ladders: ["carried", BEST].map(|of| table.ladder(&[re], of, level)).into(),
+        ladders: ["carried", RECOMMENDED].map(|of| table.ladder(&[re], of, level)).into(),
         ..Accuracy::new(&format!("{NAME}-{re}"), U_RMS, "rms error of u on x = L/2 [U]")
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
@@ -291,7 +291,7 @@ fn declaration(tier: Tier) -> Declaration {
         curves: vec![curves(&table)],
         pictures: vec![picture],
         accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
-        sensitivity: Some(Sensitivity::new(tier, [CASE.spec(BEST, |s| s.n = 16)], [speed])),
+        sensitivity: Some(Sensitivity::new(tier, [CASE.spec(RECOMMENDED, |s| s.n = 16)], [speed])),
         ..Declaration::default()
     }
 }

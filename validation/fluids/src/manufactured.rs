@@ -65,7 +65,7 @@ const NAME: &str = "manufactured";
 pub static CASE: Composed<ManufacturedSettings> = Composed {
     name: NAME,
     problem: "A manufactured steady flow between two walls",
-    best: Best {
+    recommended: Recommended {
         variant: CONSISTENT[0],
         because: "its sums are exact for linear fields on the particles that the flow carries along",
         papers: Some(SEED[0]),

@@ -162,7 +162,7 @@ fn variants() -> Compositions<CylinderSettings> {
 pub static CASE: Composed<CylinderSettings> = Composed {
     name: NAME,
     problem: "Flow between two cylinders, the inner one turning",
-    best: Best {
+    recommended: Recommended {
         variant: EXTRAPOLATING,
         because: "with 20 spacings across the gap its velocity is wrong by 0.16 %, that of \
                   `interface-wall` by 0.36 %",

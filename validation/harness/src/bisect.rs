@@ -187,7 +187,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Best, Planned, Tier, Variant},
+        case::{Planned, Recommended, Tier, Variant},
         declare::Declaration,
     };
 
@@ -256,8 +256,8 @@ mod tests {
         fn family(&self) -> &'static str {
             ""
         }
-        fn best(&self) -> Best {
-            Best { variant: "only", because: "it is staged", papers: None }
+        fn recommended(&self) -> Recommended {
+            Recommended { variant: "only", because: "it is staged", papers: None }
         }
         fn name(&self) -> &'static str {
             "spring"

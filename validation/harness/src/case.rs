@@ -25,15 +25,27 @@ pub struct Variant {
     pub about: &'static str,
 }
 
-/// The variant of a case that runs unless another one is named.
+/// The variant of a case that runs unless another one is named. No variant has the smallest error in every
+/// case and every metric.
 #[derive(Clone, Copy, Debug)]
-pub struct Best {
+pub struct Recommended {
     /// Its name.
     pub variant: &'static str,
-    /// What it is better in than the others, with numbers, in words that follow "best, for".
+    /// The reason, with numbers: each stands before the comment that names its source, as in the documents,
+    /// and a test compares the two.
     pub because: &'static str,
     /// The variant that is the paper's, or comes closest to it.
     pub papers: Option<&'static str>,
+}
+
+impl Recommended {
+    /// The reason without the comments that name the sources of its numbers.
+    pub fn reason(&self) -> String {
+        let mut parts = self.because.split("<!-- ");
+        let first = parts.next().unwrap_or_default().to_string();
+        let after = |part: &'static str| part.split_once(" -->").map_or("", |(_, after)| after);
+        parts.map(after).fold(first, |text, part| text + part)
+    }
 }
 
 /// A benchmark.
@@ -48,8 +60,8 @@ pub trait Case: Sync {
     fn about(&self) -> &'static str;
     /// The variants to compare.
     fn variants(&self) -> Vec<Variant>;
-    /// The best of them.
-    fn best(&self) -> Best;
+    /// The variant that the case recommends.
+    fn recommended(&self) -> Recommended;
     /// The settings.
     fn fields(&self) -> &'static [Field];
     /// All settings of a variant with `key=value` texts applied, as the record states them.

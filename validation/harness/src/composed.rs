@@ -10,7 +10,7 @@ use base::{
     spec::RunSpec,
 };
 
-pub use crate::case::Best;
+pub use crate::case::Recommended;
 use crate::{
     case::{Case, Planned, Rules, RunError, Tier, Variant},
     context::Context,
@@ -189,7 +189,7 @@ pub struct Composed<T> {
     /// The problem in at most ten words.
     pub problem: &'static str,
     /// The variant that runs unless another one is named, and why.
-    pub best: Best,
+    pub recommended: Recommended,
     /// The problem in words.
     pub about: &'static str,
     /// The variants.
@@ -262,8 +262,8 @@ impl<T: Settings> Case for Composed<T> {
         self.about
     }
 
-    fn best(&self) -> Best {
-        self.best
+    fn recommended(&self) -> Recommended {
+        self.recommended
     }
 
     fn variants(&self) -> Vec<Variant> {

@@ -81,7 +81,7 @@ pub struct Curve {
     pub shown: (&'static str, &'static [&'static str]),
 }
 
-/// What the report says first of a case: its error with the best variant and with the paper's.
+/// What the report says first of a case: its error with the recommended variant and with the paper's.
 pub struct Card {
     /// Name of the problem.
     pub title: &'static str,
@@ -91,7 +91,7 @@ pub struct Card {
     pub error: String,
     /// The error, which has the unit 1 and may have a sign.
     pub metric: MetricName,
-    /// The run of the best variant and that of the paper's.
+    /// The run of the recommended variant and that of the paper's.
     pub runs: Vec<RunSpec>,
     /// What it is compared with.
     pub against: &'static str,

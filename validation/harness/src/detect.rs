@@ -131,7 +131,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Best, Planned, Variant},
+        case::{Planned, Recommended, Variant},
         declare::Declaration,
     };
 
@@ -146,8 +146,8 @@ mod tests {
         fn family(&self) -> &'static str {
             ""
         }
-        fn best(&self) -> Best {
-            Best { variant: "only", because: "it is staged", papers: None }
+        fn recommended(&self) -> Recommended {
+            Recommended { variant: "only", because: "it is staged", papers: None }
         }
         fn name(&self) -> &'static str {
             "balance"

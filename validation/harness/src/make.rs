@@ -524,7 +524,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Best, Variant, spec},
+        case::{Recommended, Variant, spec},
         suite,
     };
 
@@ -537,8 +537,8 @@ mod tests {
         fn family(&self) -> &'static str {
             ""
         }
-        fn best(&self) -> Best {
-            Best { variant: "v", because: "it is staged", papers: None }
+        fn recommended(&self) -> Recommended {
+            Recommended { variant: "v", because: "it is staged", papers: None }
         }
         fn name(&self) -> &'static str {
             "quick"

@@ -47,8 +47,8 @@ impl CaseResults {
             .flat_map(move |(of, all)| all.iter().map(move |judged| JudgedOf { case, of, judged }))
     }
 
-    /// The card that it declares and the run of its best variant there.
-    pub fn best(&self) -> Option<(&declare::Card, &Record)> {
+    /// The card that it declares and the run of its recommended variant there.
+    pub fn recommended(&self) -> Option<(&declare::Card, &Record)> {
         let card = self.declared.card.as_ref()?;
         Some((card, self.runs.record(card.runs.first()?)?))
     }

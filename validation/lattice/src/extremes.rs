@@ -45,7 +45,7 @@ base::settings! {
 pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     name: "extremes",
     problem: "Extreme settings and scenes: does the program stay sound?",
-    best: Best {
+    recommended: Recommended {
         variant: "rest",
         because: "each variant is an experiment of its own, and this one is the plainest",
         papers: None,

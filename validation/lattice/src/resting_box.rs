@@ -60,7 +60,7 @@ base::metrics! {
 pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     name: "resting_box",
     problem: "Small noise at rest: is the time step stable?",
-    best: Best {
+    recommended: Recommended {
         variant: CUBIC,
         because: "all have the limit that theory predicts, and this one takes the fewest pairs a step",
         papers: None,

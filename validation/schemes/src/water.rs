@@ -17,7 +17,7 @@ type Diffusion = DensityDiffusion<Hydrostatic>;
 /// The viscosity of water that slips along boundary particles: it leaves them out, because they stand still.
 type Slipping = FluidPairs<ArtificialViscosity<Tait>>;
 type Walls = ExtrapolatingWall<Tait>;
-/// The best known settings.
+/// The settings of `modern` and its relatives.
 type Modern<D = (Continuity, Diffusion), W = Walls, V = Slipping> =
     Compose<WendlandC2, Water<(), V>, D, W, Leapfrog>;
 
@@ -40,7 +40,7 @@ methods! { metered => WaterMethod:
     slip_ghosts: Seed<SlipGhosts>;
     /// The paper's without walls.
     free_seed: Seed<Open>;
-    /// The best known.
+    /// Wendland kernel, walls that extrapolate, density diffusion.
     modern: Modern;
     /// The same with artificial viscosity between water and walls too.
     sticking: Modern<(Continuity, Diffusion), Walls, ArtificialViscosity<Tait>>;

@@ -29,7 +29,7 @@ base::settings! {
 pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     name: NAME,
     problem: "A small wave in rubber",
-    best: Best {
+    recommended: Recommended {
         variant: CubicSpline::NAME,
         because: "it is the only one, and follows the theory of the lattice to round-off",
         papers: None,

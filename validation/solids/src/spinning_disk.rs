@@ -29,7 +29,7 @@ crate::solid_settings! {
 pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     name: "spinning_disk",
     problem: "A free elastic disk spins",
-    best: Best {
+    recommended: Recommended {
         variant: LAGRANGIAN,
         because: "it keeps its angular momentum to round-off, where the paper's disk loses all of its spin",
         papers: Some("seed"),

@@ -116,7 +116,7 @@ pub struct Run {
     /// Name of the case, as `touchstone list` shows it
     #[arg(required_unless_present_any = ["specs", "resume"])]
     pub case: Option<String>,
-    /// Name of the variant; by default the best one of the case, which `touchstone list` names
+    /// Name of the variant; by default the recommended one of the case, which `touchstone list` names
     #[arg(long)]
     pub variant: Option<String>,
     /// Change a setting (repeatable), as in `--set re=0.1 --set end=0.5`

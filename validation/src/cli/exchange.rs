@@ -38,7 +38,7 @@ const MOST_BYTES: u64 = 1 << 24;
 pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
     let of = &arguments.of;
     let case = cases::find_in(world.cases, &of.case)?;
-    let variant = of.variant.as_deref().unwrap_or(case.best().variant);
+    let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
     let problem = Problem::seen(case, spec, arguments.relation)?;
     let folder = OutputFolder::create(&of.out)?;
@@ -127,7 +127,7 @@ fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
 pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
     let of = &arguments.of;
     let case = cases::find_in(world.cases, &of.case)?;
-    let variant = of.variant.as_deref().unwrap_or(case.best().variant);
+    let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
         Failure::usage(format!("cannot read {}: {reason}", arguments.method.display()))
     })?;
@@ -252,7 +252,7 @@ fn problem(
         }
         Some(asked) => spec_of(case, asked)?,
         None => {
-            let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
+            let variant = arguments.variant.as_deref().unwrap_or(case.recommended().variant);
             case::spec(case, variant, &arguments.set)?
         }
     };

@@ -1,7 +1,7 @@
 //! `list`: cases, variants and settings.
 
 use base::settings::Field;
-use harness::case::{Best, Case, Variant};
+use harness::case::{Case, Recommended, Variant};
 use serde_json::{Value, json};
 use validation::cases;
 
@@ -16,22 +16,23 @@ pub fn list(arguments: &arguments::List, world: &World) -> Result<(), Failure> {
     output::answer(arguments.json, || json(case), || details(case))
 }
 
-/// A line a case: the problem, and the variants for it; then why each is the best.
+/// A line a case: the problem, and the variants for it; then why the case recommends it.
 fn overview(world: &World) -> String {
     let row = |case: &&dyn Case| {
-        let Best { variant, papers, .. } = case.best();
+        let Recommended { variant, papers, .. } = case.recommended();
         let names = [case.name(), case.problem(), variant, papers.unwrap_or_default()];
         names.map(String::from).to_vec()
     };
-    let heads = ["case", "problem", "best variant", "the paper's"];
+    let heads = ["case", "problem", "recommended", "the paper's"];
     let reason = |case: &&dyn Case| {
-        let Best { variant, because, .. } = case.best();
-        let words = format!("{} {variant}: {because}", case.name());
+        let recommended = case.recommended();
+        let words = format!("{} {}: {}", case.name(), recommended.variant, recommended.reason());
         format!("  {}", output::wrap(&words, "    ").trim_start())
     };
     let reasons: String = world.cases.iter().map(reason).collect();
     output::table(&heads, world.cases.iter().map(row))
-        + "\nThe best variant runs unless another one is named. It is the best because\n"
+        + "\nThe recommended variant runs unless another one is named. No variant has the\nsmallest error \
+           in every case; the reasons:\n"
         + &reasons
         + "\n`touchstone list CASE` shows all variants and settings of a case, `touchstone run CASE` \
            runs it.\n"
@@ -47,10 +48,13 @@ fn details(case: &dyn Case) -> String {
             text += &output::wrap(&differs, &" ".repeat(21));
         }
     }
-    let Best { variant, because, papers } = case.best();
+    let recommended = case.recommended();
+    let Recommended { variant, papers, .. } = recommended;
     let papers = papers.map(|name| format!("; `{name}` is the paper's")).unwrap_or_default();
-    let best = format!("`{variant}` runs by default{papers}. `{variant}` is the best: {because}");
-    text += &output::wrap(&best, "  ");
+    let reason = recommended.reason();
+    let words =
+        format!("`{variant}` is recommended and runs by default{papers}. The reason: {reason}");
+    text += &output::wrap(&words, "  ");
     let row = |field: &Field| {
         vec![field.name.into(), (field.default)().to_string(), field.range.into(), field.doc.into()]
     };
@@ -81,13 +85,13 @@ fn json(case: &dyn Case) -> Value {
             "kind": field.kind.to_string(), "range": field.range, "default": Value::from((field.default)()),
         })
     };
-    let best = case.best();
+    let recommended = case.recommended();
     json!({
         "name": case.name(), "problem": case.problem(), "about": case.about(),
-        "default_variant": best.variant,
-        "best_variant": best.variant,
-        "best_because": best.because,
-        "papers_variant": best.papers,
+        "default_variant": recommended.variant,
+        "recommended_variant": recommended.variant,
+        "recommended_because": recommended.reason(),
+        "papers_variant": recommended.papers,
         "variants": case.variants().iter().map(variant).collect::<Value>(),
         "settings": case.fields().iter().map(setting).collect::<Value>(),
     })

@@ -66,7 +66,7 @@ fn sweep(
     set: &[String],
     world: &World,
 ) -> Result<Vec<Job>, Failure> {
-    let default = [case.best().variant.to_string()];
+    let default = [case.recommended().variant.to_string()];
     let variants = if variants.is_empty() { &default } else { variants };
     let values = |assignment: &String| assignment.matches(',').count() as f64 + 1.0;
     let count = variants.len() as f64 * set.iter().map(values).product::<f64>();

@@ -50,7 +50,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     world.check_references(&[case])?;
-    let variant = arguments.variant.as_deref().unwrap_or(case.best().variant);
+    let variant = arguments.variant.as_deref().unwrap_or(case.recommended().variant);
     let rows = arguments.rows.iter().map(|rows| format!("rows={rows}"));
     let set: Vec<String> = arguments.set.iter().cloned().chain(rows).collect();
     let mut spec = case::spec(case, variant, &set)?;

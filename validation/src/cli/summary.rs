@@ -36,8 +36,8 @@ pub fn summary(suite: &Suite) -> String {
         "margin",
     ];
     let mut text = output::table(&heads, suite.cases.iter().map(row));
-    text += "The error is that of the best variant, its cost that on one core; the margin is the unused\n\
-             share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
+    text += "The error is that of the recommended variant, its cost that on one core; the margin is the\n\
+             unused share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
     text += &failures(suite);
     let counts = suite.counts();
     let limited = counts.count(Verdict::Limitation);
@@ -51,18 +51,18 @@ pub fn summary(suite: &Suite) -> String {
     text + &format!("\n{}\n", counts.headline())
 }
 
-/// How the gates of a case ended, the error of its best variant with the cost, and the gate that is the
-/// closest to failing, with the unused share of its bound.
+/// How the gates of a case ended, the error of its recommended variant with the cost, and the gate that is
+/// the closest to failing, with the unused share of its bound.
 fn row(results: &CaseResults) -> Vec<String> {
     let counts = results.counts();
     let mut row = vec![results.case.name().to_string()];
     let columns = [Verdict::Fail, Verdict::Limitation, Verdict::ExpectedFailure, Verdict::Pass];
     row.extend(columns.map(|verdict| counts.count(verdict).to_string()));
-    row.extend(match results.best() {
-        Some((card, best)) => [
-            headline(card, best).unwrap_or_else(|_| "none".into()),
-            best.variant.clone(),
-            report::seconds(best.cost.alone_median().unwrap_or(best.cost.cpu_s)),
+    row.extend(match results.recommended() {
+        Some((card, record)) => [
+            headline(card, record).unwrap_or_else(|_| "none".into()),
+            record.variant.clone(),
+            report::seconds(record.cost.alone_median().unwrap_or(record.cost.cpu_s)),
         ],
         None => Default::default(),
     });

@@ -17,7 +17,7 @@ use base::{
 };
 use clap::Parser;
 use harness::{
-    case::{self, Best, Case, Planned, RunError, Tier, Variant},
+    case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
     declare::{Card, Declaration},
     make::{self, Made, Making},
@@ -49,8 +49,8 @@ impl Case for Staged {
     fn family(&self) -> &'static str {
         ""
     }
-    fn best(&self) -> Best {
-        Best { variant: "right", because: "it is staged", papers: None }
+    fn recommended(&self) -> Recommended {
+        Recommended { variant: "right", because: "it is staged", papers: None }
     }
     fn name(&self) -> &'static str {
         self.name
@@ -659,7 +659,7 @@ fn the_next_run_has_half_the_spacing() {
     for (name, finer) in [("rubber_rings", "spacing=0.05"), ("dam_break", "n=40")] {
         let case = cases::find(name).expect("a case");
         let declared = case.declaration(Tier::Quick);
-        let spec = case::spec(case, case.best().variant, &[]).expect("settings");
+        let spec = case::spec(case, case.recommended().variant, &[]).expect("settings");
         let words = super::summary::finer(case, &declared, &spec);
         assert!(words.as_ref().is_some_and(|words| words.ends_with(finer)), "{name}: {words:?}");
     }
@@ -667,22 +667,27 @@ fn the_next_run_has_half_the_spacing() {
 
 /// `run` of plate, disk, bar and cantilever was of the paper's variant, which is wrong by 7 to 35 %.
 #[test]
-fn a_plain_run_is_of_the_best_variant_and_list_says_why() {
+fn a_plain_run_is_of_the_recommended_variant_and_list_says_why() {
     for case in cases::CASES {
-        let (name, best) = (case.name(), case.best());
-        for variant in [Some(best.variant), best.papers].into_iter().flatten() {
+        let (name, recommended) = (case.name(), case.recommended());
+        for variant in [Some(recommended.variant), recommended.papers].into_iter().flatten() {
             let is_one = case.variants().iter().any(|one| one.name == variant);
             assert!(is_one, "{name} has no variant {variant}, which its declaration names");
         }
-        assert!(best.because.len() > 30, "why it is the best of {name}: {:?}", best.because);
+        assert!(
+            recommended.reason().len() > 30,
+            "why it is recommended of {name}: {:?}",
+            recommended.because
+        );
         let card = case.declaration(Tier::Quick).card;
         let shown = card.map(|card| card.runs.into_iter().map(|spec| spec.variant));
         let shown: Vec<String> = shown.into_iter().flatten().collect();
-        let named: Vec<&str> = [Some(best.variant), best.papers].into_iter().flatten().collect();
+        let named: Vec<&str> =
+            [Some(recommended.variant), recommended.papers].into_iter().flatten().collect();
         assert!(shown.is_empty() || shown == named, "{name}: {shown:?} on the card, not {named:?}");
     }
     let bar = cases::find("elastic_bar").expect("a case");
-    let spec = case::spec(bar, bar.best().variant, &[]).expect("settings");
+    let spec = case::spec(bar, bar.recommended().variant, &[]).expect("settings");
     let record = bar.run(&spec, &Context::default()).expect("a run");
     let error = record.metrics["travel_error"].value;
     assert!(error.abs() < 2e-3, "a pulse in a plain bar comes {error} of its time late, not 0.002");

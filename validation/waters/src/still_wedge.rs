@@ -55,7 +55,7 @@ fn variants() -> Compositions<Wedge> {
 pub static STILL_WEDGE: Composed<Wedge> = Composed {
     name: NAME,
     problem: "Water at rest over a wedge in a tank",
-    best: Best {
+    recommended: Recommended {
         variant: "modern",
         because: "it has the smallest error of the pressure at both corners",
         papers: Some("seed"),

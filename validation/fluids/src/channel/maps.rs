@@ -17,7 +17,7 @@ const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];
 const SOUND: [f64; 3] = [5.0, 10.0, 20.0];
 
 /// What is tried against the instability, in the full tier: nothing, the remedies of the paper, those of
-/// others, and the best rule; and at which Reynolds numbers.
+/// others, and the rule; and at which Reynolds numbers.
 const CURES: [&str; 6] =
     ["seed", "cure-stress", "cure-viscosity", "cure-xsph", "cure-shifting", "modern"];
 const CURED: [f64; 3] = [5.0, 20.0, 50.0];

@@ -47,7 +47,7 @@ pub type ChannelTable = Table<ChannelSettings, For>;
 pub static COUETTE: ChannelCase = ChannelCase {
     name: "couette",
     problem: "Water between two plates, one of which starts to move",
-    best: Best {
+    recommended: Recommended {
         variant: "modern",
         because: "with 20 rows its velocity is wrong by 0.06 %, the paper's by 0.8 %, and it holds up \
                   to Re 50",
@@ -65,7 +65,7 @@ pub static COUETTE: ChannelCase = ChannelCase {
 pub static POISEUILLE: ChannelCase = ChannelCase {
     name: "poiseuille",
     problem: "Water between two plates, driven by a body force",
-    best: Best {
+    recommended: Recommended {
         variant: "curved",
         because: "with 20 rows its velocity is wrong by 0.08 %, the paper's by 1.4 %: its ghosts know \
                   the curvature at the wall",

@@ -8,8 +8,8 @@ use harness::table::{Row, Table};
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
 /// `plain`.
 pub fn ladder(flow: Flow) -> [&'static str; 7] {
-    let best = if flow == Flow::Couette { "modern" } else { "curved" };
-    ["seed", "interface-wall", "wendland-leapfrog", "plain", best, "single-sweep", "stiff"]
+    let recommended = flow.case().recommended.variant;
+    ["seed", "interface-wall", "wendland-leapfrog", "plain", recommended, "single-sweep", "stiff"]
 }
 
 /// Reynolds numbers of the modern variant.

@@ -75,7 +75,7 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
         "quintic spline, h/dx 1, small eta, leapfrog: what is the error without stabilisers?";
     let extrapolating =
         "plain with walls that extrapolate (Adami, Hu & Adams 2012): are they better than ghosts?";
-    let best =
+    let modern_is =
         "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?";
     let single = "modern with one pair sweep a step in place of two: is its error cheaper?";
     let steps =
@@ -87,7 +87,7 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
         .with("wendland-leapfrog", kernel, methods.wendland, wendland)
         .with("plain", plain, methods.plain, modern)
         .with("extrapolating-wall", extrapolating, methods.extrapolating, modern)
-        .with("modern", best, methods.modern, curved)
+        .with("modern", modern_is, methods.modern, curved)
         .with("single-sweep", single, methods.single_sweep, single_sweep)
         .with("stiff", steps, methods.stiff, stiff)
 }

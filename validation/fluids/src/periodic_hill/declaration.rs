@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use super::{BEST, CASE, HillSettings, NAME, measure::*, plan::*, reference::*};
+use super::{CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*};
 use base::{gate::*, mutation::Constant, record::*};
 use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
 use maths::metrics::norms::rms;
@@ -29,7 +29,8 @@ pub fn declaration(tier: Tier) -> Declaration {
     }
 }
 
-/// The best variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing separates.
+/// The recommended variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing
+/// separates.
 fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
     let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };
@@ -45,7 +46,7 @@ fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
         all.push(("reattachment [H]", REATTACHMENT_ERROR, summary(re, "reattachment")[1]));
     }
     let ladder =
-        accuracy.ladders.iter().filter(|of| [BEST, "interface-wall"].contains(&of.variant));
+        accuracy.ladders.iter().filter(|of| [RECOMMENDED, "interface-wall"].contains(&of.variant));
     let comparison = |ladder| {
         let of = move |(what, metric, uncertainty)| {
             Comparison::new(what, "finite elements", metric, ladder, (uncertainty, BECAUSE))
@@ -64,7 +65,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         picture: ("periodic-hill-pictures", panel),
         error: format!("velocity at ten stations at Re {re}, rms in U_b"),
         metric: L2_U.into(),
-        runs: accuracy.finest(&[BEST, "interface-wall"]),
+        runs: accuracy.finest(&[RECOMMENDED, "interface-wall"]),
         against: "finite elements",
         uncertainty: reference(re).map(|reference| reference.uncertainty),
         reach: ("re", "Re", ""),
@@ -76,11 +77,11 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let about = "Flow over periodic hills at Re 50 after 40 H/U_b, against finite elements at ten stations. \
                  In the quick tier at Re 10 after 10 H/U_b, when 0.3 % of U_b is left of the start.";
     let level = |s: &HillSettings| (1.0 / s.n as f64, format!("H/dx = {}", s.n));
-    let mut ladders = ["interface-wall", BEST, "modern", "consistent"]
+    let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
         .map(|variant| table.ladder(&[For::Ladder], variant, level));
     if tier == Tier::Full {
         let because = "Walls are of first order on disordered particles, sums of second.";
-        let (id, bound) = (format!("{NAME}.{BEST}.50.order"), Bound::Above(1.0));
+        let (id, bound) = (format!("{NAME}.{RECOMMENDED}.50.order"), Bound::Above(1.0));
         ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
@@ -104,14 +105,14 @@ fn budgets() -> Budgets {
         Change::new(what, part, spec)
     };
     let mut changes = vec![
-        change("none", "none", BEST, |_| {}),
-        change("finer spacing", "spacing", BEST, |s| s.n = 20),
-        change("dt/2", "time", BEST, |s| s.courant = 0.75),
-        change("c0=30", "sound speed", BEST, |s| s.c0 = 30.0),
-        change("h_over_dx=1.2", "h/dx", BEST, |s| s.h_over_dx = 1.2),
-        change("diffusion=0.05", "density diffusion", BEST, |s| s.diffusion = 0.05),
-        change("shift=1.5", "shifting", BEST, |s| s.shift = 1.5),
-        change("from the reference", "start", BEST, |s| s.from_reference = true),
+        change("none", "none", RECOMMENDED, |_| {}),
+        change("finer spacing", "spacing", RECOMMENDED, |s| s.n = 20),
+        change("dt/2", "time", RECOMMENDED, |s| s.courant = 0.75),
+        change("c0=30", "sound speed", RECOMMENDED, |s| s.c0 = 30.0),
+        change("h_over_dx=1.2", "h/dx", RECOMMENDED, |s| s.h_over_dx = 1.2),
+        change("diffusion=0.05", "density diffusion", RECOMMENDED, |s| s.diffusion = 0.05),
+        change("shift=1.5", "shifting", RECOMMENDED, |s| s.shift = 1.5),
+        change("from the reference", "start", RECOMMENDED, |s| s.from_reference = true),
         change("`consistent`: sums exact for linear fields", "sums", "consistent", |_| {}),
         change("`modern`: weaker shifting, no velocities", "shifting", "modern", |_| {}),
         change("`interface-wall` over `modern`", "wall", "interface-wall", |_| {}),
@@ -186,8 +187,8 @@ pub fn is_stable(record: &Record) -> bool {
 /// sums over pairs, with shifted velocities and with consistent sums.
 fn limits(tier: Tier) -> StepLimits {
     let (n, variants): (usize, &[&'static str]) = match tier {
-        Tier::Quick => (5, &[BEST]),
-        _ => (10, &["modern", BEST, "consistent"]),
+        Tier::Quick => (5, &[RECOMMENDED]),
+        _ => (10, &["modern", RECOMMENDED, "consistent"]),
     };
     let about = "The longest time step with which the flow at Re 50 goes on for 3 H/U_b from the reference \
                  without diverging or doubling its kinetic energy, by bisection, over the limit of linear \
@@ -250,7 +251,7 @@ pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         let both = u(rest).zip(u(other));
         let found = both.map_or(f64::NAN, |(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)));
         let metric = "rms over stations of the difference of u [U_b]";
-        let (id, bound) = (format!("{NAME}.{BEST}.{re}.starts"), Bound::Below(0.005));
+        let (id, bound) = (format!("{NAME}.{RECOMMENDED}.{re}.starts"), Bound::Below(0.005));
         study.judge(Gate::new(id, metric, bound, Evidence::Invariant, because), found)
     });
     if study.judged.is_empty() { Vec::new() } else { vec![study] }

@@ -1,6 +1,6 @@
 //! The runs of the case and their gates.
 
-use super::{BEST, CASE, HillSettings, measure::*};
+use super::{CASE, HillSettings, RECOMMENDED, measure::*};
 use base::gate::*;
 use harness::{case::Tier, table};
 
@@ -9,7 +9,7 @@ use harness::{case::Tier, table};
 pub enum For {
     /// Order and cost: every variant that stays stable, from rest.
     Ladder,
-    /// Figures: the best variant at the Reynolds numbers that have a reference.
+    /// Figures: the recommended variant at the Reynolds numbers that have a reference.
     Figures,
     /// The reattachment as a mean over 48 H/U_b, for means over 16 differ by 0.007 H.
     Long,
@@ -42,11 +42,11 @@ pub fn table(tier: Tier) -> Table {
     let mut table = Table::new(&CASE, tier);
     let quick = [4, 5, 7].map(|n| (10.0, n, 10.0, false));
     let coarse = [4, 5, 7, 10].map(|n| (50.0, n, END, false));
-    table.over(For::Ladder, &["interface-wall", BEST], [&quick, &coarse], flow);
+    table.over(For::Ladder, &["interface-wall", RECOMMENDED], [&quick, &coarse], flow);
     table.over(For::Ladder, &["modern", "consistent"], [&[], &coarse], flow);
-    table.over(For::Ladder, &[BEST], [&[], &[(50.0, 20, END, false)]], flow);
+    table.over(For::Ladder, &[RECOMMENDED], [&[], &[(50.0, 20, END, false)]], flow);
     let long = |s: &mut HillSettings, n| (s.re, s.n, s.end, s.average) = (50.0, n, 2.0 * END, 0.3);
-    table.over(For::Long, &[BEST], [&[], &[20]], long);
+    table.over(For::Long, &[RECOMMENDED], [&[], &[20]], long);
     // At ten spacings from the reference as well: the start must not matter.
     let full = [
         (10.0, 10, 15.0, false),
@@ -60,21 +60,22 @@ pub fn table(tier: Tier) -> Table {
         (100.0, 20, 20.0, true),
     ];
     // Three quarters of the time, which the goal at ten spacings allows and finer ones do not.
-    table.over(For::Figures, &[BEST], [&[(50.0, 10, 30.0, false)], &full], flow);
+    table.over(For::Figures, &[RECOMMENDED], [&[(50.0, 10, 30.0, false)], &full], flow);
     let control = (10.0, 5, 20.0, false);
     table.over(For::Control, &["plain"], [&[control], &coarse[3..]], flow);
     // The flux has filled the period 0.96 times at the end.
-    table.over(For::Fast, &[BEST], [&[], &[(1000.0, 10, 12.0, false)]], flow);
+    table.over(For::Fast, &[RECOMMENDED], [&[], &[(1000.0, 10, 12.0, false)]], flow);
     let fine = if tier == Tier::Quick { 10 } else { 20 };
     table.keep_particles(|row| row.group == For::Figures && row.settings.n >= fine);
     table.judge(gates);
     table
 }
 
-/// The runs of the best variant at a Reynolds number that figures show, coarse to fine.
+/// The runs of the recommended variant at a Reynolds number that figures show, coarse to fine.
 pub fn shown(table: &Table, re: f64) -> Vec<&Row> {
     let rows = table.of(For::Ladder).chain(table.of(For::Figures));
-    let of = |row: &&Row| row.variant == BEST && row.settings.re == re && row.settings.n >= 10;
+    let of =
+        |row: &&Row| row.variant == RECOMMENDED && row.settings.re == re && row.settings.n >= 10;
     let mut rows: Vec<_> = rows.filter(of).collect();
     rows.sort_by_key(|row| row.settings.n);
     rows
@@ -108,7 +109,7 @@ fn gates(row: &Row) -> Vec<Gate> {
             vec![outside, CASE.gate(&run, FORCE, Bound::Above(0.0), Evidence::Regression, because)]
         }
         // Below ten spacings the bubble has two rows: shown for the order, held to nothing.
-        For::Ladder | For::Figures | For::Long if row.variant == BEST && n >= 10 => {
+        For::Ladder | For::Figures | For::Long if row.variant == RECOMMENDED && n >= 10 => {
             let rested = row.group == For::Long;
             [vec![outside], of_reference(&run, re, n, rested), balances(&run, n)].concat()
         }
@@ -125,7 +126,7 @@ fn goal(n: usize) -> f64 {
     }
 }
 
-/// How near to finite elements the best variant must be.
+/// How near to finite elements the recommended variant must be.
 fn of_reference(run: &str, re: f64, n: usize, rested: bool) -> Vec<Gate> {
     let around = |most: f64| Bound::Within(-most, most);
     let reach = if n >= 40 { 0.05 } else { 0.1 };

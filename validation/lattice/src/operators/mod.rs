@@ -148,7 +148,7 @@ fn variants() -> Compositions<OperatorSettings> {
 pub static OPERATORS: Composed<OperatorSettings> = Composed {
     name: "operators",
     problem: "One operator of a known field on disordered particles",
-    best: Best {
+    recommended: Recommended {
         variant: "quintic-gradient-corrected",
         because: "with the divergence it is the operator that converges on disordered particles",
         papers: None,

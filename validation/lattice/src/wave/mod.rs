@@ -78,7 +78,7 @@ enum Polarisation {
 pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
     name: "acoustic_wave",
     problem: "A small standing sound wave in a periodic box",
-    best: BEST,
+    recommended: RECOMMENDED,
     about: "A standing sound wave of infinitesimal amplitude in a periodic box follows p'' + nu lambda \
             p' + (c0 |g|)^2 p = 0. On a lattice, the symbols g(k) and lambda(k) of the sums of the method \
             are known exactly. A correct program has the frequency and decay that follow from them, \
@@ -92,7 +92,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
 pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
     name: "shear_wave",
     problem: "A small shear wave decays in a periodic box",
-    best: BEST,
+    recommended: RECOMMENDED,
     about: "A shear wave of infinitesimal amplitude in a periodic box decays as exp(-nu lambda t). On \
             a lattice, the symbol lambda(k) of the viscous sum is known exactly. Sound and pressure stay \
             exactly zero to first order.",
@@ -101,7 +101,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
 };
 
-const BEST: Best = Best {
+const RECOMMENDED: Recommended = Recommended {
     variant: "cubic-leapfrog",
     because: "all kernels follow the theory of the lattice to round-off, and this one takes the fewest \
               pairs",

@@ -105,7 +105,7 @@ fn pictures(tier: Tier) -> Vec<Picture> {
     ]
 }
 
-/// The best variant and the paper's over their ladders, each with the reference of its law.
+/// The recommended variant and the paper's over their ladders, each with the reference of its law.
 fn comparisons(accuracy: &Accuracy) -> Vec<Comparison> {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes, steps, contact, disorder \
                            (`references/rubber_rings`)";
@@ -141,7 +141,7 @@ fn card(accuracy: &Accuracy) -> Card {
     }
 }
 
-/// The best variant and the paper's, with the reference of the law of the best.
+/// The recommended variant and the paper's, with the reference of the law of the recommended.
 fn histories(tier: Tier) -> Curves {
     let (table, settings) = (table(tier), RingSettings::default());
     let exact = Reference::of(LAGRANGIAN, &settings);
@@ -160,9 +160,9 @@ fn histories(tier: Tier) -> Curves {
         id: "rubber-rings-histories".into(),
         title: "Histories over finite elements".into(),
         caption: "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
-                  the width along and height across the line of flight. Coloured: the best variant and the \
-                  paper's. Black: finite elements with the law of the best, from which those with the law of \
-                  the paper differ little; their uncertainty is less than the width of the line."
+                  the width along and height across the line of flight. Coloured: the recommended variant and \
+                  the paper's. Black: finite elements with the law of the recommended variant, from which \
+                  those with the law of the paper differ little; their uncertainty is less than the width of the line."
             .into(),
         panels: labels.into_iter().enumerate().map(panel).collect(),
     }

@@ -111,7 +111,7 @@ fn variants() -> Compositions<RingSettings> {
 pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     name: "rubber_rings",
     problem: "Two rubber rings collide and bounce",
-    best: Best {
+    recommended: Recommended {
         variant: LAGRANGIAN,
         because: "with ten layers its centre, width and height over time are 0.6 % of the diameter away \
                   from finite elements, those of `leapfrog` 8.8 %; with twenty 0.14 %, those of `seed` 5.9 %",

@@ -58,7 +58,7 @@ fn find(name: &str) -> Result<&'static dyn Case, String> {
 /// Does the first of these variants have these settings, the first of several values each?
 fn check_run(name: &str, variant: Option<&String>, set: &[String]) -> Result<(), String> {
     let case = find(name)?;
-    let variant = variant.map_or(case.best().variant, String::as_str);
+    let variant = variant.map_or(case.recommended().variant, String::as_str);
     let first = |set: &String| set.split(',').next().unwrap_or_default().to_string();
     let set: Vec<String> = set.iter().map(first).collect();
     case::spec(case, variant, &set).map(|_| ()).map_err(|error| error.to_string())

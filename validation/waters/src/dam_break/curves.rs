@@ -8,8 +8,8 @@ use super::{
     *,
 };
 
-/// A panel over time until an end, of the judged runs of the best variant and of the paper's: names of the
-/// axes, curves of runs, those measured and (without a name) by volume of fluid.
+/// A panel over time until an end, of the judged runs of the recommended variant and of the paper's: names of
+/// the axes, curves of runs, those measured and (without a name) by volume of fluid.
 fn panel(
     (tier, group): (Tier, Group),
     title: &str,

@@ -21,7 +21,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         picture: ("dam-break-picture", 0),
         error: "front after its best shift in time, rms in column widths".into(),
         metric: FRONT.rms_shifted.into(),
-        runs: accuracy.finest(&[DAM_BREAK.best.variant, "seed"]),
+        runs: accuracy.finest(&[DAM_BREAK.recommended.variant, "seed"]),
         against: "the experiment of Martin & Moyce",
         uncertainty: Some(FRONT_SPREAD),
         reach: ("n", "", " spacings across the column"),

@@ -94,7 +94,7 @@ fn variants() -> Compositions<DamSettings> {
                  stress, predictor-corrector";
     let ghosts = "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \
                   it, with its own velocity";
-    let best = "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
+    let modern_is = "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
                 extrapolate the pressure, not below 0, so that they cannot suck, little artificial \
                 viscosity, and none between water and walls, so that water slips";
     let slip = "the seed with ghosts that keep the velocity along the wall: is the opposite velocity what \
@@ -104,7 +104,7 @@ fn variants() -> Compositions<DamSettings> {
     Variants::of(run::run, |m, s| Ok(Dam::new(s, m, &Context::of_rules())?.rules))
         .with("seed", paper, water::seed(), seed)
         .with("ghosts", ghosts, water::ghosts(), seed)
-        .with("modern", best, water::modern(), modern)
+        .with("modern", modern_is, water::modern(), modern)
         .with("ghosts-slip", slip, water::slip_ghosts(), seed)
         .with("modern-sticking", sticking, water::sticking(), modern)
         .all
@@ -114,7 +114,7 @@ fn variants() -> Compositions<DamSettings> {
 pub static DAM_BREAK: Composed<DamSettings> = Composed {
     name: NAME,
     problem: "A column of water collapses on a dry floor",
-    best: Best {
+    recommended: Recommended {
         variant: "modern",
         because: "with 20 spacings a column width its front is 0.05 a from that of volume of fluid, \
                   the paper's 0.28 a",
