@@ -1,6 +1,7 @@
 //! Output files, each either complete or absent.
 //!
-//! A file is written under a temporary name in the folder of its final place, and renamed when complete.
+//! A file is written under a temporary name in the folder of its final place, and renamed when complete. What
+//! is no regular file, such as a device, a pipe or a link, is never replaced.
 //! Temporary names are random, so they do not collide with those of another process or with files left by an
 //! earlier one. They are registered, so that the handler of an interrupt can call
 //! [`remove_unfinished`] before the process ends. Temporary files left by a process that was killed are
@@ -19,7 +20,7 @@
 use std::collections::BTreeSet;
 use std::fs::{self, File, OpenOptions};
 use std::hash::{BuildHasher, Hasher, RandomState};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, SystemTime};
@@ -87,13 +88,27 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     fs::read(path)
 }
 
-/// Reads a text of at most so many bytes from a regular file.
+/// Reads a text of at most so many bytes from a regular file. Some files of the system state no length, and
+/// others grow, so that the bytes read are counted as well.
 ///
 /// # Errors
 /// Those of the system; or if it is no regular file, larger, or no UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     check_regular(path, most)?;
-    fs::read_to_string(path)
+    text_of(File::open(path)?, most)
+}
+
+/// Reads a text of at most so many bytes.
+///
+/// # Errors
+/// Those of the system; or if there are more bytes, or they are no UTF-8.
+pub fn text_of(from: impl Read, most: u64) -> io::Result<String> {
+    let mut text = String::new();
+    if from.take(most + 1).read_to_string(&mut text)? as u64 > most {
+        let words = format!("it has more than {most} bytes");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, words));
+    }
+    Ok(text)
 }
 
 /// Refuses what is no regular file, or has more than so many bytes.
@@ -183,18 +198,82 @@ impl Drop for Temporary {
 }
 
 /// Writes a file so that `path` holds either its old content or all of `bytes`, at any moment.
+fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let (temporary, mut file) = Temporary::beside(path)?;
+    file.write_all(bytes)?;
+    file.sync_all()?;
+    temporary.persist(path)?;
+    if let Some(Ok(folder)) = path.parent().map(File::open) {
+        let _ = folder.sync_all(); // makes the rename last; not every system can
+    }
+    Ok(())
+}
+
+/// Writes a file that the user named, so that it holds either its old content or all of `bytes`, at any
+/// moment. A link is followed to the file that it leads to. A device or a pipe is written into: a file in its
+/// place would take it from every other program.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let write = || -> io::Result<()> {
-        let (temporary, mut file) = Temporary::beside(path)?;
-        file.write_all(bytes)?;
-        file.sync_all()?;
-        temporary.persist(path)?;
-        if let Some(Ok(folder)) = path.parent().map(File::open) {
-            let _ = folder.sync_all(); // makes the rename last; not every system can
+    let write = || match fs::metadata(path) {
+        Err(_) if path.is_symlink() => Err(io::Error::other("it is a link that leads nowhere")),
+        Err(_) => replace(path, bytes),
+        Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(found) if found.is_file() && !is_opened(path) => {
+            replace(&fs::canonicalize(path)?, bytes)
         }
-        Ok(())
+        Ok(found) => write_into(path, &found, bytes),
     };
     write().map_err(|reason| FileError::File { path: path.into(), reason })
+}
+
+/// Does the path lead to what a process has opened, as `/dev/stdout` does? A file behind it is the business of
+/// whoever opened it.
+fn is_opened(path: &Path) -> bool {
+    let mut path = path.to_path_buf();
+    while let Ok(target) = fs::read_link(&path) {
+        let above = path.parent().filter(|above| !above.as_os_str().is_empty());
+        let Ok(above) = fs::canonicalize(above.unwrap_or(Path::new("."))) else { return false };
+        if above.starts_with("/proc") {
+            return true;
+        }
+        path = above.join(target); // not in a circle, for the path leads to something
+    }
+    false
+}
+
+/// Writes to the end of what is no regular file.
+fn write_into(path: &Path, found: &fs::Metadata, bytes: &[u8]) -> io::Result<()> {
+    let _listening = read_by_somebody(path, found)?;
+    OpenOptions::new().append(true).open(path)?.write_all(bytes)
+}
+
+/// Opens a pipe if somebody reads it: one that nobody reads would be waited for without end.
+#[cfg(unix)]
+fn read_by_somebody(path: &Path, found: &fs::Metadata) -> io::Result<Option<File>> {
+    use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+    /// `O_NONBLOCK`: to open a pipe without a reader is then an error.
+    const AT_ONCE: i32 = if cfg!(target_os = "linux") { 0o4000 } else { 4 };
+    if !found.file_type().is_fifo() {
+        return Ok(None);
+    }
+    let opened = OpenOptions::new().append(true).custom_flags(AT_ONCE).open(path);
+    let unread = |_| io::Error::other("it is a pipe that nobody reads");
+    opened.map(Some).map_err(unread)
+}
+
+#[cfg(not(unix))]
+fn read_by_somebody(_: &Path, _: &fs::Metadata) -> io::Result<Option<File>> {
+    Ok(None)
+}
+
+/// Refuses what is there and is no regular file: inside a folder for output, a link leads out of it.
+fn check_replaceable(path: &Path) -> io::Result<()> {
+    match path.symlink_metadata() {
+        Ok(found) if !(found.is_file() || found.is_dir()) => {
+            let kind = if found.is_symlink() { "a link" } else { "no regular file" };
+            Err(io::Error::other(format!("there is {kind} of this name; remove it")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Writes a probe into a folder, which is removed again.
@@ -221,6 +300,13 @@ impl OutputFolder {
         Ok(Self::unchecked(path))
     }
 
+    /// As [`OutputFolder::create`], of a folder inside another one, from which a link would lead out.
+    pub fn create_inside(path: &Path) -> Result<Self, FileError> {
+        check_replaceable(path)
+            .map_err(|reason| FileError::Folder { path: path.into(), reason })?;
+        Self::create(path)
+    }
+
     /// The folder at a path, without a look at it.
     pub fn unchecked(path: &Path) -> Self {
         OutputFolder { path: path.into() }
@@ -240,7 +326,8 @@ impl OutputFolder {
         &self.path
     }
 
-    /// Writes one file atomically; `name` may contain folders below this one, and cannot lead out of it.
+    /// Writes one file atomically; `name` may contain folders below this one, and cannot lead out of it. No
+    /// link, device or pipe is followed or replaced.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, FileError> {
         let path = self.path.join(name);
         if !Path::new(name).components().all(|part| matches!(part, Component::Normal(_))) {
@@ -248,11 +335,17 @@ impl OutputFolder {
                 io::Error::new(io::ErrorKind::InvalidInput, "its name leads out of its folder");
             return Err(FileError::File { path, reason });
         }
+        let mut inside = self.path.clone();
+        for part in Path::new(name).components() {
+            inside.push(part);
+            check_replaceable(&inside)
+                .map_err(|reason| FileError::File { path: inside.clone(), reason })?;
+        }
         if let Some(parent) = path.parent() {
             let refused = |reason| FileError::Folder { path: parent.into(), reason };
             fs::create_dir_all(parent).map_err(refused)?;
         }
-        write_atomically(&path, bytes)?;
+        replace(&path, bytes).map_err(|reason| FileError::File { path: path.clone(), reason })?;
         Ok(path)
     }
 }
@@ -351,6 +444,66 @@ mod tests {
         assert_eq!(read_text(&text, 4).unwrap(), "four");
         fs::write(&text, "fiver").unwrap();
         assert!(refused(&text).contains("5 bytes; allowed are at most 4"), "{}", refused(&text));
+    }
+
+    /// As root, `--junit /dev/stdout` took the device from every program of a container.
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed_and_pipes_are_written_into() {
+        use std::os::unix::fs::{FileTypeExt, symlink};
+        let _turn = turn();
+        let folder = tempfile::tempdir().unwrap();
+        let [target, link, lost, pipe] =
+            ["target", "link", "lost", "pipe"].map(|name| folder.path().join(name));
+        fs::write(&target, "old").unwrap();
+        symlink("target", &link).unwrap();
+        write_atomically(&link, b"new").unwrap();
+        assert!(link.is_symlink() && fs::read(&target).unwrap() == b"new");
+        symlink("nothing", &lost).unwrap();
+        let error = write_atomically(&lost, b"new").unwrap_err().to_string();
+        assert!(error.contains("a link that leads nowhere"), "{error}");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let error = write_atomically(&pipe, b"new").unwrap_err().to_string();
+        assert!(error.contains("a pipe that nobody reads"), "{error}");
+        let reader = std::thread::spawn({
+            let pipe = pipe.clone();
+            move || fs::read(pipe).unwrap()
+        });
+        let many = vec![b'x'; 1 << 20]; // more than a pipe holds
+        while write_atomically(&pipe, &many).is_err() {
+            std::thread::yield_now(); // until the reader has opened it
+        }
+        assert!(reader.join().unwrap() == many);
+        assert!(pipe.symlink_metadata().unwrap().file_type().is_fifo());
+        assert_eq!(names(folder.path()), ["link", "lost", "pipe", "target"]);
+    }
+
+    /// In a folder, such as a store that was unpacked from an archive, a link led to any file of the user.
+    #[cfg(unix)]
+    #[test]
+    fn inside_a_folder_nothing_but_regular_files_is_written() {
+        use std::os::unix::fs::symlink;
+        let _turn = turn();
+        let above = tempfile::tempdir().unwrap();
+        fs::write(above.path().join("precious"), "mine").unwrap();
+        fs::create_dir(above.path().join("other")).unwrap();
+        let folder = OutputFolder::create(&above.path().join("folder")).unwrap();
+        let inside = |name: &str| folder.path().join(name);
+        symlink("../precious", inside("link")).unwrap();
+        symlink("../new", inside("lost")).unwrap();
+        symlink("../other", inside("figures")).unwrap();
+        assert!(
+            std::process::Command::new("mkfifo").arg(inside("pipe")).status().unwrap().success()
+        );
+        for name in ["link", "lost", "figures", "figures/a.png", "pipe"] {
+            let error = folder.write(name, b"x").expect_err(name).to_string();
+            assert!(error.contains("of this name; remove it"), "{name}: {error}");
+        }
+        assert!(OutputFolder::create_inside(&inside("figures")).is_err());
+        assert_eq!(names(folder.path()), ["figures", "link", "lost", "pipe"]);
+        assert_eq!(names(above.path()), ["folder", "other", "precious"]);
+        assert_eq!(fs::read(above.path().join("precious")).unwrap(), b"mine");
+        assert!(names(&above.path().join("other")).is_empty());
     }
 
     #[test]

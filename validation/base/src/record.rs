@@ -28,6 +28,7 @@ use crate::manifest::Manifest;
 use crate::reference::sha256;
 use crate::settings::{self, Settings};
 use crate::spec::{Measure, RunSpec, is_default};
+use crate::text::unseen;
 
 /// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
@@ -50,6 +51,14 @@ pub enum RecordError {
     /// The document is not as it was written.
     #[error("the record does not have the digest that it states: it was damaged or changed")]
     Damaged,
+    /// A text has a character that nobody sees.
+    #[error("{path} of the record has {what}")]
+    Unseen {
+        /// where it is
+        path: String,
+        /// the character
+        what: String,
+    },
     /// Somewhere there is a `null`, which says neither what is missing nor why.
     #[error("{path} of the record is null; omit the key or give a value")]
     Null {
@@ -514,9 +523,7 @@ impl Record {
     /// The document, indented, with its digest and a newline at its end.
     pub fn to_json(&self) -> Result<String, RecordError> {
         let text = serde_json::to_string_pretty(self)?;
-        if let Some(path) = find_null(&serde_json::from_str(&text)?) {
-            return Err(RecordError::Null { path });
-        }
+        check(&serde_json::from_str(&text)?)?;
         Ok(sealed(&(text + "\n")))
     }
 
@@ -528,22 +535,33 @@ impl Record {
             schema => return Err(RecordError::Schema { found: schema.to_string() }),
         }
         let document = unsealed(text).ok_or(RecordError::Damaged)?;
-        if let Some(path) = find_null(&value) {
-            return Err(RecordError::Null { path });
-        }
+        check(&value)?;
         Ok(serde_json::from_str(&document)?) // from the text again: errors then name line and column
     }
 }
 
-/// The path of the first `null`.
-fn find_null(value: &Value) -> Option<String> {
-    let below = |key: String, child| find_null(child).map(|path| format!("/{key}{path}"));
+/// Refuses a `null`, and a text that a page or a terminal would not show as it is.
+fn check(document: &Value) -> Result<(), RecordError> {
+    let Some((path, unseen)) = flaw(document) else { return Ok(()) };
+    Err(unseen.map_or(RecordError::Null { path: path.clone() }, |what| RecordError::Unseen {
+        path,
+        what,
+    }))
+}
+
+/// The path of the first flaw, and the character that nobody sees if it is none of a `null`.
+fn flaw(value: &Value) -> Option<(String, Option<String>)> {
+    let below = |key: &str, child| flaw(child).map(|(path, what)| (format!("/{key}{path}"), what));
+    let unseen = |text: &str| unseen(text).map(|what| (String::new(), Some(what)));
     match value {
-        Value::Null => Some(String::new()),
+        Value::Null => Some((String::new(), None)),
+        Value::String(text) => unseen(text),
         Value::Array(items) => {
-            items.iter().enumerate().find_map(|(index, item)| below(index.to_string(), item))
+            items.iter().enumerate().find_map(|(index, item)| below(&index.to_string(), item))
         }
-        Value::Object(map) => map.iter().find_map(|(key, item)| below(key.clone(), item)),
+        Value::Object(map) => {
+            map.iter().find_map(|(key, item)| unseen(key).or_else(|| below(key, item)))
+        }
         _ => None,
     }
 }
@@ -618,6 +636,23 @@ mod tests {
         for status in [Status::Completed, diverged, refused, Status::Interrupted { step, time }] {
             let record = Record { status, ..record() };
             assert_eq!(Record::from_json(&record.to_json().unwrap()).unwrap(), record);
+        }
+    }
+
+    /// Whoever changes a record can make its digest anew: U+FFFE in it ended every later report.
+    #[test]
+    fn a_text_with_a_character_that_nobody_sees_is_refused() {
+        let text = record().to_json().unwrap();
+        let document = unsealed(&text).unwrap();
+        for (escape, number) in [("\\ufffe", "U+FFFE"), ("\u{202e}", "U+202E"), ("\\n", "U+000A")] {
+            for (from, to) in [
+                ("\"quintic\"", format!("\"quin{escape}tic\"")),
+                ("\"dt\"", format!("\"d{escape}t\"")),
+            ] {
+                let forged = sealed(&document.replacen(from, &to, 1));
+                let error = Record::from_json(&forged).expect_err(&to).to_string();
+                assert!(error.contains("/numerics") && error.contains(number), "{error}");
+            }
         }
     }
 
@@ -704,7 +739,9 @@ mod tests {
         for name in ["x/../../EVIL", "..", "", "a b", "\\u001b[2J"] {
             let path = changed(&text, "\"seed\"", &format!("\"{name}\""));
             let error = Record::from_json(&path).unwrap_err().to_string();
-            assert!(error.contains("letters, digits, - and _"), "{name:?}: {error}");
+            let is_told =
+                ["letters, digits, - and _", "U+001B"].iter().any(|of| error.contains(of));
+            assert!(is_told, "{name:?}: {error}");
         }
     }
 

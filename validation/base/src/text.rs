@@ -5,6 +5,25 @@ pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
+/// The first character that nobody sees or that XML lacks, with its number: one of control or of the direction
+/// of writing, or one without width. It could make two names look the same, or hide what a line says.
+pub fn unseen(text: &str) -> Option<String> {
+    let is_unseen = |char: char| match char {
+        ' '..='~' => false,
+        '\u{2028}' | '\u{2029}' => true,
+        _ if char.is_whitespace() => char.is_control(),
+        '\u{34f}' | '\u{115f}' | '\u{1160}' | '\u{17b4}' | '\u{17b5}' | '\u{180b}'..='\u{180f}' => {
+            true
+        }
+        '\u{2800}' | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{ffa0}' => true,
+        '\u{e0000}'..='\u{e0fff}' => true,
+        // Behind a letter, marks such as accents are not escaped, and what cannot be printed is.
+        _ => ['a', char].iter().collect::<String>().escape_debug().count() > 2,
+    };
+    let found = text.chars().find(|char| is_unseen(*char))?;
+    Some(format!("the character U+{:04X}, which nobody sees", u32::from(found)))
+}
+
 /// Base64 with padding (RFC 4648, section 4).
 pub fn base64(bytes: &[u8]) -> String {
     const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -46,6 +65,21 @@ pub fn from_base64(text: &str) -> Option<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// U+FFFE made every later report of a store end with 4, and U+202E turned a line of the terminal.
+    #[test]
+    fn characters_that_nobody_sees_are_found() {
+        let unseen_ones = "\u{0}\u{1b}\n\t\u{7f}\u{85}\u{ad}\u{61c}\u{115f}\u{180e}\u{200b}\u{200d}\u{200e}\
+             \u{2028}\u{202e}\u{2060}\u{2066}\u{2800}\u{3164}\u{fe0f}\u{feff}\u{fff9}\u{fdd0}\u{fffe}\u{ffff}\
+             \u{1fffe}\u{e0041}\u{e0100}\u{10ffff}\u{e000}";
+        for char in unseen_ones.chars() {
+            let found = unseen(&format!("SPH{char}flow")).unwrap_or_default();
+            let number = format!("U+{:04X},", u32::from(char));
+            assert!(found.contains(&number), "{number} {found}");
+        }
+        let names = "PySPH [1.0] \"δ-SPH\" \\ it's Müller, Mu\u{308}ller, 光滑粒子, 4\u{a0}GB, 3·10⁻⁴ ² |a|";
+        assert_eq!(unseen(names), None);
+    }
 
     #[test]
     fn base64_agrees_with_the_vectors_of_rfc_4648() {

@@ -16,7 +16,8 @@ use harness::{
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use report::{
-    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, counted,
+    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, code, counted,
+    plain,
 };
 
 use crate::{cases, limitations, stiffness, time};
@@ -104,8 +105,10 @@ fn provenance(made_by: &Manifest) -> String {
     let cores = counted(made_by.cores, "core", "cores");
     let threads = counted(made_by.threads, "thread", "threads");
     format!(
-        "Made by touchstone {touchstone} at {state} ({profile} build, {rustc}) on {cpu}, \
-         {cores}, {threads}."
+        "Made by touchstone {touchstone} at {state} ({profile} build, {}) on {}, \
+         {cores}, {threads}.",
+        plain(rustc),
+        plain(cpu)
     )
 }
 
@@ -128,7 +131,7 @@ fn verdicts(suite: &Suite) -> Section {
     let gates = Columns::<Row>::default()
         .with(Column::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
         .text("gate", |row| row.of.judged.gate.id.clone())
-        .text("run or study", judged_on)
+        .marked("run or study", judged_on)
         .num(["value", ""], move |row| value(row.of.judged.judgement.value))
         .text("bound", |row| row.of.judged.gate.bounds())
         .num(["margin", ""], move |row| margin(row.of.judged.judgement.margin))
@@ -172,7 +175,8 @@ fn judged_on(row: &Row) -> String {
     match row.of.of {
         Of::Run(run) => {
             let spec = &run.planned.spec;
-            format!("`{}` {}", spec.variant, what(row.of.case, spec)).trim_end().to_string()
+            let set = plain(&what(row.of.case, spec));
+            format!("{} {set}", code(&spec.variant)).trim_end().to_string()
         }
         Of::Study(study) => format!("[{}](#{})", study.title, anchor(study)),
     }
@@ -246,7 +250,7 @@ pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
 
 fn references_section() -> Section {
     let row = |name: &str| {
-        let cell = Cell::text(format!("`{name}`"));
+        let cell = Cell::marked(code(name));
         let (cell, texts) = match Reference::load(name) {
             Ok(reference) => {
                 let package = &reference.package;

@@ -9,6 +9,7 @@ use base::{
     reference::sha256,
     spec::{Measure, RunSpec},
     submission::{Division, Submission},
+    text::unseen,
 };
 use harness::{
     case::{Case, RunError, Tier},
@@ -198,11 +199,13 @@ fn crowded(frame: &Frame, support: f64) -> Option<String> {
 /// What is wrong with a text that reports and records show in one line.
 fn unnamed(file: &str, field: &str, text: &str) -> Option<Flaw> {
     let is_name = !text.trim().is_empty() && text.chars().count() <= 100;
-    if is_name && !text.chars().any(char::is_control) {
+    let unseen = unseen(text);
+    if is_name && unseen.is_none() {
         return None;
     }
     let shown: String = text.chars().take(100).collect();
-    let what = format!("it is {shown:?}; expected 1 to 100 characters, none of them of control");
+    let has = unseen.map_or(String::new(), |what| format!(" and has {what}"));
+    let what = format!("it is {shown:?}{has}; expected 1 to 100 characters that are seen");
     Some(Flaw::of(file, what).in_column(field))
 }
 

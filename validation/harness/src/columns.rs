@@ -2,7 +2,7 @@
 
 use std::borrow::Borrow;
 
-use report::{Cell, Column, Table};
+use report::{Cell, Column, Table, code};
 
 /// What a column shows of an item.
 type Shown<'a, T> = dyn Fn(&T) -> Cell + 'a;
@@ -28,16 +28,22 @@ impl<'a, T> Columns<'a, T> {
         self
     }
 
-    /// One more column, of text.
+    /// One more column, of plain text.
     #[must_use]
     pub fn text<S: Into<String>>(self, head: &str, text: impl Fn(&T) -> S + 'a) -> Self {
         self.with(Column::text(head), move |item| Cell::text(text(item)))
     }
 
+    /// One more column, of text of ours with inline markup.
+    #[must_use]
+    pub fn marked(self, head: &str, text: impl Fn(&T) -> String + 'a) -> Self {
+        self.with(Column::text(head), move |item| Cell::marked(text(item)))
+    }
+
     /// One more column, of names as they are written in a command.
     #[must_use]
     pub fn code<S: std::fmt::Display>(self, head: &str, name: impl Fn(&T) -> S + 'a) -> Self {
-        self.text(head, move |item| format!("`{}`", name(item)))
+        self.marked(head, move |item| code(&name(item).to_string()))
     }
 
     /// One more column, of numbers in a unit.

@@ -35,7 +35,7 @@ impl<'a> Frames<'a> {
         end: f64,
         pressure: &'a dyn Fn(f64) -> f64,
     ) -> Result<Self, FileError> {
-        let folder = OutputFolder::create(folder)?;
+        let folder = OutputFolder::create_inside(folder)?;
         Ok(Self { folder, pressure, end, count: (*count).max(1), written: Vec::new(), come: 0 })
     }
 

@@ -5,13 +5,14 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 
 use base::{
     files::{self, FileError, OutputFolder},
     lock,
     record::{Record, Status},
     spec::RunSpec,
+    submission::SESSION,
 };
 
 /// A folder of records.
@@ -56,9 +57,13 @@ pub struct Begun<'a> {
 }
 
 impl Begun<'_> {
+    /// Makes the file anew: through a link one would empty what that leads to, and wait at a pipe.
     fn sign(&self) {
-        let file = File::create(self.folder.path().join(&self.name));
-        let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
+        let path = self.folder.path().join(&self.name);
+        if path.symlink_metadata().is_ok_and(|found| found.is_file()) {
+            let _ = fs::remove_file(&path);
+        }
+        let _ = File::create_new(path);
     }
 
     /// A sign of life, if the last one was long ago.
@@ -74,7 +79,7 @@ impl Begun<'_> {
     pub fn end(self, failed: Option<&str>) {
         let _ = match failed {
             Some(why) => self.folder.write(&self.name, why.as_bytes()).map(drop).ok(),
-            None => fs::remove_file(self.folder.path().join(&self.name)).ok(),
+            None => fs::remove_file(self.folder.path().join(&self.name)).ok(), // of a link, the link
         };
     }
 }
@@ -108,7 +113,8 @@ impl Store {
     pub fn submissions(&self, case: &str) -> Vec<Result<Record, FileError>> {
         let begin = format!("{SUBMITTED}{case}-");
         let of_its_name = |path: PathBuf| {
-            let record = read(path.clone())?;
+            let mut record = read(path.clone())?;
+            record.numerics.remove(SESSION); // of the records that the program contains alone
             let expected = Self::name(&record.spec());
             if path.ends_with(&expected) {
                 return Ok(record);
@@ -162,11 +168,17 @@ impl Store {
     /// Why there is no record of a run.
     pub fn pending(&self, spec: &RunSpec) -> Pending {
         let path = self.path().join(format!("{BEGUN}{}", Self::name(spec)));
-        let Ok(text) = files::read_text(&path, MOST_REASON) else { return Pending::Missing };
-        let modified = fs::metadata(&path).and_then(|file| file.modified());
-        let age = modified.map(|time| time.elapsed().unwrap_or_default()); // another clock may be ahead
+        let found = path.symlink_metadata().ok().filter(|found| found.is_file());
+        let text = found.as_ref().and_then(|_| files::read_text(&path, MOST_REASON).ok());
+        let (Some(found), Some(text)) = (found, text) else { return Pending::Missing };
+        // The clock of another machine may be ahead a little.
+        let age =
+            found.modified().map(|time| time.elapsed().unwrap_or_else(|ahead| ahead.duration()));
         match age {
-            _ if !text.is_empty() => Pending::Failed(text),
+            // In one line: it could look like other lines of the list that it is shown in.
+            _ if !text.is_empty() => {
+                Pending::Failed(text.split_whitespace().collect::<Vec<_>>().join(" "))
+            }
             Ok(age) if age < DEAD_AFTER => Pending::Running,
             _ => Pending::Stopped,
         }
@@ -206,6 +218,7 @@ mod tests {
     use base::mutation::{Constant, Detect, Mutation};
     use base::record::MetricKey;
     use serde_json::json;
+    use std::time::SystemTime;
 
     use super::*;
 
@@ -272,17 +285,50 @@ mod tests {
         let begun = store.begin(&spec);
         assert_eq!(store.pending(&spec), Pending::Running);
         assert!(Store::all(store.path()).unwrap().is_empty(), "it is no record");
-        let file = File::options().write(true).open(folder.path().join(&begun.name)).unwrap();
-        file.set_modified(SystemTime::now() - 2 * DEAD_AFTER).unwrap();
-        assert_eq!(store.pending(&spec), Pending::Stopped);
+        let now = SystemTime::now();
+        for time in [now - 2 * DEAD_AFTER, now + 2 * DEAD_AFTER] {
+            let file = File::options().write(true).open(folder.path().join(&begun.name)).unwrap();
+            file.set_modified(time).unwrap();
+            assert_eq!(store.pending(&spec), Pending::Stopped, "a clock was set back");
+        }
         *begun.last.lock().unwrap() -= SIGN_EVERY;
         begun.beat();
         assert_eq!(store.pending(&spec), Pending::Running, "it gave a sign of life");
-        begun.end(Some("the disk is full"));
+        begun.end(Some("the disk\n is full"));
         assert_eq!(store.pending(&spec), Pending::Failed("the disk is full".into()));
         store.begin(&spec).end(None);
         assert_eq!(store.pending(&spec), Pending::Missing);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    /// A link of that name in a store emptied the file that it led to, and a pipe was waited for.
+    #[cfg(unix)]
+    #[test]
+    fn a_sign_of_life_is_never_written_through_a_link_or_a_pipe() {
+        let above = tempfile::tempdir().unwrap();
+        let store = Store::open(&above.path().join("store")).unwrap();
+        let spec = record(Status::Completed).spec();
+        let sign = store.path().join(format!("{BEGUN}{}", Store::name(&spec)));
+        let victim = above.path().join("victim");
+        let make: [&dyn Fn(); 3] = [
+            &|| std::os::unix::fs::symlink(&victim, &sign).unwrap(), // to nothing at first
+            &|| {
+                fs::write(&victim, "precious").unwrap();
+                std::os::unix::fs::symlink(&victim, &sign).unwrap();
+            },
+            &|| {
+                assert!(std::process::Command::new("mkfifo").arg(&sign).status().unwrap().success())
+            },
+        ];
+        for (k, make) in make.into_iter().enumerate() {
+            make();
+            let begun = store.begin(&spec);
+            assert_eq!(store.pending(&spec), Pending::Missing, "{k}: nobody signed");
+            begun.end(Some("a reason"));
+            assert_eq!(fs::read_to_string(&victim).unwrap_or_default(), ["", "precious"][k.min(1)]);
+            fs::remove_file(&sign).unwrap();
+        }
+        assert!(fs::exists(&victim).unwrap());
     }
 
     #[test]

@@ -63,18 +63,30 @@ fn name<'a>(node: &Node<'a, '_>) -> &'a str {
 /// A page loads nothing, and links to nothing but parts of itself, files beside it, and papers.
 fn check_attribute(element: &Node, attribute: &Attribute) -> Result<(), String> {
     let (tag, value) = (name(element), attribute.value());
-    let remote = value.contains("://") || value.starts_with("//");
     match attribute.name() {
-        "href" if tag == "a" && remote && !value.starts_with("https://doi.org/") => {
-            Err(format!("a link to {value}"))
+        "href" if tag == "a" => {
+            match leads_beside(value) || value.starts_with("https://doi.org/") {
+                true => Ok(()),
+                false => Err(format!("a link to {value}")),
+            }
         }
-        "href" if tag == "a" => Ok(()),
+        name if name.starts_with("on") || name == "http-equiv" => {
+            Err(format!("<{tag}> does something by itself: {name}"))
+        }
         "src" | "href" | "srcset" | "data" | "action" | "poster" if !value.starts_with("data:") => {
             Err(format!("<{tag}> loads {value}"))
         }
         "style" if loads(value) => Err(format!("<{tag}> loads {value}")),
         _ => Ok(()),
     }
+}
+
+/// Does a link lead to a part of the page, or to a file beside it or below? Names without a colon have no
+/// scheme, such as `javascript:`.
+fn leads_beside(target: &str) -> bool {
+    let is_odd = |c: char| c == ':' || c == '\\' || c.is_whitespace() || c.is_control();
+    let is_file = !target.is_empty() && !target.contains(is_odd) && !target.starts_with('/');
+    target.starts_with('#') || is_file && target.split('/').all(|part| part != "..")
 }
 
 fn check_figure(figure: &Node, number: usize) -> Result<(), String> {
@@ -121,7 +133,7 @@ mod tests {
         let plot = Plot::new("p < q & r", Axis::linear("x [m]"), Axis::log("y [\"1\"]"))
             .layer(Series::line("<&>", vec![(0.0, 1.0), (1.0, 2.0)]).cycle(2));
         let table = Table::new("Errors", vec![Column::text("a"), Column::num("b", "m/s")])
-            .row(vec![Cell::text("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
+            .row(vec![Cell::marked("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
         let details = vec![table.clone().into()];
         let section = Section::new("one", "One & *two*")
             .prose("See [the figure](#fig) & more.")
@@ -209,7 +221,8 @@ mod tests {
     fn good_pages_pass() {
         let figure = "<figure id=\"f\"><svg><rect/><line/><text>a</text></svg>\
                       <figcaption><b>Figure 1. </b>What is seen.</figcaption></figure>\
-                      <a href=\"#f\">f</a> <a href=\"https://doi.org/10.1006/x\">x</a>";
+                      <a href=\"#f\">f</a> <a href=\"https://doi.org/10.1006/x\">x</a>\
+                      <a href=\"figures/f.png\">x</a>";
         check_page(&page(figure)).unwrap();
     }
 
@@ -223,6 +236,21 @@ mod tests {
             ("<img src=\"http://example.org/x.png\"/>", "loads"),
             ("<script src=\"x.js\"></script>", "loads"),
             ("<a href=\"https://example.org\">x</a>", "link"),
+            ("<a href=\"https://doi.org.evil.example/\">x</a>", "link"),
+            ("<a href=\"javascript:alert(1)\">x</a>", "link"),
+            ("<a href=\" javascript:alert(1)\">x</a>", "link"),
+            ("<a href=\"JavaScript&#58;alert(1)\">x</a>", "link"),
+            ("<a href=\"java&#10;script:alert(1)\">x</a>", "link"),
+            ("<a href=\"vbscript:x\">x</a>", "link"),
+            ("<a href=\"data:text/html,x\">x</a>", "link"),
+            ("<a href=\"../../evil.html\">x</a>", "link"),
+            ("<a href=\"figures/../../evil.html\">x</a>", "link"),
+            ("<a href=\"..\\evil.html\">x</a>", "link"),
+            ("<a href=\"/etc/passwd\">x</a>", "link"),
+            ("<a href=\"//example.org\">x</a>", "link"),
+            ("<a href=\"\">x</a>", "link"),
+            ("<p onclick=\"x()\">x</p>", "by itself"),
+            ("<meta http-equiv=\"refresh\"/>", "by itself"),
             ("<style>a { background: url(x.png) }</style>", "loads"),
             ("<figure><figcaption>A caption of length</figcaption></figure>", "shows nothing"),
             ("<figure><svg><rect/><rect/><line/></svg></figure>", "no caption"),

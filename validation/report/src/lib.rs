@@ -38,6 +38,7 @@ pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, VERDICTS, verdicts_where};
 pub use figure::{Dash, Dots, Figure, Layer, Look, Plot, Series, Shape};
+pub use inline::{code, plain};
 pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use page::{Block, Page, Section};
 pub use render::{png, svg};

@@ -9,7 +9,7 @@ use super::inline::inline;
 use super::pixels::drawing;
 use super::render;
 use super::table::{Table, class, first_sentence, mark};
-use base::{files, text::base64};
+use base::{files::OutputFolder, text::base64};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 use std::io;
@@ -175,21 +175,25 @@ impl Page {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.png_folder.is_empty() {
             // What a report that was killed left there goes, too.
-            let images = files::OutputFolder::create(&folder.join(&self.png_folder));
-            let images = images.map_err(io::Error::other)?;
-            write_images(&self.sections, images.path())?;
+            let images = OutputFolder::create_inside(&folder.join(&self.png_folder));
+            write_images(&self.sections, &images.map_err(io::Error::other)?)?;
         }
-        files::write_atomically(path, html.as_bytes()).map_err(io::Error::other)
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let written = OutputFolder::unchecked(folder).write(&name, html.as_bytes());
+        written.map(drop).map_err(io::Error::other)
     }
 }
 
 const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
 
 /// Writes the PNG files of the drawings of sections.
-fn write_images(sections: &[Section], folder: &Path) -> io::Result<()> {
+fn write_images(sections: &[Section], folder: &OutputFolder) -> io::Result<()> {
     let mut all = Vec::new();
     sections.iter().for_each(|section| section.figures(&mut all));
-    let write = |figure: &&Figure| render::png(figure, &folder.join(format!("{}.png", figure.id)));
+    let write = |figure: &&Figure| -> io::Result<()> {
+        let name = format!("{}.png", figure.id);
+        folder.write(&name, &render::png_bytes(figure)?).map(drop).map_err(io::Error::other)
+    };
     all.par_iter().try_for_each(write)
 }
 
@@ -313,7 +317,8 @@ mod tests {
         let section = Section::new("s", "S").prose("See [it](#empty).");
         let section = section.block(Figure::new("empty", "What is shown where there are runs"));
         let folder = tempfile::tempdir().unwrap();
-        write_images(std::slice::from_ref(&section), folder.path()).unwrap();
+        let images = OutputFolder::unchecked(folder.path());
+        write_images(std::slice::from_ref(&section), &images).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         let html = Page { sections: vec![section], ..Page::default() }.html();
         crate::check_page(&html).expect("a page that opens");

@@ -165,6 +165,11 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
 
 /// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
+    files::write_atomically(path, &png_bytes(figure)?).map_err(io::Error::other)
+}
+
+/// The bytes of that file.
+pub(super) fn png_bytes(figure: &Figure) -> io::Result<Vec<u8>> {
     let (pixels, width, height) = pixels(figure, DENSITY);
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
@@ -174,7 +179,7 @@ pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
     let mut writer = encoder.write_header()?;
     writer.write_image_data(&pixels)?;
     writer.finish()?;
-    files::write_atomically(path, &bytes).map_err(io::Error::other)
+    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -28,8 +28,10 @@ pub(super) fn mark(verdict: Verdict) -> &'static str {
 /// One cell: text, the value to sort by, a verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// Inline markup as in [`super::Block::Prose`].
+    /// Plain text, or inline markup as in [`super::Block::Prose`].
     pub text: String,
+    /// Is it inline markup?
+    pub is_marked: bool,
     /// Sorts the column; without it the text does.
     pub value: Option<f64>,
     /// Colours the cell.
@@ -37,9 +39,14 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Plain text.
+    /// Plain text, shown as it is.
     pub fn text(text: impl Into<String>) -> Self {
-        Self { text: text.into(), value: None, status: None }
+        Self { text: text.into(), is_marked: false, value: None, status: None }
+    }
+
+    /// Text of ours with inline markup.
+    pub fn marked(text: impl Into<String>) -> Self {
+        Self { is_marked: true, ..Self::text(text) }
     }
 
     /// The value as `show` has it; a dash where there is none.
@@ -88,7 +95,7 @@ impl Cell {
     }
 
     fn formatted(value: f64, text: String) -> Self {
-        Self { text, value: Some(value), status: None }
+        Self { value: Some(value), ..Self::text(text) }
     }
 
     pub(super) fn html(&self, numeric: bool) -> Markup {
@@ -99,7 +106,7 @@ impl Cell {
         let classes: Vec<&str> = number.into_iter().chain(self.status.map(class)).collect();
         html! {
             td class=[(!classes.is_empty()).then(|| classes.join(" "))] data-v=[value] {
-                (inline(&self.text))
+                @if self.is_marked { (inline(&self.text)) } @else { (self.text) }
             }
         }
     }

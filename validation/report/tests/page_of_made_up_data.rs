@@ -41,7 +41,7 @@ fn table() -> Table {
     let columns = vec![Column::text("gate"), Column::num("measured", "1"), Column::text("verdict")];
     let row = |k: usize, status| {
         vec![
-            Cell::text(format!("`gate{k}`")),
+            Cell::marked(format!("`gate{k}`")),
             Cell::sci(0.01, 2).with(status),
             Cell::status(status),
         ]
@@ -67,7 +67,7 @@ fn explorer() -> Explorer {
         vec![
             Cell::status(status),
             Cell::text(format!("{case}.gate{k}")),
-            Cell::text(format!("`seed` n={k}")),
+            Cell::marked(format!("`seed` n={k}")),
             Cell::num(k as f64, 2),
             Cell::text("at most 30"),
             Cell::percent(1.0 - k as f64 / 40.0, 2),

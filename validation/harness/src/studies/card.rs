@@ -4,7 +4,7 @@ use base::{
     record::{Record, Status},
     spec::RunSpec,
 };
-use report::{Block, Card, Counts, Figure, exact, percent, sci, seconds, sig};
+use report::{Block, Card, Counts, Figure, exact, percent, plain, sci, seconds, sig};
 
 use super::{limit, validation};
 use crate::{
@@ -50,7 +50,7 @@ fn result(card: &declare::Card, record: Option<&Record>) -> String {
     let Some(record) = record else { return "not run".into() };
     match headline(card, record) {
         Ok(error) => format!("**{error}** in {}", cost(record)),
-        Err(status) => status,
+        Err(status) => plain(&status),
     }
 }
 

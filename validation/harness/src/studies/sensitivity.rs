@@ -5,7 +5,7 @@ use base::{
     mutation::Constant,
     record::Record,
 };
-use report::Cell;
+use report::{Cell, code};
 
 use super::anchor;
 use crate::{
@@ -51,7 +51,7 @@ impl Row<'_> {
     fn gates(&self) -> String {
         let names = self.detected.and_then(|record| record.numerics.get(GATES));
         let names = names.and_then(|names| names.as_str()).unwrap_or_default();
-        names.split_whitespace().map(|id| format!("`{id}`")).collect::<Vec<_>>().join(" ")
+        names.split_whitespace().map(code).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -80,7 +80,7 @@ pub fn study(case: &str, sensitivity: &Sensitivity, runs: &Runs) -> Study {
         .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
         .num(["detected from", "-"], error)
         .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
-        .text("gates that detect it", Row::gates)
+        .marked("gates that detect it", Row::gates)
         .text("gates that detect a gross fault", faults)
         .text("why not smaller", |row| row.watched.blind.as_ref().map_or("", |blind| blind.why))
         .table(ABOUT, &rows);

@@ -1,7 +1,10 @@
 //! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
 
-use base::submission::{Division, OURS, SESSION, Submission};
-use report::{Axis, Cell, Colour, Figure, Plot, Series, percent, seconds};
+use base::{
+    record::Record,
+    submission::{Division, OURS, SESSION, Submission},
+};
+use report::{Axis, Cell, Colour, Figure, Plot, Series, percent, plain, seconds};
 
 use super::anchor;
 use crate::{
@@ -25,20 +28,32 @@ struct Mark<'a> {
     seconds: f64,
 }
 
+impl Mark<'_> {
+    /// Is it one of those that the program contains? Every code may call itself as it likes.
+    fn is_ours(&self) -> bool {
+        self.of.code == OURS && self.session.is_some()
+    }
+}
+
+/// The day on which a record that the program contains was made with others.
+fn session(record: &Record) -> Option<&str> {
+    record.numerics.get(SESSION)?.as_str()
+}
+
 /// The submissions that have an error of this study; of the same method with as many particles the fastest,
 /// for one that goes on for longer has no other error.
 fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.submission.as_ref()?);
         let name = match of.code.as_str() {
-            OURS => format!("ours, {}", record.variant),
+            OURS if session(record).is_some() => format!("ours, {}", record.variant),
             code => format!("{code}, {} ({})", of.scheme, record.variant),
         };
         Some(Mark {
             of,
             name,
             particles: record.cost.particles,
-            session: record.numerics.get(SESSION).and_then(|day| day.as_str()),
+            session: session(record),
             error: error_of(&accuracy.error, record)?,
             seconds: record.cost.cpu_s,
         })
@@ -58,7 +73,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
 /// Where another code is better than ours in the same session: in error with as many particles, or in time at
 /// no more error, whatever the resolution.
 fn better(marks: &[Mark]) -> Option<String> {
-    let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.of.code == OURS);
+    let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.is_ours());
     if ours.is_empty() || others.is_empty() {
         return None;
     }
@@ -70,7 +85,7 @@ fn better(marks: &[Mark]) -> Option<String> {
         let error = least(&mut equal.map(|own| own.error));
         let many = Some(peer.particles).filter(|many| *many > 0);
         let many = many.map_or(String::new(), |many| format!("{many} particles, "));
-        let who = format!("{} ({many}{})", peer.name, peer.of.division);
+        let who = format!("{} ({many}{})", plain(&peer.name), peer.of.division);
         if error.is_finite() && peer.error < error {
             let [its, best] = [peer.error, error].map(|error| percent(error, 2));
             found.push(format!("{who} has an error of {its}, the best of ours {best}"));
@@ -98,9 +113,9 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         .to_string();
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
-        let is_of = |mark: &&Mark| mark.of.division == division || mark.of.code == OURS;
+        let is_of = |mark: &&Mark| mark.of.division == division || mark.is_ours();
         let is_shown = |mark: &&Mark| mark.seconds.is_finite() && is_of(mark);
-        let has_others = marks.iter().filter(is_shown).any(|mark| mark.of.code != OURS);
+        let has_others = marks.iter().filter(is_shown).any(|mark| !mark.is_ours());
         let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
         let plot = Plot::new(format!("{division} division"), x, y);
         let series = |(k, all): (usize, &[Mark])| {
@@ -111,7 +126,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
                 particles => particles.to_string(),
             });
             let series = Series::line(&all[0].name, points).cycle(k).labels(labels);
-            if all[0].of.code == OURS { series.colour(Colour::BLACK) } else { series }
+            if all[0].is_ours() { series.colour(Colour::BLACK) } else { series }
         };
         let layers = marks.chunk_by(|a, b| a.name == b.name).enumerate().map(series);
         has_others.then(|| layers.fold(plot, Plot::layer))
@@ -122,8 +137,7 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
 
 /// Where and when the runs that the program contains were made.
 fn provenance(runs: &Runs) -> Option<String> {
-    let day = |run: &JudgedRun| run.record.numerics.get(SESSION)?.as_str().map(String::from);
-    let day = runs.submissions.iter().find_map(day)?;
+    let day = runs.submissions.iter().find_map(|run| session(&run.record))?;
     Some(format!(
         "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
          turn with ours, each on one thread while other programs were at work. Their seconds \
