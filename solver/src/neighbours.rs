@@ -92,7 +92,8 @@ impl Grid {
         let low = points.iter().fold(points[0], |a, p| a.inf(p)).map(|low| low - margin);
         let size = points.iter().fold(points[0], |a, p| a.sup(p)) - low;
         let most = (2 * points.len() + 16) as f64;
-        let mut cell = Vector2::repeat(size_of_cell);
+        // A cell of size 0 would stay so.
+        let mut cell = Vector2::repeat(size_of_cell.max(f64::MIN_POSITIVE));
         while (size.x / cell.x + 1.0) * (size.y / cell.y + 1.0) > most {
             // Coarsen along the axis with more cells: few particles far apart, or a long thin set.
             let axis = usize::from(size.y / cell.y > size.x / cell.x);

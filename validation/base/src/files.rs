@@ -84,8 +84,23 @@ fn remove_all(paths: &mut BTreeSet<PathBuf>) -> usize {
 /// # Errors
 /// Those of the system; or if it is no regular file.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
-    check_regular(path, u64::MAX)?;
-    fs::read(path)
+    read_at_most(path, u64::MAX)
+}
+
+/// Reads at most so many bytes of a regular file. A file may be longer than its size says: one that grows,
+/// and files of the system whose size is 0.
+///
+/// # Errors
+/// Those of the system; or if it is no regular file, or longer.
+pub fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    check_regular(path, most)?;
+    let mut bytes = Vec::new();
+    File::open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        let why = format!("it has more than {most} bytes");
+        return Err(io::Error::new(io::ErrorKind::InvalidData, why));
+    }
+    Ok(bytes)
 }
 
 /// Reads a text of at most so many bytes from a regular file. Some files of the system state no length, and
@@ -385,7 +400,6 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn a_reader_of_the_old_file_reads_all_of_it_while_it_is_replaced() {
-        use std::io::Read;
         let _turn = turn();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("record.json");

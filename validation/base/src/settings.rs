@@ -31,6 +31,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::text::short;
+
 /// What kind of value a setting takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -167,7 +169,7 @@ pub fn apply(settings: &mut dyn Values, texts: &[impl AsRef<str>]) -> Result<(),
     let applied = texts.iter().try_for_each(|text| {
         let text = text.as_ref();
         let Some((key, value)) = text.split_once('=') else {
-            return Err(SettingError(format!("{text:?} is not of the form key=value")));
+            return Err(SettingError(format!("{:?} is not of the form key=value", short(text))));
         };
         let (key, value) = (key.trim(), value.trim());
         set(settings, key, value)?;
@@ -201,7 +203,8 @@ pub fn of_json<S: Settings>(json: &serde_json::Value) -> Result<S, SettingError>
 /// The same, into settings that have any values, which missing keys keep; on error some of them are changed.
 pub fn read(settings: &mut dyn Values, json: &serde_json::Value) -> Result<(), SettingError> {
     let given = json.as_object().ok_or_else(|| {
-        SettingError(format!("settings are {json}; allowed is an object of settings by name"))
+        let found = short(&json.to_string());
+        SettingError(format!("settings are {found}; allowed is an object of settings by name"))
     })?;
     given.iter().try_for_each(|(key, value)| set(settings, key, &text(value)))
 }
@@ -217,7 +220,7 @@ pub fn text(json: &serde_json::Value) -> String {
 /// The error for a key that is not among the fields.
 pub fn unknown(fields: &'static [Field], key: &str) -> SettingError {
     let keys: Vec<_> = fields.iter().map(|field| field.name).collect();
-    let (hint, keys) = (hint(&keys, key), keys.join(", "));
+    let (hint, keys, key) = (hint(&keys, key), keys.join(", "), short(key));
     SettingError(format!("no setting is called {key:?}{hint}; the settings are {keys}"))
 }
 
@@ -247,7 +250,7 @@ impl Field {
             Kind::Count => count(text).filter(|of| is_allowed(*of as f64)).map(Value::Count),
             Kind::Flag => text.parse().ok().map(Value::Flag),
         };
-        let words = || format!("setting {name} is {text:?}; allowed is {kind}, {range}");
+        let words = || format!("setting {name} is {:?}; allowed is {kind}, {range}", short(text));
         value.ok_or_else(|| SettingError(words()))
     }
 }

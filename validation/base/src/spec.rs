@@ -24,6 +24,7 @@ use crate::{
     mutation::{Constant, Detect, Disorder, Mutation},
     reference::sha256,
     submission::Submission,
+    text::short,
 };
 
 /// One run, resolved: no default is left to be filled in.
@@ -270,7 +271,7 @@ impl RunSpec {
         };
         if let Some(of) = &self.submission {
             let allowed = "none: only `touchstone submit` records runs of other codes";
-            return Err(SpecError { field: "submission", value: of.to_string(), allowed });
+            return Err(SpecError { field: "submission", value: short(&of.to_string()), allowed });
         }
         if let Some(mutation) = self.mutation {
             // Studies leave out a term, turn its sign, and try how large an error is seen.

@@ -1,4 +1,38 @@
-//! Texts that other formats hold: in XML, and bytes as letters.
+//! Texts that other formats hold: in XML, and bytes as letters; and texts of files as messages repeat them.
+
+/// Characters of a text of a file that a message repeats.
+const MOST_CHARACTERS: usize = 100;
+
+/// A text of a file as a message repeats it: its first 100 characters, and how long it is if it has more.
+pub fn short(text: &str) -> String {
+    first(text, MOST_CHARACTERS)
+}
+
+/// The first characters of a text, and how long it is if it has more.
+pub fn first(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}... ({} bytes)", &text[..end], text.len()),
+        None => text.into(),
+    }
+}
+
+/// The first names of a list as a message repeats them, and how many others there are.
+pub fn few<T: AsRef<str>>(names: impl IntoIterator<Item = T>, most: usize) -> String {
+    let mut names = names.into_iter();
+    let shown: Vec<String> = names.by_ref().take(most).map(|name| short(name.as_ref())).collect();
+    match names.count() {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
+/// A number of a file as a message repeats it: with an exponent where it would have many digits.
+pub fn number(value: f64) -> String {
+    match value.abs() {
+        size if size == 0.0 || (1e-4..1e15).contains(&size) => value.to_string(),
+        _ => format!("{value:e}"),
+    }
+}
 
 /// Text that is safe inside an element of XML, or in a quoted attribute.
 pub fn escaped(text: &str) -> String {
@@ -79,6 +113,18 @@ mod tests {
         }
         let names = "PySPH [1.0] \"δ-SPH\" \\ it's Müller, Mu\u{308}ller, 光滑粒子, 4\u{a0}GB, 3·10⁻⁴ ² |a|";
         assert_eq!(unseen(names), None);
+    }
+
+    #[test]
+    fn a_message_repeats_the_beginning_of_a_text_and_the_first_names() {
+        let long = "ä".repeat(1000);
+        assert_eq!(short(&long), format!("{}... (2000 bytes)", "ä".repeat(100)));
+        assert_eq!([short(""), short(&long[..200])], ["", &*"ä".repeat(100)]);
+        assert_eq!(few(["a", "b", "c"], 3), "a, b, c");
+        assert_eq!(few(["a", "b", "c", &long], 3), "a, b, c and 1 more");
+        let numbers = [0.0, 1.5, -999.0, 1e308, -2.5e-320].map(number);
+        assert_eq!(numbers, ["0", "1.5", "-999", "1e308", "-2.5e-320"]);
+        assert_eq!([f64::NAN, f64::INFINITY].map(number), ["NaN", "inf"]);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use base::{
     files::FileError,
     settings::{SettingError, hint},
     spec::SpecError,
+    text::short,
 };
 use report::sig;
 use thiserror::Error;
@@ -18,7 +19,10 @@ use crate::{
 #[derive(Debug, Error)]
 pub enum RunError {
     /// No case, or no variant of a case, of that name.
-    #[error("no {what} is called {name:?}{}; there are {}", hint(.known, .name), .known.join(", "))]
+    #[error(
+        "no {what} is called {:?}{}; there are {}",
+        short(.name), hint(.known, .name), .known.join(", ")
+    )]
     Unknown {
         /// What is sought.
         what: String,

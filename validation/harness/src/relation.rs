@@ -3,6 +3,7 @@
 use base::{
     functions::{cos, sin},
     random::Random,
+    text::short,
 };
 use nalgebra::{Matrix2, Vector2};
 use solver::{Domain, Numbers, Particle, PlaneWall};
@@ -58,7 +59,7 @@ impl Relation {
     pub fn named(name: &str) -> Result<Self, String> {
         let known = || Self::ALL.map(|(_, name)| name).join(", ");
         let found = Self::ALL.into_iter().find(|(_, of)| *of == name);
-        found.map(|(of, _)| of).ok_or_else(|| format!("{name:?} is none of {}", known()))
+        found.map(|(of, _)| of).ok_or_else(|| format!("{:?} is none of {}", short(name), known()))
     }
 
     /// Does it round no number of our solver? This sums over particles in the order of their places, but over

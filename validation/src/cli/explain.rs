@@ -7,6 +7,7 @@ use ::report;
 use base::gate::{Evidence, Gate, Verdict};
 use base::record;
 use base::settings::by_similarity;
+use base::text::short;
 use harness::case::{self, Case, Tier};
 use harness::make::Stored;
 use harness::plan;
@@ -179,8 +180,9 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
         near => format!("the nearest of {} names: {}", ids.len(), near.join(", ")),
     };
     Failure::usage(format!(
-        "no gate is called {asked:?}, and no name begins with it; {hint} (gates of studies are known \
-         only after touchstone verify or report)"
+        "no gate is called {:?}, and no name begins with it; {hint} (gates of studies are known \
+         only after touchstone verify or report)",
+        short(asked)
     ))
 }
 
