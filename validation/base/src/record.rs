@@ -286,34 +286,49 @@ impl From<MetricName> for String {
     }
 }
 
+/// A time that was not measured.
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+fn is_unknown(seconds: &f64) -> bool {
+    seconds.is_nan()
+}
+
 /// What a run took.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cost {
     /// wall time of the stepping loop in seconds
-    #[serde(with = "crate::number")]
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown", with = "crate::number")]
     pub wall_s: f64,
     /// processor time of the stepping loop, all threads in seconds
-    #[serde(with = "crate::number")]
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown", with = "crate::number")]
     pub cpu_s: f64,
     /// time steps
+    #[serde(default, skip_serializing_if = "is_default")]
     pub steps: u64,
     /// neighbours that were inside the support when the lists were built, summed over all traversals
+    #[serde(default, skip_serializing_if = "is_default")]
     pub pair_interactions: u64,
     /// right-hand sides of one particle
+    #[serde(default, skip_serializing_if = "is_default")]
     pub particle_rhs: u64,
     /// the largest time step that was taken in seconds: steps are shortened to reach a time exactly
-    #[serde(default, with = "crate::number")]
+    #[serde(default, skip_serializing_if = "is_default", with = "crate::number")]
     pub largest_dt_s: f64,
     /// particles that move
+    #[serde(default, skip_serializing_if = "is_default")]
     pub particles: usize,
     /// threads used
+    #[serde(default, skip_serializing_if = "is_default")]
     pub threads: usize,
     /// memory of the solver's arrays in bytes
+    #[serde(default, skip_serializing_if = "is_default")]
     pub solver_bytes: u64,
     /// time of observers (gauges, energy ledgers, samples, frames) in seconds, which is no part of the
     /// stepping
-    #[serde(default, with = "crate::number")]
+    #[serde(default, skip_serializing_if = "is_default", with = "crate::number")]
     pub observing_s: f64,
     /// processor seconds of the stepping, one a repetition, taken while nothing else of this program was at
     /// work; empty if the run was only made side by side with others
