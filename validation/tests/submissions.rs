@@ -1,6 +1,7 @@
 //! Submissions of other codes: our own results come back with the values of the run itself, and what is
 //! damaged is refused with file, line and column.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -183,8 +184,9 @@ fn a_damaged_curve_is_refused_with_file_line_and_column() {
     let own = folder.path().join("own");
     let whole = read(&own.join("curve.csv"));
     let lines: Vec<&str> = whole.lines().collect();
-    let without = |k: usize| [&lines[..k], &lines[k + 1..]].concat().join("\n");
-    let swapped = [&lines[..2], &[lines[3], lines[2]], &lines[4..]].concat().join("\n");
+    let ended = |lines: &[&str]| lines.join("\n") + "\n";
+    let without = |k: usize| ended(&[&lines[..k], &lines[k + 1..]].concat());
+    let swapped = ended(&[&lines[..2], &[lines[3], lines[2]], &lines[4..]].concat());
     let instead = |k: usize, row: &str| whole.replacen(lines[k], row, 1);
     let time = lines[1].split(',').next().unwrap();
     let last = lines.len() - 8;
@@ -195,8 +197,10 @@ fn a_damaged_curve_is_refused_with_file_line_and_column() {
         ("not sorted", swapped, "column y: it is"),
         ("a word", instead(4, &format!("{time},fast,0,0")), "line 5, column y: it is \"fast\""),
         ("not finite", instead(4, &format!("{time},0.1,NaN,0")), "line 5, column u: it is NaN"),
-        ("no rows", lines[0].into(), "it has no rows"),
-        ("a time less", lines[..last].join("\n"), "no particles at t ="),
+        ("no rows", ended(&lines[..1]), "it has no rows"),
+        ("a time less", ended(&lines[..last]), "no particles at t ="),
+        ("a digit less", whole[..whole.len() - 2].into(), "the last line does not end"),
+        ("no end of the last line", whole.trim_end().into(), "the last line does not end"),
     ] {
         fs::write(own.join("curve.csv"), text).unwrap();
         let output = touchstone(folder.path(), "submit couette own --store other");
@@ -260,7 +264,7 @@ fn dump(folder: &Path, atoms: &str, rows: &str) {
 }
 
 /// What is done to a whole submission, and what the message names.
-const DAMAGES: [(&str, Damage, &[&str]); 38] = [
+const DAMAGES: [(&str, Damage, &[&str]); 45] = [
     (
         "no method",
         |f| fs::remove_file(f.join("method.json")).unwrap(),
@@ -290,7 +294,7 @@ const DAMAGES: [(&str, Damage, &[&str]); 38] = [
     (
         "negative threads",
         |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": -1"),
-        &["system.json, column threads", "above 0"],
+        &["system.json, column threads", "a whole number from 1"],
     ),
     (
         "seconds in words",
@@ -396,20 +400,6 @@ const DAMAGES: [(&str, Damage, &[&str]); 38] = [
     ("a dump that was cut", |f| dump(f, "1", "1 0 0 0 0 10"), &["a.dump, line 6", "cut short"]),
     ("a dump without atoms", |f| dump(f, "0", ""), &["a.dump", "no rows"]),
     (
-        "a head of 2^61 blocks",
-        |f| {
-            fs::remove_file(f.join("results.csv")).unwrap();
-            let zlib = "compressor=\"vtkZLibDataCompressor\" header_type=\"UInt64\"";
-            let array = "<DataArray Name=\"rho\" type=\"Float64\" format=\"binary\">";
-            let head = "/P///////x8IAAAAAAAAAAgAAAAAAAAA"; // 2^61 - 4, 8, 8
-            let text = format!(
-                "<VTKFile {zlib}><PointData>{array}{head}</DataArray></PointData></VTKFile>"
-            );
-            fs::write(f.join("a.vtu"), text).unwrap()
-        },
-        &["a.vtu, line 1, column rho", "within its head"],
-    ),
-    (
         "a grid in two pieces, of which the second would be taken for all",
         |f| {
             fs::remove_file(f.join("results.csv")).unwrap();
@@ -424,7 +414,76 @@ const DAMAGES: [(&str, Damage, &[&str]); 38] = [
         |f| edit(f, "problem.json", "\"case\": \"couette\"", "\"case\": \"poiseuille\""),
         &["problem.json is of the case poiseuille"],
     ),
+    (
+        "half a thread",
+        |f| edit(f, "system.json", "\"threads\": 1", "\"threads\": 0.5"),
+        &["system.json, column threads: it is 0.5; expected a whole number from 1 to"],
+    ),
+    (
+        "a fraction of a step",
+        |f| {
+            let text = read(&f.join("system.json"));
+            let steps = text.lines().find(|line| line.contains("steps")).unwrap();
+            edit(f, "system.json", steps, "\"steps\": 1.999,")
+        },
+        &["system.json, column steps: it is 1.999; expected a whole number"],
+    ),
+    (
+        "the id after the last one",
+        |f| set(f, 7, 1, "40"),
+        &[
+            "results.csv, line 7, column id: particle 40 is none of the problem, whose ids are 0 to 39",
+        ],
+    ),
+    (
+        "ids from 1",
+        |f| {
+            let text = read(&f.join("results.csv"));
+            let later = |line: &str| {
+                let cells: Vec<&str> = line.splitn(3, ',').collect();
+                let id = cells[1].parse::<f64>().map_or("id".into(), |id| (id + 1.0).to_string());
+                format!("{},{id},{}\n", cells[0], cells[2])
+            };
+            fs::write(f.join("results.csv"), text.lines().map(later).collect::<String>()).unwrap()
+        },
+        &["1 of 40 moving particles are missing", "the first with the id 0; each id is one higher"],
+    ),
+    (
+        "another mass than that of the problem",
+        |f| add(f, "mass[kg/m]", "1.6e-8"),
+        &[
+            "results.csv, column mass: particle 0 has 1.6e-8 kg/m, in the problem",
+            "and 17 more like",
+        ],
+    ),
+    (
+        "particles behind a wall",
+        |f| add(f, "role", "1"),
+        &["results.csv, column role: particle 0 has the role 1, in the problem 0"],
+    ),
+    (
+        "a mass that no list of neighbours can be made of",
+        |f| {
+            edit(f, "method.json", "\"closed\"", "\"open\"");
+            add(f, "mass", "1e-323")
+        },
+        &["results.csv, line 2, column mass: particle 0 has", "expected 1e-6 to 1000000 times"],
+    ),
+    (
+        "a document that repeats itself",
+        |f| {
+            fs::write(f.join("method.json"), format!("{{\"{}\": 1}}", "x".repeat(1 << 20))).unwrap()
+        },
+        &["method.json, line 1: unknown field `xxx", "... (1048", "expected code, version"],
+    ),
 ];
+
+/// Adds a column with one value.
+fn add(folder: &Path, head: &str, value: &str) {
+    let text = read(&folder.join("results.csv")).replace('\n', &format!(",{value}\n"));
+    let text = text.replacen(value, head, 1);
+    fs::write(folder.join("results.csv"), text).unwrap();
+}
 
 #[test]
 fn a_damaged_submission_is_refused_with_file_line_and_column() {
@@ -439,6 +498,7 @@ fn a_damaged_submission_is_refused_with_file_line_and_column() {
                 assert!(words.contains(part), "{what}: expected {part:?} in {words}");
             }
             assert!(!words.contains("bug of touchstone"), "{what}: {words}");
+            assert!(words.len() < 4000, "{what}: {} characters", words.len());
         }
         let kept = fs::read_dir(folder.path().join("store")).map_or(0, Iterator::count);
         assert_eq!(kept, 0, "{what}: something was recorded");
@@ -459,6 +519,164 @@ fn everything_that_is_missing_is_told_at_once() {
     fs::copy(whole().join("whole/method.json"), copy.join("method.json")).unwrap();
     let mapped = touchstone(folder.path(), "submit couette copy --check --map x=pos_x,u=vel");
     assert_eq!(mapped.status.code(), Some(0), "{}", said(&mapped));
+    for (map, says) in [
+        ("x=pos_x,u=vel,density=rhoo", "column density: --map names rhoo, which is not there"),
+        ("x=pos_x,u=pos_x", "named twice"),
+        ("x=pos_x,x=vel", "named twice"),
+        ("x=", "expected OURS=THEIRS"),
+    ] {
+        let refused =
+            touchstone(folder.path(), &format!("submit couette copy --check --map {map}"));
+        assert_eq!(refused.status.code(), Some(2), "{map}");
+        assert!(said(&refused).contains(says), "{map}: {}", said(&refused));
+    }
+}
+
+/// The record of the only submission in a store, as its document.
+fn submitted(folder: &Path, line: &str, store: &str) -> serde_json::Value {
+    let output = touchstone(folder, &format!("submit {line} --store {store}"));
+    let mut files =
+        fs::read_dir(folder.join(store)).unwrap_or_else(|_| panic!("{}", said(&output)));
+    let file = files.next().unwrap_or_else(|| panic!("{}", said(&output))).unwrap();
+    serde_json::from_str(&read(&file.path())).unwrap()
+}
+
+/// What is read and what is not is told; what a code does not know of its cost is not in the record.
+#[test]
+fn unknown_costs_have_no_keys_and_columns_that_are_not_read_are_told() {
+    let (folder, copy) = copy();
+    let unknown =
+        ["threads", "seconds", "steps", "interactions"].map(|of| format!("\"{of}\": \"unknown\""));
+    let text = format!("{{\"machine\": \"unknown\", {}}}", unknown.join(", "));
+    fs::write(copy.join("system.json"), text).unwrap();
+    add(&copy, "temperature", "7");
+    let words = said(&touchstone(folder.path(), "submit couette copy --check"));
+    assert!(words.contains("columns that are not read: temperature"), "{words}");
+    let record = submitted(folder.path(), "couette copy", "store");
+    assert_eq!(record["cost"], serde_json::json!({"particles": 40}));
+}
+
+/// A problem whose document says of its settings something else than they give is not the one that is judged.
+#[test]
+fn a_problem_that_contradicts_its_own_settings_is_refused_by_field() {
+    let (folder, copy) = copy();
+    let export =
+        touchstone(folder.path(), "export couette --variant plain --set rows=20 --out gated");
+    assert!(export.status.success(), "{}", said(&export));
+    let document = read(&folder.path().join("gated/problem.json"));
+    let changed = |pointer: &str, value: serde_json::Value| {
+        let mut document: serde_json::Value = serde_json::from_str(&document).unwrap();
+        *document.pointer_mut(pointer).unwrap_or_else(|| panic!("no {pointer}")) = value;
+        fs::write(copy.join("problem.json"), document.to_string()).unwrap();
+        said(&touchstone(folder.path(), "submit couette copy --check"))
+    };
+    let bound = "/judged_by/0/bound";
+    for (pointer, value, field) in [
+        ("/material/kinematic_viscosity/value", 2e-6.into(), "material.kinematic_viscosity.value"),
+        ("/particles/spacing/value", 1e-4.into(), "particles.spacing.value"),
+        ("/particles/spacing/unit", "mm".into(), "particles.spacing.unit"),
+        ("/particles/count", 7.into(), "particles.count"),
+        ("/times/value/0", 0.5.into(), "times.value[0]"),
+        ("/times/value", serde_json::json!([0.1]), "times.value"),
+        ("/walls/planes/0/point/value/1", 0.1.into(), "walls.planes[0].point.value[1]"),
+        ("/walls/planes", serde_json::json!([]), "walls.planes"),
+        ("/domain/period/0", "none".into(), "domain.period[0]"),
+        ("/acceleration/value/0", 9.81.into(), "acceleration.value[0]"),
+        ("/our_method/support_radius/value", 1.0.into(), "our_method.support_radius.value"),
+    ] {
+        let words = changed(pointer, value);
+        let says = format!("problem.json, column {field}: it is ");
+        assert!(words.contains(&says), "{pointer}: expected {says} in {words}");
+    }
+    let gates: serde_json::Value = serde_json::from_str(&document).unwrap();
+    let (kind, was) = gates.pointer(bound).unwrap().as_object().unwrap().iter().next().unwrap();
+    let wider = if was.is_array() { serde_json::json!([0, 1]) } else { 1.into() };
+    let words = changed(&format!("{bound}/{kind}"), wider);
+    assert!(words.contains("problem.json, column judged_by couette.plain.20."), "{words}");
+    // The words of another version are no other problem; and these results are of other times.
+    let words = changed("/about", "in other words".into());
+    assert!(!words.contains("problem.json"), "{words}");
+}
+
+/// Rows of the first frame of a code that chose its particles itself are in any order.
+#[test]
+fn the_order_of_own_particles_does_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let line =
+        "export couette --variant extrapolating-wall --set rows=8 --set end=0.1 --out own --solve";
+    let made = touchstone(folder.path(), line);
+    assert!(made.status.success(), "{}", said(&made));
+    let own = folder.path().join("own");
+    edit(&own, "method.json", "\"closed\"", "\"open\"");
+    let rows = |file: &str| -> Vec<BTreeMap<String, String>> {
+        let text = read(&own.join(file));
+        let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+        let heads: Vec<&str> =
+            lines.next().unwrap().into_iter().map(|head| head.split('[').next().unwrap()).collect();
+        let row = |cells: Vec<&str>| {
+            heads.iter().map(|h| h.to_string()).zip(cells.into_iter().map(String::from)).collect()
+        };
+        lines.map(row).collect()
+    };
+    let (start, moved) = (rows("particles.csv"), rows("results.csv"));
+    let columns = ["id", "x", "y", "u", "v", "density"];
+    let text = |time: &str, of: &BTreeMap<String, String>, fixed: &BTreeMap<String, String>| {
+        let cells: Vec<&str> = columns.iter().map(|name| &*of[*name]).collect();
+        format!("{time},{},{},{}\n", cells.join(","), fixed["mass"], fixed["role"])
+    };
+    let mut first: Vec<String> = start.iter().map(|row| text("0", row, row)).collect();
+    let mut times: Vec<&str> =
+        moved.iter().map(|row| &*row["t"]).filter(|time| *time != "0").collect();
+    times.dedup();
+    let mut later = String::new();
+    for time in times {
+        let now = moved.iter().filter(|row| row["t"] == *time);
+        let of_id: BTreeMap<&str, _> = now.map(|row| (&*row["id"], row)).collect();
+        for row in &start {
+            later += &text(time, of_id.get(&*row["id"]).copied().unwrap_or(row), row);
+        }
+    }
+    let mut metrics = Vec::new();
+    for store in ["ordered", "shuffled"] {
+        let head = "t,id,x,y,u,v,density,mass,role\n";
+        fs::write(own.join("results.csv"), format!("{head}{}{later}", first.concat())).unwrap();
+        metrics.push(submitted(folder.path(), "couette own", store)["metrics"].clone());
+        let (a, b) = first.split_at(first.len() / 3);
+        first = b.iter().rev().chain(a).cloned().collect();
+    }
+    assert!(metrics[0].as_object().unwrap().len() > 5, "{}", metrics[0]);
+    assert_eq!(metrics[0], metrics[1]);
+}
+
+/// A series is held from its last row to the end.
+#[test]
+fn a_series_is_held_at_its_last_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let made = touchstone(folder.path(), "export dam_break --variant modern --set n=8 --out own");
+    assert!(made.status.success(), "{}", said(&made));
+    let own = folder.path().join("own");
+    for file in ["method.json", "system.json"] {
+        fs::copy(whole().join("whole").join(file), own.join(file)).unwrap();
+    }
+    let problem: serde_json::Value =
+        serde_json::from_str(&read(&own.join("problem.json"))).unwrap();
+    let times: Vec<f64> = serde_json::from_value(problem["times"]["value"].clone()).unwrap();
+    let end = *times.last().unwrap();
+    let mut rows: Vec<(f64, f64)> = times.iter().map(|t| (*t, 0.06 + 0.1 * t / end)).collect();
+    rows.pop();
+    rows.push((end * (1.0 - 1e-3), 0.2));
+    let of = |rows: &[(f64, f64)], store: &str| {
+        let rows: String = rows.iter().map(|(t, front)| format!("{t},{front}\n")).collect();
+        fs::write(own.join("curve.csv"), format!("t[s],front[m]\n{rows}")).unwrap();
+        submitted(folder.path(), "dam_break own", store)["metrics"].clone()
+    };
+    let held = of(&rows, "held");
+    rows.push((end, 0.2));
+    let stated = of(&rows, "stated");
+    assert!(held.as_object().unwrap().keys().any(|name| name.starts_with("z@")), "{held}");
+    assert_eq!(held, stated);
+    rows.last_mut().unwrap().1 = 0.16;
+    assert_ne!(of(&rows, "other"), stated, "what comes last counts");
 }
 
 /// A method that was changed after the seed was known is refused, and so are settings that were not drawn.

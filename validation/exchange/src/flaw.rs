@@ -1,6 +1,16 @@
 //! What is wrong with a submission, and where.
 
-use std::fmt;
+use std::{collections::BTreeMap, fmt};
+
+use base::text::{first, short};
+
+/// What is wrong with a text whose last line does not end: the rest of its last number may be missing.
+pub const CUT: &str = "the last line does not end; the file was cut short";
+/// Characters of a flaw that are told: what it repeats of a file is cut where it is repeated, and here once
+/// more, where a library repeats it.
+const MOST_CHARACTERS: usize = 1000;
+/// Flaws of a kind that are told.
+const MOST_OF_A_KIND: usize = 3;
 
 /// One thing that is wrong or missing.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +28,8 @@ pub struct Flaw {
 impl Flaw {
     /// Of a whole file.
     pub fn of(file: impl Into<String>, what: impl Into<String>) -> Self {
-        Self { file: file.into(), line: None, column: None, what: what.into() }
+        let what = first(&what.into(), MOST_CHARACTERS);
+        Self { file: file.into(), line: None, column: None, what }
     }
 
     /// The same at a line.
@@ -28,7 +39,7 @@ impl Flaw {
 
     /// The same in a column or field.
     pub fn in_column(self, column: impl Into<String>) -> Self {
-        Self { column: Some(column.into()), ..self }
+        Self { column: Some(short(&column.into())), ..self }
     }
 }
 
@@ -39,4 +50,30 @@ impl fmt::Display for Flaw {
         self.column.as_ref().map_or(Ok(()), |column| write!(f, ", column {column}"))?;
         write!(f, ": {}", self.what)
     }
+}
+
+impl Flaw {
+    /// What flaws of one kind have in common: the column, and the first words of what it is.
+    fn kind(&self) -> (Option<&str>, Vec<&str>) {
+        let is_word = |word: &&str| word.chars().all(|c| c.is_alphabetic() || c == ',' || c == ';');
+        let words = self.what.split_whitespace().filter(is_word).take(3);
+        (self.column.as_deref(), words.collect())
+    }
+}
+
+/// The flaws, one a line: three of a kind, then how many others of it there are.
+pub fn lines(flaws: &[Flaw]) -> Vec<String> {
+    let mut kinds: Vec<Vec<&Flaw>> = Vec::new();
+    let mut places = BTreeMap::new();
+    for flaw in flaws {
+        let place = *places.entry(flaw.kind()).or_insert(kinds.len());
+        kinds.resize_with(kinds.len().max(place + 1), Vec::new);
+        kinds[place].push(flaw);
+    }
+    let of_kind = |flaws: Vec<&Flaw>| {
+        let more = flaws.len().saturating_sub(MOST_OF_A_KIND);
+        let told = flaws.into_iter().take(MOST_OF_A_KIND).map(Flaw::to_string);
+        told.chain((more > 0).then(|| format!("and {more} more like this"))).collect::<Vec<_>>()
+    };
+    kinds.into_iter().flat_map(of_kind).collect()
 }

@@ -7,7 +7,7 @@ use harness::{
 };
 
 use crate::{
-    flaw::Flaw,
+    flaw,
     problem::Problem,
     read::Results,
     submission::{Entry, Method, System},
@@ -36,9 +36,6 @@ pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Re
     let method = solver.method();
     let digest = sha256(format!("{method:?}").as_bytes());
     let entry = Entry { method, digest, system, asked: None, results, curve: None };
-    entry.check(&problem).map_err(|flaws| {
-        let lines: Vec<String> = flaws.iter().map(Flaw::to_string).collect();
-        RunError::Playback(lines.join("\n"))
-    })?;
+    entry.check(&problem).map_err(|flaws| RunError::Playback(flaw::lines(&flaws).join("\n")))?;
     entry.measure(case, spec, &problem)
 }

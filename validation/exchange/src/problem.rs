@@ -4,6 +4,7 @@ use base::{
     gate::Gate,
     record::{Column, Profile},
     spec::RunSpec,
+    text::short,
 };
 use harness::{
     case::{Case, RunError},
@@ -14,13 +15,17 @@ use harness::{
     relation::Relation,
 };
 use serde::{Deserialize, Serialize};
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
+
+use crate::flaw::Flaw;
 
 /// Version of `problem.json`; raised with every change that an older reader would misread.
 pub const SCHEMA: u32 = 1;
 
 /// Name of the document in the folder of a problem.
 pub const PROBLEM: &str = "problem.json";
+/// The field that lists its gates.
+const JUDGED_BY: &str = "judged_by";
 /// Name of the table of its particles.
 pub const PARTICLES: &str = "particles.csv";
 
@@ -75,6 +80,71 @@ pub struct Asked {
     /// name of the relation by which it is seen
     #[serde(default)]
     pub relation: Option<String>,
+    /// what the document says beside these
+    #[serde(flatten)]
+    rest: Map<String, Value>,
+}
+
+impl Asked {
+    /// Are the numbers of the document those that its spec gives? Its prose may be that of another version, and
+    /// it may have keys that ours lacks.
+    ///
+    /// # Errors
+    /// The first field that says something else.
+    pub fn agrees(&self, problem: &Problem) -> Result<(), Flaw> {
+        let ours = problem.to_json();
+        let both = self.rest.iter().filter_map(|(key, stated)| Some((key, stated, ours.get(key)?)));
+        let (gates, facts): (Vec<_>, Vec<_>) = both.partition(|(key, ..)| *key == JUDGED_BY);
+        let mut found =
+            facts.into_iter().filter_map(|(key, stated, ours)| contradiction(key, stated, ours));
+        let found = found
+            .next()
+            .or_else(|| gates.first().and_then(|(_, stated, ours)| bound(stated, ours)));
+        found.map_or(Ok(()), |(field, stated, ours)| {
+            let [stated, ours] = [stated, ours].map(|value| short(&value.to_string()));
+            let what = format!(
+                "it is {stated}, and the settings of its spec give {ours}; expected the document as this \
+                 program exports it"
+            );
+            Err(Flaw::of(PROBLEM, what).in_column(field))
+        })
+    }
+}
+
+/// Where a document and ours say different things: the field and both.
+type Contradiction<'a> = (String, &'a Value, &'a Value);
+
+/// The first number, unit or length of a list that differs, except for the last digits.
+fn contradiction<'a>(field: &str, stated: &'a Value, ours: &'a Value) -> Option<Contradiction<'a>> {
+    let differs = match (stated, ours) {
+        (Value::Object(stated), Value::Object(ours)) => {
+            let both = stated.iter().filter_map(|(key, value)| Some((key, value, ours.get(key)?)));
+            let mut of = both.map(|(key, a, b)| contradiction(&format!("{field}.{key}"), a, b));
+            return of.find_map(|found| found);
+        }
+        (Value::Array(stated), Value::Array(ours)) if stated.len() == ours.len() => {
+            let both = stated.iter().zip(ours).enumerate();
+            let mut of = both.map(|(k, (a, b))| contradiction(&format!("{field}[{k}]"), a, b));
+            return of.find_map(|found| found);
+        }
+        (Value::Number(stated), Value::Number(ours)) => {
+            let [stated, ours] = [stated, ours].map(|n| n.as_f64().unwrap_or(f64::MAX));
+            (stated - ours).abs() > 1e-12 * ours.abs()
+        }
+        (Value::String(stated), Value::String(ours)) => field.ends_with(".unit") && stated != ours,
+        (stated, ours) => stated != ours,
+    };
+    differs.then(|| (field.into(), stated, ours))
+}
+
+/// The first gate of the document whose bound is another one today.
+fn bound<'a>(stated: &'a Value, ours: &'a Value) -> Option<Contradiction<'a>> {
+    let ours = ours.as_array()?;
+    stated.as_array()?.iter().find_map(|gate| {
+        let today = ours.iter().find(|of| of["id"] == gate["id"])?;
+        let field = format!("{JUDGED_BY} {}", gate["id"].as_str().unwrap_or_default());
+        contradiction(&field, &gate["bound"], &today["bound"])
+    })
 }
 
 /// A number with its unit.
@@ -158,7 +228,7 @@ impl Problem {
             },
             "times": with_unit(times, "s"),
             "end": with_unit(times.last(), "s"),
-            "judged_by": self.gates.iter().map(gate).collect::<Vec<_>>(),
+            JUDGED_BY: self.gates.iter().map(gate).collect::<Vec<_>>(),
             "our_method": {
                 "kernel": method.kernel,
                 "smoothing_length": with_unit(m.h, "m"),

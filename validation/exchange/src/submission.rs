@@ -1,7 +1,7 @@
 //! A folder of results of another code: what it says of its method and its machine, and its particles,
 //! measured by the code that measures our own runs.
 
-use std::{collections::BTreeMap, path::Path};
+use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
 use base::{
     files,
@@ -9,12 +9,14 @@ use base::{
     reference::sha256,
     spec::{Measure, RunSpec},
     submission::{Division, Submission},
-    text::unseen,
+    text::{first, number, short, unseen},
 };
 use harness::{
     case::{Case, RunError, Tier},
     context::Context,
-    playback::{self, Frame, Playback},
+    medium::Medium,
+    outline::role,
+    playback::{self, Frame, Own, Playback},
     suite,
 };
 use serde::{
@@ -22,12 +24,13 @@ use serde::{
     de::{DeserializeOwned, Error},
 };
 use serde_json::{Map, Value};
+use solver::Role;
 
 use crate::{
     flaw::Flaw,
     problem::{Asked, PROBLEM, Problem, SCHEMA},
     read::{
-        self, RESULTS, Renamed, Results,
+        self, RESULTS, Renamed, Results, SAME_MASS,
         curve::{self, CURVE},
     },
 };
@@ -36,6 +39,8 @@ use crate::{
 pub const METHOD: &str = "method.json";
 /// More particles than these are not in a square of one support radius: usual are ten.
 const MOST_IN_SUPPORT: usize = 1000;
+/// Mass over density of a particle that a code chose itself, in squares of the problem's spacing.
+const VOLUMES: RangeInclusive<f64> = 1e-6..=1e6;
 /// Flaws of frames that are told.
 const MOST_FLAWS: usize = 20;
 
@@ -87,7 +92,9 @@ pub struct System {
 fn known<'de, D: Deserializer<'de>>(from: D) -> Result<Option<f64>, D::Error> {
     let value = Value::deserialize(from)?;
     match value.as_f64() {
-        None if value != "unknown" => Err(D::Error::custom(format!("it is {value}"))),
+        None if value != "unknown" => {
+            Err(D::Error::custom(format!("it is {}", short(&value.to_string()))))
+        }
         number => Ok(number),
     }
 }
@@ -117,7 +124,7 @@ fn document<T: DeserializeOwned>(
     let text = files::read_text(&folder.join(name), MOST_BYTES)
         .map_err(|reason| Flaw::of(name, format!("cannot be read: {reason}; expected {what}")))?;
     let read = serde_json::from_str(text.trim_start_matches('\u{feff}')).map_err(|error| {
-        let flaw = Flaw::of(name, format!("{error}; expected {what}"));
+        let flaw = Flaw::of(name, format!("{}; expected {what}", first(&error.to_string(), 200)));
         flaw.at(error.line() as u64)
     })?;
     Ok((read, text))
@@ -161,15 +168,22 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         flaws.extend(unnamed(SYSTEM, "machine", machine));
         for (name, known, most) in [
             ("threads", threads, 1e6),
-            ("seconds", seconds, 1e12),
             ("steps", steps, 1e15),
             ("interactions", interactions, 1e18),
         ] {
-            if let Some(number) = known.filter(|n| !(*n > 0.0 && *n <= most)) {
-                let what =
-                    format!("it is {number}; expected a number above 0 and at most {most:e}");
+            let is_count = |n: f64| (1.0..=most).contains(&n) && n.fract() == 0.0;
+            if let Some(found) = known.filter(|n| !is_count(*n)) {
+                let found = number(found);
+                let what = format!("it is {found}; expected a whole number from 1 to {most:e}");
                 flaws.push(Flaw::of(SYSTEM, what).in_column(name));
             }
+        }
+        const MOST_SECONDS: f64 = 1e12;
+        if let Some(found) = seconds.filter(|n| !(*n > 0.0 && *n <= MOST_SECONDS)) {
+            let found = number(found);
+            let what =
+                format!("it is {found}; expected a number above 0, at most {MOST_SECONDS:e}");
+            flaws.push(Flaw::of(SYSTEM, what).in_column("seconds"));
         }
     }
     match (method, system, asked, results) {
@@ -179,6 +193,40 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         }
         _ => Err(flaws),
     }
+}
+
+/// What is wrong with the ids of a frame, and in which of its rows: all that are expected are there once, and
+/// each is below that of the end.
+fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, String)> {
+    let (mut wrong, time) = (Vec::new(), number(frame.time));
+    let mut ids: Vec<(u32, usize)> =
+        frame.particles.iter().enumerate().map(|(row, of)| (of.id, row)).collect();
+    ids.sort_unstable();
+    if let Some([_, (id, row)]) = ids.array_windows().find(|[a, b]| a.0 == b.0) {
+        wrong.push((*row, format!("particle {id} is there twice at t = {time} s")));
+    }
+    let has = |id: u32| ids.binary_search_by_key(&id, |(id, _)| *id).is_ok();
+    let mut lacking = expected.iter().filter(|id| !has(**id));
+    if let Some(first) = lacking.next() {
+        // The last id tells: a file that only lacks the first particle ends with the last of the problem.
+        let last = ids.last().map(|(id, _)| *id as usize);
+        let ends = [Some(end), expected.last().map(|id| *id as usize + 1)];
+        let is_higher = ends.contains(&last) && expected.iter().all(|id| has(id + 1));
+        let higher = "; each id is one higher than that of the problem, whose ids begin at 0";
+        let (count, all) = (1 + lacking.count(), expected.len());
+        let why = if is_higher { higher } else { "" };
+        let what = format!(
+            "{count} of {all} moving particles are missing at t = {time} s, the first with the id \
+             {first}{why}"
+        );
+        wrong.push((0, what));
+    }
+    if let Some((id, row)) = ids.iter().find(|(id, _)| *id as usize >= end) {
+        let last = end.saturating_sub(1);
+        let what = format!("particle {id} is none of the problem, whose ids are 0 to {last}");
+        wrong.push((*row, what));
+    }
+    wrong
 }
 
 /// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.
@@ -289,7 +337,7 @@ impl Entry {
         let file = places.first().map_or("results", |(file, _)| file.as_str());
         if let Some((frame, why)) = playback::misplaced(frames, &problem.outline.times) {
             let (file, line) = &places[frame];
-            let what = format!("t = {} s: {why}", frames[frame].time);
+            let what = format!("t = {} s: {why}", number(frames[frame].time));
             flaws.push(Flaw::of(file, what).at(*line).in_column("t"));
         }
         for time in playback::missing(frames, &problem.outline.times) {
@@ -299,9 +347,13 @@ impl Entry {
         }
         let expected = match self.particles() {
             Division::Closed => problem.moving(),
-            Division::Open => self.own_ids(&mut flaws),
+            Division::Open => self.own_ids(problem, &mut flaws),
         };
-        let all = problem.outline.particles.column("id").len();
+        flaws.extend(self.contradictions(problem).take(MOST_FLAWS));
+        let all = match self.particles() {
+            Division::Closed => problem.outline.particles.column("id").len(),
+            Division::Open => expected.len(),
+        };
         let support = problem.method.support * problem.outline.medium.h;
         for (frame, (file, line)) in frames.iter().zip(places) {
             if flaws.len() >= MOST_FLAWS {
@@ -312,33 +364,9 @@ impl Entry {
                 break;
             }
             let flaw = |what: String| Flaw::of(file, what).in_column("id");
-            let mut ids: Vec<(u32, usize)> =
-                frame.particles.iter().enumerate().map(|(k, p)| (p.id, k)).collect();
-            ids.sort_unstable();
-            if let Some(twice) = ids.windows(2).find(|two| two[0].0 == two[1].0) {
-                let what =
-                    format!("particle {} is there twice at t = {} s", twice[0].0, frame.time);
-                flaws.push(flaw(what).at(line + twice[1].1 as u64));
-            }
-            let has = |id: &u32| ids.binary_search_by_key(id, |(id, _)| *id).is_ok();
             flaws.extend(crowded(frame, support).map(|what| flaw(what).at(*line)));
-            let lacking = expected.iter().filter(|id| !has(id)).count();
-            let beyond = match self.particles() {
-                Division::Closed => ids.iter().find(|(id, _)| *id as usize >= all),
-                Division::Open => ids.iter().find(|(id, _)| expected.binary_search(id).is_err()),
-            };
-            if lacking > 0 {
-                let what = format!(
-                    "{lacking} of {} moving particles are missing at t = {} s",
-                    expected.len(),
-                    frame.time
-                );
-                flaws.push(flaw(what).at(*line));
-            }
-            if let Some((id, k)) = beyond {
-                let what = format!("particle {id} is none of the problem");
-                flaws.push(flaw(what).at(line + *k as u64));
-            }
+            let wrong = misnumbered(frame, &expected, all).into_iter();
+            flaws.extend(wrong.map(|(row, what)| flaw(what).at(line + row as u64)));
         }
         if let Some(sealed) = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref())
             && sealed.method != self.digest
@@ -352,22 +380,65 @@ impl Entry {
         if flaws.is_empty() { Ok(()) } else { Err(flaws) }
     }
 
+    /// Mass and role that the files state, where the problem has others.
+    fn contradictions<'a>(&'a self, problem: &'a Problem) -> impl Iterator<Item = Flaw> + 'a {
+        let Results { stated, places, .. } = &self.results;
+        let file = places.first().map_or("results", |(file, _)| file.as_str());
+        let is_closed = self.particles() == Division::Closed;
+        let of =
+            |name: &str, id: u32| problem.outline.particles.column(name).get(id as usize).copied();
+        let other = move |(id, (mass, stated)): (&u32, &(f64, Option<Role>))| {
+            if let Some(expected) = of("mass", *id)
+                && (mass - expected).abs() > SAME_MASS * expected
+            {
+                let [mass, expected] = [*mass, expected].map(number);
+                let what = format!("particle {id} has {mass} kg/m, in the problem {expected} kg/m");
+                return Some(Flaw::of(file, what).in_column("mass"));
+            }
+            let (stated, expected) = ((*stated)?, of("role", *id)?);
+            let what = || {
+                let stated = stated as u8;
+                format!("particle {id} has the role {stated}, in the problem {expected}")
+            };
+            (role(expected) != Some(stated)).then(|| Flaw::of(file, what()).in_column("role"))
+        };
+        stated.iter().filter(move |_| is_closed).filter_map(other)
+    }
+
     /// The numbers of the particles of a code that chose them itself, and what is wrong with its start.
-    fn own_ids(&self, flaws: &mut Vec<Flaw>) -> Vec<u32> {
-        let Results { frames, own, places } = &self.results;
+    fn own_ids(&self, problem: &Problem, flaws: &mut Vec<Flaw>) -> Vec<u32> {
+        let Results { frames, own, places, .. } = &self.results;
         let (file, line) = &places[0];
         let mut flaw = |column, what| flaws.push(Flaw::of(file, what).at(*line).in_column(column));
         let mut ids: Vec<u32> =
             frames.first().into_iter().flat_map(|f| &f.particles).map(|p| p.id).collect();
         ids.sort_unstable();
-        if ids.iter().enumerate().any(|(k, id)| *id as usize != k) {
-            flaw("id", "ids of the first frame are not 0, 1, 2 and so on, each once");
+        if let Some((k, id)) = ids.iter().enumerate().find(|(k, id)| **id as usize != *k) {
+            let what = "ids of the first frame are not 0, 1, 2 and so on, each once";
+            flaw("id", format!("{what}: {id} is in place of {k}"));
         }
         if own.iter().any(|own| own.mass.is_nan()) {
-            flaw("mass", "it is missing; in the open division each particle states its mass");
+            let what = "it is missing; in the open division each particle states its mass";
+            flaw("mass", what.into());
+        }
+        let Medium { dx, eos, .. } = &problem.outline.medium;
+        let share = |own: &Own| own.mass / own.start.density.unwrap_or(eos.density) / (dx * dx);
+        let is_usual = |own: &&Own| own.mass.is_nan() || VOLUMES.contains(&share(own));
+        if let Some(own) = own.iter().find(|own| !is_usual(own)) {
+            let [mass, share, low, high] =
+                [own.mass, share(own), *VOLUMES.start(), *VOLUMES.end()].map(number);
+            flaw(
+                "mass",
+                format!(
+                    "particle {} has {mass} kg/m, and mass over density {share} times the square of the \
+                     problem's spacing; expected {low} to {high} times",
+                    own.start.id
+                ),
+            );
         }
         if frames.first().is_some_and(|frame| frame.time != 0.0) {
-            flaw("t", "the first frame is not at t = 0, at which an open submission starts");
+            let what = "the first frame is not at t = 0, at which an open submission starts";
+            flaw("t", what.into());
         }
         ids
     }

@@ -8,11 +8,17 @@ use rawzip::{CompressionMethod, ZipArchiveWriter};
 
 /// An array of floats with a head that says what it likes.
 fn array(order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {
-    let head = format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': ({shape}), }}\n");
+    let numbers: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    of_kind("<f8", order, shape, &numbers)
+}
+
+/// An array of numbers of a kind.
+fn of_kind(kind: &str, order: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
+    let head = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({shape}), }}\n");
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((head.len() as u16).to_le_bytes());
     bytes.extend(head.as_bytes());
-    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    bytes.extend(numbers);
     bytes
 }
 
@@ -87,6 +93,17 @@ fn damaged_arrays_are_refused_by_name() {
         ("cut", "y", array("False", "3,", &three[..2]), "it has 2 numbers; its head says (3,)"),
         ("overflow", "u", array("False", "4294967296, 4294967296", &three), "its head says"),
         ("a row more", "v", array("False", "4,", &[0.0; 4]), "it has 4 numbers; expected 3"),
+        ("longer than its head", "v", array("False", "3,", &[0.0; 4]), "its head says (3,)"),
+        ("one number for all", "u", array("False", "1,", &[0.0]), "it has 1 numbers; expected 3"),
+        ("one id for all", "id", array("False", "1,", &[0.0]), "it has 1 numbers; expected 3"),
+        ("half floats", "y", of_kind("<f2", "False", "3,", &[0; 6]), "its type is <f2"),
+        ("objects", "y", of_kind("|O", "False", "3,", &[0; 24]), "its type is |O"),
+        (
+            "a head of letters",
+            "y",
+            of_kind(&"x".repeat(9000), "False", "3,", &[]),
+            "xxx... (9000 b",
+        ),
         ("no array", "id", b"PK".to_vec(), "no array of NumPy"),
         // 30 million zeros take 0.2 MB of the archive.
         ("a bomb", "x", array("False", "30000000,", &vec![0.0; 30_000_000]), "more than 3000000"),
@@ -95,4 +112,27 @@ fn damaged_arrays_are_refused_by_name() {
         assert!(words.starts_with(&format!("a.npz, column {changed}: ")), "{what}: {words}");
         assert!(words.contains(expected), "{what}: expected {expected:?} in {words}");
     }
+}
+
+/// Whole numbers of every width and order of bytes are ids.
+#[test]
+fn ids_are_whole_numbers_of_every_width() {
+    let mut kinds = 0;
+    for of in ["i", "u"] {
+        for width in [1, 2, 4, 8] {
+            for order in if width == 1 { &["|"][..] } else { &["<", ">"] } {
+                let id = |k: u64| match *order {
+                    ">" => k.to_be_bytes()[8 - width..].to_vec(),
+                    _ => k.to_le_bytes()[..width].to_vec(),
+                };
+                let numbers: Vec<u8> = [2, 0, 1].into_iter().flat_map(id).collect();
+                let kind = format!("{order}{of}{width}");
+                let bytes = of_kind(&kind, "False", "3,", &numbers);
+                let archive = archive("id", &bytes, CompressionMethod::STORE);
+                assert_eq!(said(&archive), "", "{kind}");
+                kinds += 1;
+            }
+        }
+    }
+    assert_eq!(kinds, 14);
 }

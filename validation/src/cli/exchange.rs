@@ -5,9 +5,9 @@ use std::sync::{Mutex, PoisonError};
 
 use ::exchange::{
     challenge,
-    flaw::Flaw,
+    flaw::{Flaw, lines},
     problem::{Asked, Problem, Sealed},
-    read::{COLUMNS, Head, RESULTS, curve::CURVE},
+    read::{COLUMNS, Head, RESULTS, Renamed, curve::CURVE},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
 };
@@ -17,6 +17,7 @@ use base::{
     reference::sha256,
     spec::RunSpec,
     submission::OURS,
+    text::short,
 };
 use harness::{
     case::{self, Case, RunError, Tier},
@@ -152,6 +153,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let coarse = entry.scene(case, &problem)?;
     let scene = coarse.as_ref().unwrap_or(&problem);
     entry.stand_for(case, scene).map_err(refused)?;
+    entry.results.notes().iter().for_each(|note| output::say(note));
     entry.check(scene).map_err(refused)?;
     let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
         refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
@@ -179,7 +181,15 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
 
 /// The submission in a folder, with columns of other names.
 fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
-    let renamed = map.iter().map(|(ours, theirs)| (theirs.clone(), ours.clone())).collect();
+    let mut renamed = Renamed::new();
+    for (ours, theirs) in map {
+        let is_named = renamed.values().any(|of| of == ours);
+        if is_named || renamed.insert(theirs.clone(), ours.clone()).is_some() {
+            let words =
+                format!("--map {ours}={theirs}: {ours} or {theirs} is named twice; expected once");
+            return Err(Failure::usage(words));
+        }
+    }
     submission::read(folder, &renamed).map_err(refused)
 }
 
@@ -188,7 +198,7 @@ fn spec_of(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
     let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
     let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
     if name != case.name() {
-        let words = format!("problem.json is of the case {name}, not of {}", case.name());
+        let words = format!("problem.json is of the case {}, not of {}", short(&name), case.name());
         return Err(Failure::usage(words));
     }
     if plain != asked.spec {
@@ -209,6 +219,12 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
         let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
         let problem = Problem::seen(case, spec_of(case, asked)?, Some(by))?;
+        asked.agrees(&problem).map_err(|flaw| refused(vec![flaw]))?;
+        entry
+            .results
+            .notes()
+            .iter()
+            .for_each(|note| output::say(&format!("{}: {note}", folder.display())));
         entry.check(&problem).map_err(refused)?;
         Ok((entry, problem, by))
     };
@@ -264,12 +280,15 @@ fn problem(
             return Err(Failure::usage(words));
         }
     }
-    Ok(Problem::of(case, spec)?)
+    let problem = Problem::of(case, spec)?;
+    let agrees = entry.asked.as_ref().map_or(Ok(()), |asked| asked.agrees(&problem));
+    agrees.map_err(|flaw| refused(vec![flaw]))?;
+    Ok(problem)
 }
 
 /// All flaws as the reason why nothing is judged.
 fn refused(flaws: Vec<Flaw>) -> Failure {
-    let lines: Vec<String> = flaws.iter().map(|flaw| format!("  {flaw}")).collect();
+    let lines: Vec<String> = lines(&flaws).iter().map(|line| format!("  {line}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",
         lines.join("\n")

@@ -1,4 +1,6 @@
-//! Numbers as bytes, least first.
+//! Numbers as bytes.
+
+use base::text::short;
 
 /// An array of three components of a particle has no more than these.
 pub const MOST_NUMBERS: usize = 3 * super::MOST_ROWS;
@@ -8,27 +10,94 @@ pub fn too_long() -> String {
     format!("it has more than {MOST_NUMBERS} numbers; expected fewer particles or times")
 }
 
-/// Numbers of a kind by the name of NumPy or of ParaView.
+/// What a number is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Of {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+/// What numbers are as bytes.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    pub of: Of,
+    /// Bytes of each.
+    pub width: usize,
+    /// Does the most significant byte come first?
+    pub is_big: bool,
+}
+
+impl Kind {
+    /// Floats of 4 or 8 bytes, or whole numbers of 1, 2, 4 or 8.
+    fn new(of: Of, bits: Option<usize>, is_big: bool) -> Option<Self> {
+        let is_known = |bits: &usize| match of {
+            Of::Float => [32, 64].contains(bits),
+            Of::Signed | Of::Unsigned => [8, 16, 32, 64].contains(bits),
+        };
+        bits.filter(is_known).map(|bits| Self { of, width: bits / 8, is_big })
+    }
+
+    /// By the name of NumPy, as in `<f8`.
+    pub fn of_numpy(name: &str) -> Result<Self, String> {
+        let known = || {
+            let (order, kind) = name.split_at_checked(1)?;
+            let (kind, bytes) = kind.split_at_checked(1)?;
+            let of = match kind {
+                "f" => Of::Float,
+                "i" => Of::Signed,
+                "u" => Of::Unsigned,
+                _ => return None,
+            };
+            let bits = bytes.parse().ok().and_then(|bytes: usize| bytes.checked_mul(8));
+            ["<", ">", "|", "="].contains(&order).then(|| Self::new(of, bits, order == ">"))?
+        };
+        known().ok_or_else(|| unknown(name))
+    }
+
+    /// By the name of ParaView, as in `Float64`.
+    pub fn of_vtk(name: &str, is_big: bool) -> Result<Self, String> {
+        let kinds = [("Float", Of::Float), ("Int", Of::Signed), ("UInt", Of::Unsigned)];
+        let of = |(begin, of)| {
+            let bits = name.strip_prefix(begin)?.parse().ok();
+            Self::new(of, bits, is_big)
+        };
+        kinds.into_iter().find_map(of).ok_or_else(|| unknown(name))
+    }
+}
+
+fn unknown(name: &str) -> String {
+    format!(
+        "its type is {}; expected floats of 4 or 8 bytes, or whole numbers of 1, 2, 4 or 8",
+        short(name)
+    )
+}
+
+/// Numbers of a kind.
 ///
 /// # Errors
-/// If the kind is another one, or the bytes end within a number.
-pub fn numbers(kind: &str, bytes: &[u8]) -> Result<Vec<f64>, String> {
-    fn all<const N: usize>(bytes: &[u8], number: fn([u8; N]) -> f64) -> Result<Vec<f64>, String> {
-        let (numbers, rest) = bytes.as_chunks::<N>();
-        match rest.is_empty() {
-            _ if numbers.len() > MOST_NUMBERS => Err(too_long()),
-            true => Ok(numbers.iter().map(|bytes| number(*bytes)).collect()),
-            false => Err("it ends within a number".into()),
-        }
+/// If the bytes end within a number, or there are too many.
+pub fn numbers(Kind { of, width, is_big }: Kind, bytes: &[u8]) -> Result<Vec<f64>, String> {
+    if !bytes.len().is_multiple_of(width) {
+        return Err("it ends within a number".into());
     }
-    match kind {
-        "<f8" | "Float64" => all(bytes, f64::from_le_bytes),
-        "<f4" | "Float32" => all(bytes, |bytes| f32::from_le_bytes(bytes).into()),
-        "<i8" | "Int64" => all(bytes, |bytes| i64::from_le_bytes(bytes) as f64),
-        "<i4" | "Int32" => all(bytes, |bytes| i32::from_le_bytes(bytes).into()),
-        "|u1" | "UInt8" => all(bytes, |bytes: [u8; 1]| bytes[0].into()),
-        other => {
-            Err(format!("its type is {other}; expected floats of 8 or 4 bytes, or whole numbers"))
-        }
+    if bytes.len() / width > MOST_NUMBERS {
+        return Err(too_long());
     }
+    let number = |bytes: &[u8]| {
+        let mut whole = [0; 8];
+        whole[..width].copy_from_slice(bytes);
+        if is_big {
+            whole[..width].reverse();
+        }
+        let bits = u64::from_le_bytes(whole);
+        let unused = 64 - 8 * width as u32;
+        match (of, width) {
+            (Of::Float, 4) => f32::from_bits(bits as u32).into(),
+            (Of::Float, _) => f64::from_bits(bits),
+            (Of::Signed, _) => ((bits << unused).cast_signed() >> unused) as f64,
+            (Of::Unsigned, _) => bits as f64,
+        }
+    };
+    Ok(bytes.chunks_exact(width).map(number).collect())
 }

@@ -4,13 +4,14 @@
 
 use std::iter::once;
 
+use base::text::number;
 use harness::{
     declare::Curve,
     playback::{self, Frame, Placed},
 };
 use nalgebra::Vector2;
 
-use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, table};
+use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, Rows, table};
 use crate::{flaw::Flaw, problem::Problem};
 
 /// Name of the table.
@@ -26,39 +27,37 @@ pub fn frames(
     renamed: &Renamed,
     problem: &Problem,
 ) -> Result<Results, Vec<Flaw>> {
-    let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
-    let columns: Vec<Head> = once(("t", "s", false)).chain(columns).collect();
-    let rows = table::rows(CURVE, text, renamed, &columns)?;
-    if rows.len() == 0 {
-        return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]);
-    }
+    let rows = finite(curve, text, renamed)?;
     let (times, ascending) = (rows.column("t"), curve.columns[0].0);
     let first = rows.column(ascending);
     let line = |k: usize| rows.first_line + k as u64;
     let (settings, mut flaws) = (&problem.spec.settings, Vec::new());
-    for (name, ..) in &columns {
-        flaws.extend((0..times.len()).filter_map(|k| rows.finite(name, k).err()));
-    }
     let particles = &problem.outline.particles;
     let (x, y, moving) = (particles.column("x"), particles.column("y"), problem.moving());
     let from: Vec<Vector2<f64>> =
         moving.iter().map(|id| Vector2::new(x[*id as usize], y[*id as usize])).collect();
-    let (mut results, count, mut k) = (Results::default(), (curve.rows)(settings), 0);
+    let unread = rows.unread.iter().cloned().collect();
+    let mut results = Results { unread, ..Results::default() };
+    let (count, mut k) = ((curve.rows)(settings), 0);
     while k < times.len() && flaws.len() < MOST_FLAWS {
         let (time, start) = (times[k], k);
         k += times[k..].iter().take_while(|t| **t == time).count().max(1);
         let flaw = |what: String, name: &str| Flaw::of(CURVE, what).at(line(start)).in_column(name);
         if start > 0 && time < times[start - 1] {
-            let what =
-                format!("it is {time}, after {}; expected rows sorted by t", times[start - 1]);
+            let what = format!(
+                "it is {}, after {}; expected rows sorted by t",
+                number(time),
+                number(times[start - 1])
+            );
             flaws.push(flaw(what, "t"));
         }
         if k - start != count {
-            let what = format!("{} rows are at t = {time} s; expected {count}", k - start);
+            let what =
+                format!("{} rows are at t = {} s; expected {count}", k - start, number(time));
             flaws.push(flaw(what, "t"));
         }
         if let Some(two) = first[start..k].windows(2).position(|two| two[0] >= two[1]) {
-            let what = format!("it is {}; expected it to ascend", first[start + two + 1]);
+            let what = format!("it is {}; expected it to ascend", number(first[start + two + 1]));
             flaws.push(flaw(what, ascending).at(line(start + two + 1)));
         }
         if (results.frames.len() + 1) * moving.len() > MOST_ROWS {
@@ -85,6 +84,22 @@ pub fn frames(
         hold(&mut results, &problem.outline.times);
     }
     if flaws.is_empty() { Ok(results) } else { Err(flaws) }
+}
+
+/// The table: finite numbers, and at least one row.
+fn finite(curve: &Curve, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+    let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
+    let columns: Vec<Head> = once(("t", "s", false)).chain(columns).collect();
+    let rows = table::rows(CURVE, text, renamed, &columns)?;
+    if rows.len() == 0 {
+        return Err(vec![Flaw::of(CURVE, "it has no rows; expected one a point and time")]);
+    }
+    let wrong = |(name, ..): &Head| {
+        let flaws = (0..rows.len()).filter_map(|k| rows.finite(name, k).err());
+        flaws.take(MOST_FLAWS).collect::<Vec<_>>()
+    };
+    let flaws: Vec<Flaw> = columns.iter().flat_map(wrong).collect();
+    if flaws.is_empty() { Ok(rows) } else { Err(flaws) }
 }
 
 /// A series is sampled at intervals, and its last row counts until the end if that comes before the next one.

@@ -5,7 +5,9 @@ use std::path::Path;
 
 use hdf5_reader::{Dataset, Datatype, H5Type, Hdf5File, OpenOptions, error::Error, group::Group};
 
-use super::{MOST_ROWS, Renamed, Rows, number_in, of_arrays, open, too_many};
+use base::{files, text::short};
+
+use super::{MOST_BYTES, MOST_ROWS, Renamed, Rows, columns::Heads, number_in, of_arrays, too_many};
 use crate::flaw::Flaw;
 
 /// A number has at most so many bytes.
@@ -13,7 +15,8 @@ const WIDEST: usize = 8;
 
 /// The rows of the frames of a file.
 pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
-    drop(open(file, path)?);
+    let regular = files::check_regular(path, MOST_BYTES);
+    regular.map_err(|reason| vec![Flaw::of(file, format!("cannot be read: {reason}"))])?;
     let flaw = |error: Error| vec![Flaw::of(file, error.to_string())];
     let options = OpenOptions::default()
         .with_max_read_bytes(WIDEST * MOST_ROWS)
@@ -29,10 +32,12 @@ pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Vec<Rows>, Vec
         let what = "it has neither datasets nor groups; expected a column each";
         return Err(vec![Flaw::of(file, what)]);
     }
-    let mut all = Vec::new();
+    let (mut all, mut count) = (Vec::new(), 0);
     for group in groups {
-        all.push(frame(file, &group, renamed)?);
-        if all.iter().map(Rows::len).sum::<usize>() > MOST_ROWS {
+        let rows = frame(&format!("{file}, group {}", group.name()), &group, renamed)?;
+        count += rows.len();
+        all.push(rows);
+        if count > MOST_ROWS {
             return Err(vec![too_many(file)]);
         }
     }
@@ -42,7 +47,7 @@ pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Vec<Rows>, Vec
 fn frame(file: &str, group: &Group, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
     let datasets = group.datasets().map_err(|error| vec![Flaw::of(file, error.to_string())])?;
     let heads: Vec<&str> = datasets.iter().map(Dataset::name).collect();
-    of_arrays(file, &heads, renamed, |place| numbers(&datasets[place]))
+    of_arrays(file, &Heads::new(&heads, renamed, &[]), |place| numbers(&datasets[place]))
 }
 
 /// The numbers of a dataset with one dimension, or of one number.
@@ -59,10 +64,15 @@ fn numbers(of: &Dataset) -> Result<Vec<f64>, String> {
         Datatype::FloatingPoint { size: 4, .. } => all(of, |number: f32| number.into()),
         Datatype::FixedPoint { size: 8, signed: true, .. } => all(of, |number: i64| number as f64),
         Datatype::FixedPoint { size: 4, signed: true, .. } => all(of, |number: i32| number.into()),
+        Datatype::FixedPoint { size: 2, signed: true, .. } => all(of, |number: i16| number.into()),
+        Datatype::FixedPoint { size: 1, signed: true, .. } => all(of, |number: i8| number.into()),
         Datatype::FixedPoint { size: 8, .. } => all(of, |number: u64| number as f64),
         Datatype::FixedPoint { size: 4, .. } => all(of, |number: u32| number.into()),
-        other => {
-            Err(format!("its type is {other:?}; expected floats or whole numbers of 8 or 4 bytes"))
-        }
+        Datatype::FixedPoint { size: 2, .. } => all(of, |number: u16| number.into()),
+        Datatype::FixedPoint { size: 1, .. } => all(of, |number: u8| number.into()),
+        other => Err(format!(
+            "its type is {}; expected floats of 4 or 8 bytes, or whole numbers of 1, 2, 4 or 8",
+            short(&format!("{other:?}"))
+        )),
     }
 }

@@ -3,6 +3,7 @@
 
 #[cfg(any(feature = "npz", feature = "vtk"))]
 mod binary;
+mod columns;
 pub mod curve;
 mod dump;
 #[cfg(feature = "hdf5")]
@@ -13,10 +14,13 @@ mod table;
 #[cfg(feature = "vtk")]
 mod vtk;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use base::files;
+use base::{
+    files,
+    text::{few, number, short},
+};
 use harness::{
     outline::role,
     playback::{Frame, Own, Placed},
@@ -25,6 +29,7 @@ use nalgebra::Vector2;
 use solver::Role;
 
 use crate::flaw::Flaw;
+use columns::{MOST_SHOWN, Places, THIRD};
 
 /// More than this is no result of a run of a laptop \[bytes\].
 pub const MOST_BYTES: u64 = 1 << 28;
@@ -56,13 +61,26 @@ pub const RESULTS: &str = "results.csv";
 /// New names of columns: ours by theirs.
 pub type Renamed = BTreeMap<String, String>;
 
+/// A third component that differs by no more than this share of the first two is constant.
+const FLAT: f64 = 1e-6;
+/// Masses that differ by no more than this share are one mass, stated with few digits.
+pub const SAME_MASS: f64 = 1e-4;
+
 /// Rows of one file, column by column.
 pub struct Rows {
     file: String,
     /// Line of the first row.
     first_line: u64,
+    /// The least id: 0, or 1 in files whose format begins with it.
+    first_id: f64,
     /// Names, such as those of [`COLUMNS`], and values, all of one length.
     columns: Vec<(&'static str, Vec<f64>)>,
+    /// The columns that are not read, as the file has them.
+    unread: Vec<String>,
+    /// The names of the third components of place and velocity, where the file has them.
+    thirds: BTreeMap<&'static str, String>,
+    /// Is the id the place in the file?
+    by_order: bool,
 }
 
 /// Particles at times as they were read.
@@ -74,6 +92,59 @@ pub struct Results {
     pub own: Vec<Own>,
     /// The file of each frame, and the line of its first row where it has lines.
     pub places: Vec<(String, u64)>,
+    /// The columns that were handed in.
+    pub columns: BTreeSet<&'static str>,
+    /// Mass, or NaN, and role of each particle for which the files state one of them.
+    pub stated: BTreeMap<u32, (f64, Option<Role>)>,
+    /// The columns that were not read, as the files have them.
+    pub unread: BTreeSet<String>,
+    /// Are particles numbered by their place in the file, because it has no ids?
+    pub by_order: bool,
+}
+
+impl Results {
+    /// What was not taken from the files, and what was put in its place: a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        let unread = few(&self.unread, MOST_SHOWN);
+        let unread = (!unread.is_empty()).then(|| format!("columns that are not read: {unread}"));
+        let by_order = self.by_order.then(|| {
+            "the files have no ids: particles are numbered by their place in the file, from 0"
+                .into()
+        });
+        unread.into_iter().chain(by_order).collect()
+    }
+
+    /// Takes the names of the columns of a file; a flaw for each that one file has and another lacks.
+    fn take_columns(&mut self, rows: &Rows, first: &str) -> Vec<Flaw> {
+        self.unread.extend(rows.unread.iter().cloned());
+        self.by_order |= rows.by_order;
+        let columns: BTreeSet<_> = rows.columns.iter().map(|(name, _)| *name).collect();
+        let columns = columns.into_iter().filter(|name| !THIRD.contains(name)).collect();
+        if self.columns.is_empty() {
+            self.columns = columns;
+            return Vec::new();
+        }
+        let flaw = |name: &&'static str| {
+            let has = if columns.contains(name) { "is here and not" } else { "is not here, but" };
+            Flaw::of(&rows.file, format!("it {has} in {first}")).in_column(*name)
+        };
+        self.columns.symmetric_difference(&columns).map(flaw).collect()
+    }
+
+    /// Takes mass and role that a row states for a particle; what is wrong if they were others before.
+    fn state(&mut self, id: u32, mass: f64, role: Option<Role>) -> Option<(&'static str, String)> {
+        if mass.is_nan() && role.is_none() {
+            return None;
+        }
+        let (before, role_before) = *self.stated.entry(id).or_insert((mass, role));
+        let expected = "expected one for each particle, at all times";
+        if (mass - before).abs() > SAME_MASS * before {
+            let [mass, before] = [mass, before].map(number);
+            return Some(("mass", format!("it is {mass}, and was {before} before; {expected}")));
+        }
+        let is_other = role != role_before;
+        is_other.then(|| ("role", format!("particle {id} had another one before; {expected}")))
+    }
 }
 
 /// Endings of files with results, beside the table.
@@ -103,14 +174,18 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
         let what = format!("results in several formats ({}); leave one", kinds.join(", "));
         return Err(refused(what));
     }
-    let (mut all, mut flaws) = (Vec::new(), Vec::new());
+    let (mut all, mut count, mut flaws) = (Vec::new(), 0, Vec::new());
     for name in names {
         match rows(folder, &name, renamed) {
-            Ok(rows) => all.extend(rows),
+            Ok(rows) => {
+                count += rows.iter().map(Rows::len).sum::<usize>();
+                flaws.extend(rows.iter().flat_map(Rows::not_flat));
+                flaws.extend((count > MOST_ROWS).then(|| too_many(&name)));
+                all.extend(rows);
+            }
             Err(of_file) => flaws.extend(of_file),
         }
-        if flaws.len() >= MOST_FLAWS || all.iter().map(Rows::len).sum::<usize>() > MOST_ROWS {
-            flaws.extend(all.last().filter(|_| flaws.is_empty()).map(|of| too_many(&of.file)));
+        if flaws.len() >= MOST_FLAWS || count > MOST_ROWS {
             return Err(flaws);
         }
     }
@@ -141,14 +216,15 @@ fn number_in(name: &str) -> u64 {
 fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<Flaw>> {
     let path = folder.join(name);
     let unread = |reason: std::io::Error| vec![Flaw::of(name, format!("cannot be read: {reason}"))];
+    let bytes = || files::read_at_most(&path, MOST_BYTES).map_err(unread);
     let text = || files::read_text(&path, MOST_BYTES).map_err(unread);
     match ending(name) {
         "csv" => Ok(vec![table::rows(name, &text()?, renamed, &COLUMNS)?]),
         "dump" => dump::rows(name, &text()?, renamed),
         #[cfg(feature = "vtk")]
-        "vtu" | "vtp" => Ok(vec![vtk::rows(name, &text()?, renamed)?]),
+        "vtu" | "vtp" => Ok(vec![vtk::rows(name, bytes()?, renamed)?]),
         #[cfg(feature = "npz")]
-        "npz" => Ok(vec![npz::rows(name, &path, renamed)?]),
+        "npz" => Ok(vec![npz::rows(name, &bytes()?, renamed)?]),
         #[cfg(feature = "hdf5")]
         "h5" | "hdf5" => hdf5::rows(name, &path, renamed),
         other => {
@@ -158,69 +234,18 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
     }
 }
 
-/// The new names, and those of names that a format is known for.
-fn known_too(known: &[(&str, &str)], renamed: &Renamed) -> Renamed {
-    let mut all = renamed.clone();
-    for (theirs, ours) in known {
-        all.entry(theirs.to_string()).or_insert_with(|| ours.to_string());
-    }
-    all
-}
-
-/// Where each column of ours is among these heads.
-///
-/// # Errors
-/// Those that are missing, twice, or in another unit.
-fn places(
-    file: &str,
-    line: u64,
-    heads: &[&str],
-    renamed: &Renamed,
-    columns: &[Head],
-) -> Result<Vec<(&'static str, usize)>, Vec<Flaw>> {
-    let (mut found, mut flaws) = (Vec::<(&'static str, usize)>::new(), Vec::new());
-    for (place, head) in heads.iter().enumerate() {
-        let (theirs, unit) = match head.trim().split_once('[') {
-            Some((name, unit)) => (name.trim(), Some(unit.trim_end().trim_end_matches(']'))),
-            None => (head.trim(), None),
-        };
-        let ours = renamed.get(theirs).map_or(theirs, String::as_str);
-        let column = columns.iter().copied().find(|(name, ..)| *name == ours);
-        let Some((name, expected, _)) = column else { continue };
-        if let Some(unit) = unit.filter(|unit| *unit != expected) {
-            let what = format!("its unit is {unit}; expected {expected}");
-            flaws.push(Flaw::of(file, what).at(line).in_column(name));
-        }
-        if found.iter().any(|(known, _)| *known == name) {
-            flaws.push(Flaw::of(file, "it is there twice; expected once").at(line).in_column(name));
-        }
-        found.push((name, place));
-    }
-    for (name, unit, may_lack) in columns.iter().copied() {
-        if !may_lack && !found.iter().any(|(known, _)| *known == name) {
-            let what = format!(
-                "it is missing; expected a column {name} in {unit}, or --map {name}=NAME; the columns are {}",
-                heads.join(", ")
-            );
-            flaws.push(Flaw::of(file, what).at(line).in_column(name));
-        }
-    }
-    if flaws.is_empty() { Ok(found) } else { Err(flaws) }
-}
-
 /// Rows of a file that holds one array a column, read where it has this place among the heads. `t` may be one
 /// number for all.
 #[cfg(any(feature = "hdf5", feature = "npz", feature = "vtk"))]
 fn of_arrays(
     file: &str,
-    heads: &[&str],
-    renamed: &Renamed,
+    heads: &columns::Heads,
     mut array: impl FnMut(usize) -> Result<Vec<f64>, String>,
 ) -> Result<Rows, Vec<Flaw>> {
     let flaw = |name: &str, what: String| vec![Flaw::of(file, what).in_column(name)];
-    let places = places(file, 1, heads, renamed, &COLUMNS)?;
-    let mut rows = Rows::new(file, 1, &places);
-    for ((name, values), (_, place)) in rows.columns.iter_mut().zip(places) {
+    let places = columns::places(file, 1, heads, &COLUMNS)?;
+    let mut rows = Rows::new(file, 1, heads, &places);
+    for ((name, values), (_, place)) in rows.columns.iter_mut().zip(places.of) {
         *values = array(place).map_err(|what| flaw(name, what))?;
     }
     let count = rows.column("x").len();
@@ -236,32 +261,56 @@ fn of_arrays(
     Ok(rows)
 }
 
-/// A regular file that is not too long.
-#[cfg(any(feature = "hdf5", feature = "npz"))]
-fn open(file: &str, path: &Path) -> Result<std::fs::File, Vec<Flaw>> {
-    let opened = files::check_regular(path, MOST_BYTES).and_then(|()| std::fs::File::open(path));
-    opened.map_err(|reason| vec![Flaw::of(file, reason.to_string())])
-}
-
 impl Rows {
     /// No rows yet, of a file that has these columns.
-    fn new(file: &str, first_line: u64, places: &[(&'static str, usize)]) -> Self {
-        let columns = places.iter().map(|(name, _)| (*name, Vec::new())).collect();
-        Self { file: file.into(), first_line, columns }
+    fn new(file: &str, first_line: u64, heads: &columns::Heads, places: &Places) -> Self {
+        let Places { of, unread } = places;
+        let columns = of.iter().map(|(name, _)| (*name, Vec::new())).collect();
+        let unread = unread.iter().map(|place| short(heads.all[*place])).collect();
+        let third = |(name, place): &(&'static str, usize)| (*name, short(heads.all[*place]));
+        let thirds = of.iter().filter(|(name, _)| THIRD.contains(name)).map(third).collect();
+        Self {
+            file: file.into(),
+            first_line,
+            first_id: 0.0,
+            columns,
+            unread,
+            thirds,
+            by_order: false,
+        }
+    }
+
+    /// A flaw for each third component that is not constant: it would be lost in two dimensions.
+    fn not_flat(&self) -> impl Iterator<Item = Flaw> {
+        let of = |(third, [a, b]): (&'static str, [&'static str; 2])| {
+            let name = self.thirds.get(third)?;
+            let ends = |of: &str| {
+                let start = [f64::INFINITY, f64::NEG_INFINITY];
+                self.column(of).iter().fold(start, |[low, high], v| [low.min(*v), high.max(*v)])
+            };
+            let ([low, high], others) = (ends(third), [ends(a), ends(b)]);
+            let size = others.as_flattened().iter().fold(0.0, |all: f64, end| all.max(end.abs()));
+            let is_flat =
+                high - low <= FLAT * size && self.column(third).iter().all(|v| !v.is_nan());
+            (!is_flat && !self.column(third).is_empty()).then(|| {
+                let what = format!(
+                    "it is from {} to {}, and only two components are read; expected a constant, or \
+                     --map {b}={name}",
+                    number(low),
+                    number(high)
+                );
+                Flaw::of(&self.file, what).in_column(name.clone())
+            })
+        };
+        THIRD.into_iter().zip([["x", "y"], ["u", "v"]]).filter_map(of)
     }
 
     /// Adds a row: of each column the number that stands at its place, with a flaw where none does.
-    fn add(
-        &mut self,
-        line: u64,
-        places: &[(&'static str, usize)],
-        cells: &[&str],
-        flaws: &mut Vec<Flaw>,
-    ) {
-        for ((name, values), (_, place)) in self.columns.iter_mut().zip(places) {
+    fn add(&mut self, line: u64, places: &Places, cells: &[&str], flaws: &mut Vec<Flaw>) {
+        for ((name, values), (_, place)) in self.columns.iter_mut().zip(&places.of) {
             let text = cells.get(*place).copied().unwrap_or_default();
             values.push(text.parse().unwrap_or_else(|_| {
-                let what = format!("it is {text:?}; expected a number");
+                let what = format!("it is {:?}; expected a number", short(text));
                 flaws.push(Flaw::of(&self.file, what).at(line).in_column(*name));
                 f64::NAN
             }));
@@ -282,13 +331,13 @@ impl Rows {
         &self,
         name: &str,
         k: usize,
-        is_right: fn(f64) -> bool,
+        is_right: impl Fn(f64) -> bool,
         expected: &str,
     ) -> Result<Option<f64>, Flaw> {
         let value = self.column(name).get(k).copied();
         match value.filter(|value| !is_right(*value)) {
             Some(wrong) => {
-                let what = format!("it is {wrong}; expected {expected}");
+                let what = format!("it is {}; expected {expected}", number(wrong));
                 Err(Flaw::of(&self.file, what).at(self.first_line + k as u64).in_column(name))
             }
             None => Ok(value),
@@ -299,24 +348,24 @@ impl Rows {
         self.checked(name, k, f64::is_finite, "a finite number")
     }
 
-    /// Time and particle of a row, or what is wrong with it.
-    fn row(&self, k: usize) -> Result<(f64, Own), Flaw> {
+    /// Time and particle of a row, and its role where one is stated; or what is wrong with it.
+    fn row(&self, k: usize) -> Result<(f64, Own, Option<Role>), Flaw> {
         let finite = |name| self.finite(name, k).map(|value| value.unwrap_or(f64::NAN));
         let is_positive = |value: f64| value.is_finite() && value > 0.0;
         let positive = |name| self.checked(name, k, is_positive, "a finite number above 0");
-        let id = finite("id")?;
-        let is_id = |id: f64| (0.0..=f64::from(u32::MAX)).contains(&id) && id.fract() == 0.0;
-        self.checked("id", k, is_id, "a whole number, not below 0")?;
+        let (id, first) = (finite("id")?, self.first_id);
+        let is_id = |id: f64| (first..=f64::from(u32::MAX)).contains(&id) && id.fract() == 0.0;
+        self.checked("id", k, is_id, &format!("a whole number, not below {first}"))?;
         let start = Placed {
-            id: id as u32,
+            id: (id - first) as u32,
             position: Vector2::new(finite("x")?, finite("y")?),
             velocity: Vector2::new(finite("u")?, finite("v")?),
             density: positive("density")?,
         };
         let (time, mass) = (finite("t")?, positive("mass")?.unwrap_or(f64::NAN));
         let number = self.checked("role", k, |value| role(value).is_some(), "0, 1 or 2")?;
-        let role = number.and_then(role).unwrap_or(Role::Fluid);
-        Ok((time, Own { role, mass, start }))
+        let stated = number.and_then(role);
+        Ok((time, Own { role: stated.unwrap_or(Role::Fluid), mass, start }, stated))
     }
 }
 
@@ -324,6 +373,7 @@ impl Rows {
 fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
     let (mut results, mut flaws) = (Results::default(), Vec::new());
     for rows in all {
+        flaws.extend(results.take_columns(rows, &all[0].file));
         for k in 0..rows.len() {
             if flaws.len() >= MOST_FLAWS {
                 flaws.push(Flaw::of(
@@ -333,15 +383,20 @@ fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
                 return Err(flaws);
             }
             let line = rows.first_line + k as u64;
-            let (time, own) = match rows.row(k) {
+            let (time, own, role) = match rows.row(k) {
                 Ok(row) => row,
                 Err(flaw) => {
                     flaws.push(flaw);
                     continue;
                 }
             };
+            let changed = results.state(own.start.id, own.mass, role);
+            flaws.extend(
+                changed.map(|(column, what)| Flaw::of(&rows.file, what).at(line).in_column(column)),
+            );
             let last = results.frames.last().map(|frame| frame.time);
             if let Some(last) = last.filter(|last| time < *last) {
+                let [time, last] = [time, last].map(number);
                 let what = format!("it is {time}, after {last}; expected rows sorted by t");
                 flaws.push(Flaw::of(&rows.file, what).at(line).in_column("t"));
                 continue;

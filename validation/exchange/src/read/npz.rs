@@ -2,23 +2,21 @@
 //! be one number for the whole file.
 
 use std::io::Read;
-use std::path::Path;
 
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive};
 
-use super::{MOST_ROWS, Renamed, Rows, of_arrays, open};
+use base::text::short;
+
+use super::{MOST_ROWS, Renamed, Rows, binary, columns::Heads, of_arrays};
 use crate::flaw::Flaw;
 
 /// Every array in the format of NumPy begins with these bytes.
 const MAGIC: &[u8] = b"\x93NUMPY";
 
-pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+pub fn rows(file: &str, bytes: &[u8], renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
     let unread = |reason: rawzip::Error| vec![Flaw::of(file, reason.to_string())];
-    let mut bytes = Vec::new();
-    let read = open(file, path)?.read_to_end(&mut bytes);
-    read.map_err(|reason| vec![Flaw::of(file, reason.to_string())])?;
-    let archive = ZipArchive::from_slice(&bytes).map_err(unread)?;
+    let archive = ZipArchive::from_slice(bytes).map_err(unread)?;
     let (mut heads, mut arrays) = (Vec::new(), Vec::new());
     let mut entries = archive.entries();
     while let Some(entry) = entries.next_entry().map_err(unread)? {
@@ -27,7 +25,7 @@ pub fn rows(file: &str, path: &Path, renamed: &Renamed) -> Result<Rows, Vec<Flaw
         arrays.push((entry.compression_method(), entry.wayfinder()));
     }
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
-    of_arrays(file, &heads, renamed, |place| {
+    of_arrays(file, &Heads::new(&heads, renamed, &[]), |place| {
         let (method, place) = arrays[place];
         let entry = archive.get_entry(place).map_err(|reason| reason.to_string())?;
         match method {
@@ -62,7 +60,7 @@ fn numbers(array: &mut dyn Read) -> Result<Vec<f64>, String> {
         return Err("it is in the order of Fortran; expected that of C".into());
     }
     let kind = head.split("'descr':").nth(1).and_then(|rest| rest.split('\'').nth(1));
-    let values = super::binary::numbers(kind.unwrap_or("unknown"), data)?;
+    let values = binary::numbers(binary::Kind::of_numpy(kind.unwrap_or_default())?, data)?;
     let shape = head.split("'shape': (").nth(1).and_then(|rest| rest.split(')').next());
     let sizes = shape.unwrap_or_default().split(',').filter(|size| !size.trim().is_empty());
     let mut count = sizes.map(|size| size.trim().parse::<usize>().ok());
@@ -70,6 +68,6 @@ fn numbers(array: &mut dyn Read) -> Result<Vec<f64>, String> {
     let (found, said) = (values.len(), shape.unwrap_or_default());
     match count {
         Some(count) if count == found => Ok(values),
-        _ => Err(format!("it has {found} numbers; its head says ({said})")),
+        _ => Err(format!("it has {found} numbers; its head says ({})", short(said))),
     }
 }

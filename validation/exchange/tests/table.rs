@@ -1,0 +1,166 @@
+//! Tables of comma-separated values: names, what files state beside places and velocities, and messages.
+
+use exchange::read::{Renamed, Results, read};
+
+/// What is read of tables, or what is wrong with them.
+fn read_as(text: &str, map: &[(&str, &str)]) -> Result<Results, String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("results.csv"), text).unwrap();
+    let renamed = map.iter().map(|(ours, theirs)| (theirs.to_string(), ours.to_string()));
+    let lines = |flaws: Vec<exchange::flaw::Flaw>| exchange::flaw::lines(&flaws).join("\n");
+    read(folder.path(), &renamed.collect::<Renamed>()).map_err(lines)
+}
+
+const ROWS: &str = "0,0,1,2,3,4,5\n0,1,6,7,8,9,10\n";
+
+/// A density under a usual name is the density, whatever its capitals; under another one it is told.
+#[test]
+fn usual_names_are_read_and_others_are_told() {
+    for name in ["density", "Density", "rho", "Rhop", "rho[kg/m^3]", "c_rho", "RHO"] {
+        let text = format!("Time,Idp,x,y,vx,v_y,{name}\n{ROWS}");
+        let results = read_as(&text, &[]).unwrap_or_else(|what| panic!("{name}: {what}"));
+        let last = &results.frames[0].particles[1];
+        assert_eq!((last.id, last.density), (1, Some(10.0)), "{name}");
+        assert_eq!(last.velocity.as_slice(), [8.0, 9.0], "{name}");
+        assert!(results.notes().is_empty(), "{:?}", results.notes());
+    }
+    let results = read_as(&format!("t,id,x,y,u,v,dens\n{ROWS}"), &[]).unwrap();
+    assert_eq!(results.frames[0].particles[1].density, None);
+    assert_eq!(results.notes(), ["columns that are not read: dens"]);
+    let words = read_as(&format!("t,id,x,y,u,v,rho[g/cm^3]\n{ROWS}"), &[]).unwrap_err();
+    assert!(words.contains("column density: its unit is g/cm^3; expected kg/m^3"), "{words}");
+    let words = read_as(&format!("t,id,x,y,u,rho,Rhop\n{ROWS}"), &[]).unwrap_err();
+    assert!(words.contains("rho and Rhop may be it"), "{words}");
+}
+
+/// A name of the caller comes before ours, and is there.
+#[test]
+fn names_of_the_caller_are_there_and_come_first() {
+    let text = format!("t,id,x,y,u,v,old\n{ROWS}");
+    let of = |map: &[(&str, &str)]| read_as(&text, map);
+    let results = of(&[("x", "old"), ("density", "x")]).unwrap();
+    let last = &results.frames[0].particles[1];
+    assert_eq!((last.position.x, last.density), (10.0, Some(6.0)));
+    let results = of(&[("x", "old")]).unwrap();
+    assert_eq!(results.notes(), ["columns that are not read: x"]);
+    for (map, says) in [
+        (&[("density", "Old")][..], "column density: --map names Old, which is not there"),
+        (&[("id", "nosuch")], "the columns are t, id, x, y, u, v, old"),
+        (&[("front", "x")], "column front: --map names it; the columns to be read are t, id"),
+    ] {
+        let words = of(map).unwrap_err();
+        assert!(words.contains(says), "expected {says:?} in {words}");
+    }
+    let text = format!("t,id,x,y,vel[0],vel[1],p[m/s]\n{ROWS}");
+    let results = read_as(&text, &[("u", "vel[1]"), ("v", "p")]).unwrap();
+    assert_eq!(results.frames[0].particles[0].velocity.as_slice(), [4.0, 5.0]);
+    let words = read_as(&text, &[("u", "vel[1]"), ("v", "vel[0]"), ("x", "p")]).unwrap_err();
+    assert!(words.contains("column x: its unit is m/s; expected m"), "{words}");
+}
+
+/// The last number of a table that was cut is another number, and looks whole.
+#[test]
+fn the_last_line_ends() {
+    let text = format!("t,id,x,y,u,v,density\n{ROWS}");
+    for cut in 1..8 {
+        let words = read_as(&text[..text.len() - cut], &[]).unwrap_err();
+        assert_eq!(
+            words,
+            "results.csv, line 3: the last line does not end; the file was cut short"
+        );
+    }
+    assert!(read_as(&text.replace('\n', "\r\n"), &[]).is_ok());
+}
+
+#[test]
+fn other_separators_are_named() {
+    for (sign, name) in [(";", "semicolons"), ("\t", "tabs"), (" ", "blanks")] {
+        let text = format!("t[s],id,x[m],y,u,v,density\n{ROWS}").replace(',', sign);
+        let words = read_as(&text, &[]).unwrap_err();
+        assert!(words.contains(&format!("line 1: its columns are separated by {name}")), "{words}");
+    }
+}
+
+/// Of vectors with any names the third component is constant, or named.
+#[test]
+fn a_third_component_is_not_lost() {
+    let rows = "0,0,1,2,3,4\n0,1,2,2,5,5\n";
+    for (heads, map, third) in [
+        ("t,id,x,y,z,u,v", &[][..], "--map y=z"),
+        (
+            "t,id,Points:0,Points:1,Points:2,u,v",
+            &[("x", "Points:0"), ("y", "Points:1")],
+            "--map y=Points:2",
+        ),
+        ("t,id,p_1,p_2,p_3,u,v", &[("x", "p_1"), ("y", "p_2")], "--map y=p_3"),
+        ("t,id,p[1],p[2],p[3],u,v", &[("x", "p[1]"), ("y", "p[2]")], "--map y=p[3]"),
+    ] {
+        let rows = rows.replace('\n', ",0\n");
+        let words = read_as(&format!("{heads}\n{rows}"), map).unwrap_err();
+        assert!(words.contains(third) && words.contains("from 3 to 5"), "{heads}: {words}");
+    }
+    let words = read_as(&format!("t,id,x,y,u,v,w\n{ROWS}"), &[]).unwrap_err();
+    assert!(words.contains("column w: it is from 5 to 10"), "{words}");
+    let level = format!("t,id,x,y,u,v,w\n{ROWS}").replace(",5\n", ",10\n");
+    assert!(read_as(&level, &[]).is_ok(), "constant");
+}
+
+/// Mass and role are one for each particle at all times.
+#[test]
+fn mass_and_role_do_not_change() {
+    let of = |later: &str| {
+        format!(
+            "t,id,x,y,u,v,mass,role\n0,0,0,0,0,0,1.5,0\n0,1,0,1,0,0,1.5,1\n1,0,0,0,0,0,{later}\n"
+        )
+    };
+    let stated = read_as(&of("1.50003,0"), &[]).unwrap().stated;
+    assert_eq!(stated[&1], (1.5, Some(solver::Role::Wall)));
+    for (later, says) in [
+        ("1.6,0", "line 4, column mass: it is 1.6, and was 1.5 before"),
+        ("1.5,1", "line 4, column role: particle 0 had another one before"),
+    ] {
+        let words = read_as(&of(later), &[]).unwrap_err();
+        assert!(words.contains(says), "expected {says:?} in {words}");
+    }
+}
+
+/// Files of one submission have the same columns: a density in some of them would be that of the start in
+/// the others.
+#[test]
+fn files_have_the_same_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    for (k, columns, row) in
+        [(1, "id x y vx vy c_rho", "1 0 0 0 0 9"), (2, "id x y vx vy", "1 0 0 0 0")]
+    {
+        let head =
+            format!("ITEM: TIME\n{k}\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS {columns}\n{row}\n");
+        std::fs::write(folder.path().join(format!("{k}.dump")), head).unwrap();
+    }
+    let flaws = read(folder.path(), &Renamed::new()).unwrap_err();
+    assert_eq!(flaws[0].to_string(), "2.dump, column density: it is not here, but in 1.dump");
+}
+
+/// What a file says is repeated by its beginning, three of a kind, and a count.
+#[test]
+fn messages_are_short_whatever_a_file_says() {
+    let heads = |count: usize| "a,".repeat(count) + "b";
+    let long = "x".repeat(1 << 20);
+    for text in [
+        heads(3 << 20) + "\n",
+        heads(9000) + "\n",
+        "\0".repeat(4 << 20),
+        "\0".repeat(4 << 20) + "\n",
+        format!("{long},{long}\n"),
+        format!("t[{long}],id,x,y,u,v\n"),
+        format!("t,id,x,y,u,v\n{}", format!("{long},{long},1,1,1,1\n").repeat(4)),
+        format!("t,id,x,y,u,v\n{}", "1e308,-1e308,1e308,x,y,z\n".repeat(10_000)),
+        format!("t,id,x,y,u,v\n{}", "0,0,NaN,inf,-inf,1\n".repeat(10_000)),
+    ] {
+        let words = read_as(&text, &[]).unwrap_err();
+        assert!(words.len() < 4000, "{} characters: {words:.1000}", words.len());
+        assert!(words.lines().count() <= 24, "{words:.2000}");
+    }
+    let words =
+        read_as(&format!("t,id,x,y,u,v\n{}", "0,-1e308,0,0,0,0\n".repeat(9)), &[]).unwrap_err();
+    assert!(words.contains("it is -1e308") && words.ends_with("and 6 more like this"), "{words}");
+}
