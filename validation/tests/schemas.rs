@@ -201,10 +201,11 @@ fn rare_records(record: &Record) -> Vec<Value> {
     rare.run.keep = Keep { particles: true };
     rare.run.mutation = Some(Mutation { of: Constant::BodyForce, factor: 1.03 });
     rare.run.disorder = Some(Disorder { most: 1e-6, seed: 1 });
-    let [code, version, scheme, method] = ["code", "1", "WCSPH", "abc"].map(String::from);
-    let division = Division::Closed;
-    rare.run.submission =
-        Some(Box::new(Submission { code, version, scheme, division, method, seed: Some(1) }));
+    let [code, version, scheme, method, results] =
+        ["code", "1", "WCSPH", "abc", "def"].map(String::from);
+    let (division, results, seed) = (Division::Closed, Some(results), Some(1));
+    let submission = Submission { code, version, scheme, division, method, results, seed };
+    rare.run.submission = Some(Box::new(submission));
     rare.cost.alone_s = vec![0.1, 0.2];
     rare.cost.resumed = 1;
     let end = Some(EndAfter { steps: 100.0, unit: 1.0 });

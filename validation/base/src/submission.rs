@@ -6,6 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// The code of a submission that this program wrote itself, as `export --solve` does.
 pub const OURS: &str = "touchstone";
+/// Key of the numerics of a record: the machine of the other code, as its submission states it.
+pub const MACHINE: &str = "machine";
 /// Key of the numerics of a record: the day of the session in which it was made with others, in turn.
 pub const SESSION: &str = "session";
 
@@ -23,6 +25,9 @@ pub struct Submission {
     pub division: Division,
     /// SHA-256 of the document that describes the method
     pub method: String,
+    /// SHA-256 of the particles that were handed in, in whatever format; none of a record from before 0.2
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub results: Option<String>,
     /// the seed from which a sealed problem was drawn
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,

@@ -1,7 +1,7 @@
 //! What other codes made of exported problems, and this one in turn with them: the records of
 //! `references/peers`, which the program contains.
 
-use base::{pack, record::Record, submission::SESSION};
+use base::{pack, record::Record, spec::RunKey, submission::SESSION};
 use harness::{make::Made, suite::Plans};
 
 /// Packed by the build script.
@@ -21,10 +21,14 @@ pub fn records() -> impl Iterator<Item = Record> {
 
 /// Adds those of the cases of the plans, except where the store has a run of the same code and method.
 pub fn add(made: &mut Made, plans: &Plans) {
-    for record in records() {
-        let is_planned = plans.iter().any(|(case, _)| case.name() == record.case);
-        if is_planned && made.submissions.iter().all(|own| own.key() != record.key()) {
-            made.submissions.push(record);
-        }
-    }
+    let is_planned = |of: &Record| plans.iter().any(|(case, _)| case.name() == of.case);
+    // Its results may be new.
+    let key = |of: &Record| {
+        let mut spec = of.spec();
+        spec.submission.iter_mut().for_each(|submission| submission.results = None);
+        spec.key()
+    };
+    let stored: Vec<RunKey> = made.submissions.iter().map(key).collect();
+    let is_new = |of: &Record| is_planned(of) && !stored.contains(&key(of));
+    made.peers = records().filter(is_new).collect();
 }

@@ -1,61 +1,103 @@
-//! Sealed problems: settings that are drawn from a seed and from the digest of the method as it is before the
-//! seed is known, so that a method which was tuned for the problems that everybody knows shows it.
+//! Sealed problems: settings that are drawn from a seed and from what the method is, so that a method which
+//! was tuned for the problems that everybody knows shows it.
 
-use base::{
-    random::Random,
-    reference::sha256,
-    settings::{Field, Kind},
+use base::{random::Random, reference::sha256, spec::RunSpec};
+use harness::{case::Case, sealed};
+use serde_json::{Map, Value, json};
+
+use crate::{
+    problem::Sealed,
+    submission::{METHOD, Method},
 };
-use harness::case::{Case, RunError};
-use serde_json::Value;
 
-use crate::problem::Sealed;
+impl Method {
+    /// SHA-256 of code, version, scheme, division and settings, in whatever order and with whatever white
+    /// space they were written. What `changed` says in words is left out.
+    pub fn digest(&self) -> String {
+        let Self { code, version, scheme, division, settings, .. } = self;
+        let settings: Map<String, Value> =
+            settings.iter().map(|(name, value)| (name.clone(), usual(value))).collect();
+        sha256(json!([code, version, scheme, division, settings]).to_string().as_bytes())
+    }
 
-/// The settings that are drawn, where a case has them: name, and the least and the largest factor of the
-/// default of the variant; of a setting whose default is 0, the ends of its range.
-const DRAWN: [(&str, f64, f64); 8] = [
-    ("re", 0.2, 5.0),
-    ("rows", 0.6, 2.0),
-    ("n", 0.6, 2.0),
-    ("spacing", 0.6, 1.6),
-    ("speed", 0.4, 1.6),
-    ("angle", 0.0, 90.0),
-    ("perturb", 0.0, 0.2),
-    ("seed", 1.0, 1000.0),
-];
+    /// The same without prose: of names the letters and digits, of settings the numbers and truth values.
+    /// Other words would draw other problems, until one fits.
+    fn digest_without_prose(&self) -> String {
+        let Self { code, version, scheme, division, settings, .. } = self;
+        let plain = |text: &String| -> String {
+            text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+        };
+        let [code, version, scheme] = [code, version, scheme].map(plain);
+        let mut numbers = Vec::new();
+        settings.values().for_each(|value| add_numbers(value, &mut numbers));
+        sha256(json!([code, version, scheme, division, numbers]).to_string().as_bytes())
+    }
+}
+
+/// Adds the numbers and truth values of a value, in the order of names.
+fn add_numbers(value: &Value, all: &mut Vec<Value>) {
+    match value {
+        Value::Number(_) | Value::Bool(_) => all.push(usual(value)),
+        Value::Array(of) => of.iter().for_each(|value| add_numbers(value, all)),
+        Value::Object(of) => of.values().for_each(|value| add_numbers(value, all)),
+        Value::Null | Value::String(_) => {}
+    }
+}
+
+/// A value by which equal numbers are written alike, such as 1 and 1.0.
+fn usual(value: &Value) -> Value {
+    match value {
+        Value::Number(number) => number.as_f64().map_or_else(|| value.clone(), Value::from),
+        Value::Array(all) => all.iter().map(usual).collect(),
+        Value::Object(all) => all
+            .iter()
+            .map(|(name, value)| (name.clone(), usual(value)))
+            .collect::<Map<_, _>>()
+            .into(),
+        other => other.clone(),
+    }
+}
+
+/// Is the problem of a submission the one that its seed and its method give?
+///
+/// # Errors
+/// What was changed.
+pub fn check(
+    case: &dyn Case,
+    sealed: &Sealed,
+    method: &Method,
+    spec: &RunSpec,
+) -> Result<(), String> {
+    if sealed.method != method.digest() {
+        return Err(format!(
+            "{METHOD}: the SHA-256 of its code, version, scheme, division and settings is {}; the problem was \
+             sealed for {}, so the method was changed afterwards",
+            method.digest(),
+            sealed.method
+        ));
+    }
+    let drawn = draw(case, &spec.variant, sealed.seed, method)?;
+    let settings = case.settings(&spec.variant, &drawn).map_err(|error| error.to_string())?;
+    match settings == spec.settings {
+        true => Ok(()),
+        false => {
+            Err("problem.json is not the one that its seed and method give: settings differ".into())
+        }
+    }
+}
 
 /// `key=value` of the settings of a sealed problem.
 ///
 /// # Errors
-/// If the case has no such variant.
-pub fn draw(case: &dyn Case, variant: &str, sealed: &Sealed) -> Result<Vec<String>, RunError> {
-    let digest = sha256(format!("{} {} {}", case.name(), sealed.seed, sealed.method).as_bytes());
-    let seed = u64::from_str_radix(&digest[..16], 16).unwrap_or(sealed.seed);
-    let mut random = Random::new(seed);
-    let defaults = case.settings(variant, &[])?;
-    let mut drawn = Vec::new();
-    for (name, least, most) in DRAWN {
-        let share = random.uniform();
-        let Some(field) = case.fields().iter().find(|field| field.name == name) else { continue };
-        let Some(default) = defaults.get(name).and_then(Value::as_f64) else { continue };
-        let set = format!("{name}={}", value(field, default, [least, most], share));
-        // A setting that the variant does not read, or a value that it does not allow, is left as it is.
-        let with = [drawn.as_slice(), std::slice::from_ref(&set)].concat();
-        if case.settings(variant, &with).is_ok() {
-            drawn = with;
-        }
-    }
-    Ok(drawn)
-}
-
-/// Between the two factors of the default, evenly in the logarithm; three digits are enough.
-fn value(field: &Field, default: f64, [least, most]: [f64; 2], share: f64) -> String {
-    let value = match default == 0.0 || field.name == "seed" {
-        true => least + share * (most - least),
-        false => default * least * base::functions::exp(share * base::functions::ln(most / least)),
-    };
-    match field.kind {
-        Kind::Count => value.round().to_string(),
-        _ => format!("{value:.2e}").parse().unwrap_or(value).to_string(),
-    }
+/// If no bound is known for problems that the case or the variant could draw.
+pub fn draw(
+    case: &dyn Case,
+    variant: &str,
+    seed: u64,
+    method: &Method,
+) -> Result<Vec<String>, String> {
+    let text = format!("{} {variant} {seed} {}", case.name(), method.digest_without_prose());
+    let digest = sha256(text.as_bytes());
+    let start = u64::from_str_radix(&digest[..16], 16).unwrap_or(seed);
+    sealed::draw(case, variant, &mut Random::new(start))
 }

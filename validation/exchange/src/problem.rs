@@ -13,6 +13,7 @@ use harness::{
     outline::{Outline, Sink},
     plan,
     relation::Relation,
+    sealed,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -53,7 +54,7 @@ pub struct Problem {
 pub struct Sealed {
     /// the seed
     pub seed: u64,
-    /// SHA-256 of the document of the method as it was then
+    /// SHA-256 of the code, version, scheme, division and settings of the method as they were then
     pub method: String,
 }
 
@@ -176,6 +177,13 @@ impl Problem {
         let (outline, method) = sink.of_run(case.run(&spec, &context), case.name())?;
         let gates = if relation.is_none() { plan::gates_of(case, &spec) } else { Vec::new() };
         Ok(Self { spec, about: case.about(), outline, method, gates, sealed: None, relation })
+    }
+
+    /// The same, sealed: judged by what follows from the bounds of judged runs.
+    #[must_use]
+    pub fn sealed(mut self, case: &dyn Case, sealed: Sealed) -> Self {
+        self.gates.extend(sealed::gates(case, &self.spec));
+        Self { sealed: Some(sealed), ..self }
     }
 
     /// The particles that the other code moves: their numbers in the problem.

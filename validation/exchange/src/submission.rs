@@ -8,7 +8,7 @@ use base::{
     record::{self, Cost, NOT_ASKED, Record, Status},
     reference::sha256,
     spec::{Measure, RunSpec},
-    submission::{Division, Submission},
+    submission::{Division, MACHINE, Submission},
     text::{first, number, short, unseen},
 };
 use harness::{
@@ -16,7 +16,7 @@ use harness::{
     context::Context,
     medium::Medium,
     outline::role,
-    playback::{self, Frame, Own, Playback},
+    playback::{self, Frame, Own, Placed, Playback},
     suite,
 };
 use serde::{
@@ -115,6 +115,32 @@ pub struct Entry {
     pub curve: Option<(String, Renamed)>,
 }
 
+/// Reads the document of a method alone.
+///
+/// # Errors
+/// If it is none that a submission could have.
+pub fn method(path: &Path) -> Result<(Method, String), Flaw> {
+    let folder = path.parent().unwrap_or_else(|| Path::new("."));
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let (method, text) = document::<Method>(folder, &name, WHAT)?;
+    match method.unnamed(&name) {
+        Some(flaw) => Err(flaw),
+        None => Ok((method, text)),
+    }
+}
+
+/// What is in the document of a method.
+const WHAT: &str =
+    "code, version, scheme, division (closed or open), settings (an object) and changed";
+
+impl Method {
+    /// What is wrong with its texts.
+    fn unnamed(&self, file: &str) -> Option<Flaw> {
+        let fields = [("code", &self.code), ("version", &self.version), ("scheme", &self.scheme)];
+        fields.into_iter().find_map(|(name, text)| unnamed(file, name, text))
+    }
+}
+
 /// Reads a document.
 fn document<T: DeserializeOwned>(
     folder: &Path,
@@ -136,8 +162,7 @@ fn document<T: DeserializeOwned>(
 /// Everything that is missing or wrong.
 pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     let mut flaws = Vec::new();
-    let what = "code, version, scheme, division (closed or open), settings (an object) and changed";
-    let method = document::<Method>(folder, METHOD, what);
+    let method = document::<Method>(folder, METHOD, WHAT);
     let what = "machine, threads, seconds, steps and interactions, each a number or \"unknown\"";
     let system = document::<System>(folder, SYSTEM, what);
     let asked = asked(folder);
@@ -159,9 +184,7 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     let asked = asked.map_err(|flaw| flaws.push(flaw));
     let results = results.map_err(|all| flaws.extend(all));
     if let Ok((method, _)) = &method {
-        let fields =
-            [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
-        flaws.extend(fields.into_iter().filter_map(|(name, text)| unnamed(METHOD, name, text)));
+        flaws.extend(method.unnamed(METHOD));
     }
     if let Ok((system, _)) = &system {
         let System { machine, threads, seconds, steps, interactions } = system;
@@ -368,15 +391,6 @@ impl Entry {
             let wrong = misnumbered(frame, &expected, all).into_iter();
             flaws.extend(wrong.map(|(row, what)| flaw(what).at(line + row as u64)));
         }
-        if let Some(sealed) = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref())
-            && sealed.method != self.digest
-        {
-            let what = format!(
-                "its SHA-256 is {}; the problem was sealed for {}, so the method was changed afterwards",
-                self.digest, sealed.method
-            );
-            flaws.push(Flaw::of(METHOD, what));
-        }
         if flaws.is_empty() { Ok(()) } else { Err(flaws) }
     }
 
@@ -448,7 +462,28 @@ impl Entry {
         let Method { code, version, scheme, division, .. } = self.method.clone();
         let sealed = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
         let (method, seed) = (self.digest.clone(), sealed.map(|sealed| sealed.seed));
-        Submission { code, version, scheme, division, method, seed }
+        let results = Some(self.digest_of_results());
+        Submission { code, version, scheme, division, method, results, seed }
+    }
+
+    /// SHA-256 of the particles in the order of their ids: equal results of two codes are told, in whatever
+    /// format each was handed in.
+    fn digest_of_results(&self) -> String {
+        let mut digests = String::new();
+        let mut add = |bytes: Vec<u8>| digests += &sha256(&bytes);
+        for frame in &self.results.frames {
+            let mut particles: Vec<&Placed> = frame.particles.iter().collect();
+            particles.sort_by_key(|placed| placed.id);
+            let numbers = |&Placed { id, position: at, velocity, density }: &Placed| {
+                let density = density.unwrap_or(f64::NAN);
+                [f64::from(id), at.x, at.y, velocity.x, velocity.y, density]
+            };
+            let numbers = particles.into_iter().flat_map(numbers);
+            add([frame.time].into_iter().chain(numbers).flat_map(f64::to_le_bytes).collect());
+        }
+        let own = self.results.own.iter().map(|own| own.mass);
+        add(own.flat_map(f64::to_le_bytes).collect());
+        sha256(digests.as_bytes())
     }
 
     /// The frames, with the particles of the code itself in the open division.
@@ -485,6 +520,7 @@ impl Entry {
             *reason = "it needs the sums of this program's own terms".into();
         }
         record.numerics.clear();
+        record.numerics.insert(MACHINE.into(), self.system.machine.as_str().into());
         self.only_of_curve(case, problem, &mut record);
         if self.particles() == Division::Open {
             record.profiles.clear(); // those that follow rows of the problem's own particles

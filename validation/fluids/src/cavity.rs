@@ -271,6 +271,17 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     }
 }
 
+/// The reference is of Re 100 and 1000; errors at Re 100 are judged.
+const SEALED: Draws = Draws {
+    variants: &["consistent"],
+    resolution: ("n", [14.0, 28.0]),
+    order: 1.0,
+    metrics: &["u_rms", "v_rms"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     let level = |s: &Cavity| (1.0 / s.n as f64, format!("{} spacings a side", s.n));
@@ -292,6 +303,7 @@ fn declaration(tier: Tier) -> Declaration {
         pictures: vec![picture],
         accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
         sensitivity: Some(Sensitivity::new(tier, [CASE.spec(RECOMMENDED, |s| s.n = 16)], [speed])),
+        sealed: Some(SEALED),
         ..Declaration::default()
     }
 }

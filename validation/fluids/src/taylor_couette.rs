@@ -201,11 +201,23 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
     ]
 }
 
+/// The flow is exact for any spacing.
+const SEALED: Draws = Draws {
+    variants: &["extrapolating-wall", "interface-wall"],
+    resolution: ("layers", [8.0, 32.0]),
+    order: 1.0,
+    metrics: &["l2"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     Declaration {
         curves: vec![profiles(&table)],
         accuracy: vec![accuracy(&table)],
+        sealed: Some(SEALED),
         ..Declaration::default()
     }
 }

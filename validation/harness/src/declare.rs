@@ -13,6 +13,7 @@ use nalgebra::Vector2;
 use report::{Axis, Colour, ColourMap};
 use serde_json::Value;
 
+pub use crate::sealed::{Drawn, Draws};
 use crate::{
     rules::Rules,
     runs::{Planned, Runs, Tier},
@@ -53,6 +54,8 @@ pub struct Declaration {
     pub of_methods: &'static [MetricKey],
     /// What can be measured of a profile or a series of another code that hands in no particles.
     pub curve: Option<Curve>,
+    /// What sealed problems draw, and by what they are judged; none if no reference holds at drawn settings.
+    pub sealed: Option<Draws>,
     /// Studies of this case alone.
     pub studies: Option<OwnStudies>,
 }

@@ -37,6 +37,7 @@ pub mod relation;
 pub mod rules;
 pub mod runner;
 pub mod runs;
+pub mod sealed;
 pub mod simulate;
 pub mod size;
 pub mod store;

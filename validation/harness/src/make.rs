@@ -123,6 +123,8 @@ pub struct Made {
     pub failed: Sorted<RunKey, RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
+    /// Runs that other codes made of these cases, as the program contains them.
+    pub peers: Vec<Record>,
     /// Why files that say that they are such runs could not be read.
     pub unread: Vec<FileError>,
     /// Was it stopped from outside?

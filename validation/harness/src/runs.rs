@@ -136,8 +136,10 @@ pub struct Runs {
     /// All of them in the order of the plan.
     pub all: Vec<JudgedRun>,
     by_key: Sorted<RunKey, usize>,
-    /// The runs that other codes made.
+    /// The runs that other codes made, as the store has them.
     pub submissions: Vec<JudgedRun>,
+    /// The runs that other codes made, as the program contains them: they are shown, and decide nothing.
+    pub peers: Vec<JudgedRun>,
     unplanned: Mutex<Sorted<String, ()>>,
 }
 
@@ -149,6 +151,11 @@ impl Runs {
             *entry(&mut by_key, run.planned.spec.key(), || k) = k;
         }
         Self { all, by_key, ..Self::default() }
+    }
+
+    /// All runs that other codes made.
+    pub fn of_others(&self) -> impl Iterator<Item = &JudgedRun> {
+        self.submissions.iter().chain(&self.peers)
     }
 
     /// The judged run of a spec.

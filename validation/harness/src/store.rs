@@ -103,7 +103,8 @@ impl Store {
         self.folder.path()
     }
 
-    pub(crate) fn name(spec: &RunSpec) -> String {
+    /// The name of the record of a run.
+    pub fn name(spec: &RunSpec) -> String {
         let who = if spec.submission.is_some() { SUBMITTED } else { "" };
         format!("{who}{}-{}-{}.json", spec.case, spec.variant, spec.key())
     }

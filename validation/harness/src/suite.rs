@@ -4,6 +4,7 @@ use base::{
     gate::{Bound, Evidence, Gate},
     record::{self, Record, Status},
     spec::RunSpec,
+    submission::SESSION,
 };
 use rayon::prelude::*;
 use report::{Card, Counts};
@@ -14,7 +15,7 @@ use crate::{
     make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs},
-    studies,
+    sealed, studies,
     study::Study,
 };
 
@@ -38,7 +39,18 @@ impl CaseResults {
         Counts::of(self.judged().map(|of| of.judged.judgement.verdict))
     }
 
-    /// Every judgement on the case.
+    /// Every judgement on runs of other codes that the store has.
+    pub fn submitted(&self) -> impl Iterator<Item = JudgedOf<'_>> {
+        let of = |run| {
+            let (apply, _) = JudgedRun::applicable(run);
+            apply.into_iter().map(move |judged| (run, judged))
+        };
+        let case = self.case;
+        let all = self.runs.submissions.iter().flat_map(of);
+        all.map(move |(run, judged)| JudgedOf { case, of: Of::Run(run), judged })
+    }
+
+    /// Every judgement on the case and on our own runs of it.
     pub fn judged(&self) -> impl Iterator<Item = JudgedOf<'_>> {
         let runs = self.runs.all.iter().map(|run| (Of::Run(run), &run.judged));
         let studies = self.studies.iter().map(|study| (Of::Study(study), &study.judged));
@@ -85,12 +97,22 @@ pub struct Suite {
 }
 
 impl Suite {
-    /// Every judgement.
+    /// Every judgement on our own runs.
     pub fn judged(&self) -> impl Iterator<Item = JudgedOf<'_>> {
         self.cases.iter().flat_map(CaseResults::judged)
     }
 
-    /// How all gates ended, and how many simulations diverged.
+    /// Every judgement on runs of other codes that the store has.
+    pub fn submitted(&self) -> impl Iterator<Item = JudgedOf<'_>> {
+        self.cases.iter().flat_map(CaseResults::submitted)
+    }
+
+    /// The runs of other codes that the store has.
+    pub fn submissions(&self) -> impl Iterator<Item = (&CaseResults, &JudgedRun)> {
+        self.cases.iter().flat_map(|of| of.runs.submissions.iter().map(move |run| (of, run)))
+    }
+
+    /// How all gates of our own runs ended, and how many simulations diverged.
     pub fn counts(&self) -> Counts {
         let records = self.cases.iter().flat_map(|case| case.runs.simulations());
         let diverged = records.filter(|record| matches!(record.status, Status::Diverged { .. }));
@@ -131,8 +153,14 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
         .into_iter()
         .map(|(case, plan)| {
             let mut runs = Runs::new(plan.into_iter().map(&mut judged).collect());
-            let of_case = made.submissions.iter().filter(|record| record.case == case.name());
-            runs.submissions.extend(of_case.map(|record| submitted(case, record.clone())));
+            let of_case = |records: &[Record]| {
+                let of_case = records.iter().filter(|record| record.case == case.name());
+                of_case.map(|record| submitted(case, record.clone())).collect()
+            };
+            // Ours, made in turn with others, are those that the program contains.
+            let others = made.submissions.iter_mut();
+            others.for_each(|record| drop(record.numerics.remove(SESSION)));
+            (runs.submissions, runs.peers) = (of_case(&made.submissions), of_case(&made.peers));
             (case, runs)
         })
         .collect();
@@ -152,7 +180,10 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
 pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     leave_out_ours(case, &mut record);
     let spec = record.spec();
-    let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
+    let mut gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
+    if record.submission.as_ref().is_some_and(|of| of.seed.is_some()) {
+        gates.extend(sealed::gates(case, &spec));
+    }
     let plain = |Gate { id, metric, bound, evidence, because, .. }: Gate| {
         Gate::new(id, metric, bound, evidence, because)
     };

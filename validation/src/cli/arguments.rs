@@ -290,10 +290,12 @@ pub struct Relate {
 pub struct Challenge {
     #[command(flatten)]
     pub of: Written,
-    /// The number from which settings are drawn, chosen by somebody else than who wrote the method
+    /// The number from which settings are drawn: public, and known only after the method was published, such as
+    /// the first digits of a lottery or of a random beacon at a stated time
     #[arg(long, value_name = "N")]
     pub seed: u64,
-    /// The method.json that the submission will have; if it is changed afterwards, the submission is refused
+    /// The method.json that the submission will have; if its code, version, scheme, division or settings are
+    /// changed afterwards, the submission is refused
     #[arg(long, value_name = "FILE")]
     pub method: PathBuf,
 }

@@ -8,19 +8,21 @@ use base::{
     gate::{Bound, Verdict},
     record::{Record, Status},
     spec::RunSpec,
+    submission::MACHINE,
 };
 use harness::{
     case::{Case, Planned, Tier},
     plan,
     runs::Judged,
     store::Store,
+    suite,
 };
 use serde::Serialize;
 use serde_json::json;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
-    judged::{self, VERDICTS, Verdicts},
+    judged::{self, SubmissionVerdicts, VERDICTS, Verdicts},
     output,
 };
 
@@ -28,17 +30,20 @@ use super::{
 struct Side {
     verdicts: Option<BTreeMap<String, Judged>>,
     records: Option<BTreeMap<String, Record>>,
+    submissions: Vec<Submitted>,
 }
 
 impl Side {
-    fn read(path: &Path) -> Result<Self, Failure> {
+    fn read(path: &Path, world: &World) -> Result<Self, Failure> {
+        let mut submissions = Vec::new();
         let verdicts = match judged::read(path)? {
             Some(text) => {
                 let file = path.join(VERDICTS);
                 let all: Verdicts = serde_json::from_str(&text)
                     .map_err(|_| Failure::usage(format!("{} holds no verdicts", file.display())))?;
-                let by_name = |judged: &Judged| (judged.gate.id.clone(), judged.clone());
-                Some(all.judged().map(by_name).collect())
+                let own = all.submissions.iter().filter(|of| !of.embedded).cloned();
+                submissions.extend(own.map(|of| Submitted { of, record: None }));
+                Some(by_name(all.judged()))
             }
             None => None,
         };
@@ -53,9 +58,96 @@ impl Side {
             return Err(Failure::usage(words));
         }
         let name = |r: Record| (format!("{} {} {}", r.case, r.variant, r.key()), r);
-        let records = records.map(|records| records.into_iter().map(name).collect());
-        Ok(Self { verdicts, records })
+        let records = records.map(|records| {
+            let (others, ours): (Vec<Record>, Vec<Record>) =
+                records.into_iter().partition(|record| record.submission.is_some());
+            others.into_iter().for_each(|record| add(&mut submissions, record, world));
+            ours.into_iter().map(name).collect()
+        });
+        Ok(Self { verdicts, records, submissions })
     }
+}
+
+fn by_name<'a>(all: impl Iterator<Item = &'a Judged>) -> BTreeMap<String, Judged> {
+    all.map(|judged| (judged.gate.id.clone(), judged.clone())).collect()
+}
+
+/// A run of another code: how it was judged, and its record.
+struct Submitted {
+    of: SubmissionVerdicts,
+    record: Option<Record>,
+}
+
+/// Adds a record to the verdicts on it, or judges it where there are none.
+fn add(all: &mut Vec<Submitted>, record: Record, world: &World) {
+    let key = record.key().to_string();
+    if let Some(known) = all.iter_mut().find(|known| known.of.key == key) {
+        known.record = Some(record);
+        return;
+    }
+    let case = world.cases.iter().find(|case| case.name() == record.case);
+    let judged = case.and_then(|case| {
+        let run = suite::submitted(*case, record.clone());
+        SubmissionVerdicts::of(*case, &run, false)
+    });
+    all.extend(judged.map(|of| Submitted { of, record: Some(record) }));
+}
+
+impl Submitted {
+    /// What stays when a code has a new version: code, scheme, division and problem.
+    fn name(&self) -> String {
+        let SubmissionVerdicts { submission: by, .. } = &self.of;
+        let sealed = by.seed.map_or(String::new(), |seed| format!(", sealed by seed {seed}"));
+        format!("{}, {} ({}) of {}{sealed}", by.code, by.scheme, by.division, self.of.problem())
+    }
+
+    /// Version and digests, by which two runs of one code differ.
+    fn who(&self) -> String {
+        let by = &self.of.submission;
+        let first = |digest: &str| digest.chars().take(12).collect::<String>();
+        let results = by.results.as_deref().map_or("unknown".into(), first);
+        format!("version {}, method {}, results {results}", by.version, first(&by.method))
+    }
+
+    /// Changes of gates and metrics against the run of the same code before.
+    fn changes(&self, was: Option<&Self>) -> Vec<Change> {
+        let name = self.name();
+        let gates = |of: &Self| by_name(of.of.judged.iter());
+        let old = was.map(gates).unwrap_or_default();
+        let mut changes = paired(&old, &gates(self), |_, was, is| of_gate(was, is));
+        changes.iter_mut().for_each(|change| change.name += &format!(" of {name}"));
+        let mut add = |kind, words| changes.push(Change { kind, name: name.clone(), words });
+        match was {
+            None => add(Kind::New, self.who()),
+            Some(was) if was.of.key != self.of.key => {
+                add(Kind::State, format!("{} to {}", was.who(), self.who()));
+            }
+            Some(_) => {}
+        }
+        if let Some((was, is)) = was.and_then(|was| was.record.as_ref().zip(self.record.as_ref())) {
+            let bound = |of: &Judged| ((name.clone(), of.gate.metric.clone()), of.gate.bound);
+            let bounds = self.of.judged.iter().map(bound).collect();
+            let found = of_run(&name, Some(was), Some(is), &bounds).into_iter();
+            changes.extend(found.map(|(kind, words)| Change { kind, name: name.clone(), words }));
+        }
+        changes
+    }
+}
+
+/// The changes of runs of other codes. One is compared with the run of the same results or, without one, with
+/// that of the same code and scheme on the same problem, of whatever version.
+fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<Change> {
+    let is_same = |a: &Submitted, b: &Submitted| a.of.key == b.of.key;
+    let was = |is: &Submitted| {
+        let alike = || old.iter().find(|was| was.name() == is.name());
+        old.iter().find(|was| is_same(was, is)).or_else(alike)
+    };
+    let mut changes: Vec<Change> = new.iter().flat_map(|is| is.changes(was(is))).collect();
+    let is_there =
+        |was: &Submitted| new.iter().any(|is| is_same(was, is) || was.name() == is.name());
+    let gone = |was: &Submitted| Change { kind: Kind::Gone, name: was.name(), words: was.who() };
+    changes.extend(old.iter().filter(|was| !is_there(was)).map(gone));
+    changes
 }
 
 /// What changed, the worst first.
@@ -104,7 +196,8 @@ const NOTABLE: f64 = 1.1;
 const TOLD: usize = 3;
 
 pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
-    let (before, after) = (Side::read(&arguments.before)?, Side::read(&arguments.after)?);
+    let (before, after) =
+        (Side::read(&arguments.before, world)?, Side::read(&arguments.after, world)?);
     let mut changes = Vec::new();
     match (&before.verdicts, &after.verdicts) {
         (Some(old), Some(new)) => changes.extend(paired(old, new, |_, was, is| of_gate(was, is))),
@@ -122,6 +215,7 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
         (None, None) => {}
         _ => output::say("note: no runs are compared: only one of the reports holds its records"),
     }
+    changes.extend(of_submissions(&before.submissions, &after.submissions));
     changes.sort_by_key(|change| change.kind);
     let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
     let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::Failing));
@@ -152,6 +246,10 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
         let shared = new.keys().filter(|name| old.contains_key(*name)).count();
         let before = ::report::counted(old.len(), "run", "runs");
         text += &format!("{before} before, {} after, {shared} in both\n", new.len());
+    }
+    let [old, new] = [before, after].map(|side| side.submissions.len());
+    if old + new > 0 {
+        text += &format!("runs of other codes: {old} before, {new} after\n");
     }
     for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {
         let kind = format!("{:?}", of_kind[0].kind).to_lowercase();
@@ -246,6 +344,7 @@ fn of_run(
     if let Some((before, after)) = from.alone_median().zip(to.alone_median())
         && ln(after / before).abs() > ln(NOTABLE)
         && was.manifest.is_same_machine(&is.manifest)
+        && was.numerics.get(MACHINE) == is.numerics.get(MACHINE)
     {
         let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
         changes.push((Kind::Seconds, words));

@@ -1,6 +1,7 @@
 //! `export`, `challenge` and `submit`: problems for other codes, and what these made of them.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use ::exchange::{
@@ -12,9 +13,8 @@ use ::exchange::{
     write,
 };
 use base::{
-    files::{self, OutputFolder},
+    files::OutputFolder,
     record::{Profile, Record},
-    reference::sha256,
     spec::RunSpec,
     submission::OURS,
     text::short,
@@ -32,9 +32,6 @@ use serde_json::{Value, json};
 use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, judged, output, summary::outcome};
-
-/// More than this is no description of a method \[bytes\].
-const MOST_BYTES: u64 = 1 << 24;
 
 pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
     let of = &arguments.of;
@@ -129,19 +126,22 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), 
     let of = &arguments.of;
     let case = cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
-    let text = files::read_text(&arguments.method, MOST_BYTES).map_err(|reason| {
-        Failure::usage(format!("cannot read {}: {reason}", arguments.method.display()))
-    })?;
-    let sealed = Sealed { seed: arguments.seed, method: sha256(text.as_bytes()) };
-    let set = challenge::draw(case, variant, &sealed)?;
-    let mut problem = Problem::of(case, case::spec(case, variant, &set)?)?;
-    problem.sealed = Some(sealed);
+    case.settings(variant, &[])?;
+    let (method, text) = submission::method(&arguments.method)
+        .map_err(|flaw| Failure::usage(format!("no submission can have this method: {flaw}")))?;
+    let set = challenge::draw(case, variant, arguments.seed, &method).map_err(Failure::usage)?;
+    let sealed = Sealed { seed: arguments.seed, method: method.digest() };
+    let digest = sealed.method.clone();
+    let problem = Problem::of(case, case::spec(case, variant, &set)?)?.sealed(case, sealed);
     let folder = OutputFolder::create(&of.out)?;
     let mut names = write::write(&problem, of.format, &folder)?;
     folder.write(METHOD, text.as_bytes())?;
     names.push(METHOD.into());
     output::print(&format!("{}\n", set.join(" ")))?;
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
+    output::say(&format!(
+        "method {digest}: the draw shows who tuned only if this was published before the seed was known"
+    ));
     Ok(())
 }
 
@@ -159,12 +159,11 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
         refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
     })?;
     record.manifest.sources = (world.sources)(case.name());
-    record.manifest.cpu = entry.system.machine.clone();
     let Some(store) = arguments.store.as_ref().filter(|_| !arguments.check) else {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
         return Ok(Exit::Pass);
     };
-    let path = Store::open(store)?.write(&record)?;
+    let path = keep(&Store::open(store)?, &record)?;
     let run = suite::submitted(case, record);
     let (apply, others) = run.applicable();
     let judged: Vec<Judged> = apply.into_iter().cloned().collect();
@@ -178,6 +177,53 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let fails = judged.iter().any(|judged| judged.judgement.verdict.is_failure());
     Ok(if fails { Exit::GateFailed } else { Exit::Pass })
 }
+
+/// Keeps the record of a submission. One of the same results that the store has already must say the same: a
+/// record proves nothing that its results do not.
+fn keep(store: &Store, record: &Record) -> Result<PathBuf, Failure> {
+    match store.find(&record.spec()) {
+        Ok(Some(before)) if before.manifest.sources == record.manifest.sources => {
+            let differ = differences(&before, record);
+            if !differ.is_empty() {
+                let path = store.path().join(Store::name(&record.spec()));
+                return Err(Failure::usage(format!(
+                    "{} has the same method and results, and says something else: {}; nothing was recorded; \
+                     remove that file to have this record in its place",
+                    path.display(),
+                    differ.join(", ")
+                )));
+            }
+        }
+        Ok(Some(_)) => output::say("note: a record by a build of other sources is replaced"),
+        Ok(None) => {}
+        Err(error) => output::say(&format!("note: {error}; it is replaced")),
+    }
+    Ok(store.write(record)?)
+}
+
+/// What two records say otherwise, by name.
+fn differences(before: &Record, now: &Record) -> Vec<String> {
+    let value = |of: &Record, name: &str| match of.metrics.get(name) {
+        Some(metric) => format!("{:?}", metric.value),
+        None => "not measured".into(),
+    };
+    let names: BTreeSet<&String> = before.metrics.keys().chain(now.metrics.keys()).collect();
+    let moved = names.into_iter().filter_map(|name| {
+        let [was, is] = [before, now].map(|of| value(of, name));
+        (was != is).then(|| format!("{name} ({was} there, {is} by the results)"))
+    });
+    let mut all: Vec<String> = moved.take(MOST_DIFFERENCES).collect();
+    let others = [
+        ("how the run ended", before.status != now.status),
+        ("machine", before.numerics != now.numerics),
+        ("cost", format!("{:?}", before.cost) != format!("{:?}", now.cost)),
+    ];
+    all.extend(others.iter().filter(|(_, differ)| *differ).map(|(name, _)| name.to_string()));
+    all
+}
+
+/// Metrics that differ and are told by name.
+const MOST_DIFFERENCES: usize = 3;
 
 /// The submission in a folder, with columns of other names.
 fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
@@ -273,12 +319,7 @@ fn problem(
         }
     };
     if let Some(sealed) = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref()) {
-        let drawn = challenge::draw(case, &spec.variant, sealed)?;
-        if case::spec(case, &spec.variant, &drawn)?.settings != spec.settings {
-            let words =
-                "problem.json is not the one that its seed and method give: settings differ";
-            return Err(Failure::usage(words));
-        }
+        challenge::check(case, sealed, &entry.method, &spec).map_err(Failure::usage)?;
     }
     let problem = Problem::of(case, spec)?;
     let agrees = entry.asked.as_ref().map_or(Ok(()), |asked| asked.agrees(&problem));

@@ -29,12 +29,14 @@ struct Known {
     on: String,
     last: Option<Judged>,
     status: Option<record::Status>,
+    /// How runs of other codes were judged by it last.
+    others: Vec<String>,
 }
 
 impl Known {
     /// Not judged yet.
     fn new(gate: Gate, on: String) -> Self {
-        Self { gate, tiers: Vec::new(), on, last: None, status: None }
+        Self { gate, tiers: Vec::new(), on, last: None, status: None, others: Vec::new() }
     }
 }
 
@@ -129,6 +131,14 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
             }
         }
     }
+    for of in verdicts.iter().flat_map(|verdicts| &verdicts.submissions) {
+        for judged in &of.judged {
+            let found = gates.iter_mut().find(|known| known.gate.id == judged.gate.id);
+            let value = judged::value(&judged.judgement);
+            let words = || format!("{}: {value}: {}", of.submission, judged.words());
+            found.into_iter().for_each(|known| known.others.push(words()));
+        }
+    }
     for study in verdicts.iter().flat_map(|verdicts| &verdicts.studies) {
         let on = of_study(&study.title, &study.case);
         gates.extend(study.judged.iter().map(|judged| Known {
@@ -187,7 +197,7 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
 }
 
 fn words(known: &Known) -> String {
-    let Known { gate, on, last, .. } = known;
+    let Known { gate, on, last, others, .. } = known;
     let judged_as =
         |judged: &Judged| format!("{}: {}", judged::value(&judged.judgement), judged.words());
     let lines = [
@@ -200,6 +210,7 @@ fn words(known: &Known) -> String {
         ("in tiers", known.tiers.join(", ")),
         ("last", last.as_ref().map(judged_as).unwrap_or_default()),
         ("that run", known.status.as_ref().map(ToString::to_string).unwrap_or_default()),
+        ("others", others.join("; ")),
     ];
     let mut text = format!("{}\n", gate.id);
     for (head, words) in lines.iter().filter(|(_, words)| !words.is_empty()) {
@@ -226,12 +237,20 @@ fn evidence(gate: &Gate) -> String {
 fn purpose(gate: &Gate) -> String {
     let Gate { known, reason, cause, .. } = gate;
     match known {
-        _ if gate.control => "a control, which must lie outside".into(),
+        _ if gate.control => {
+            "a control: a run of ours must lie outside; a run of another code passes inside \
+                              and fails outside"
+                .into()
+        }
         None => "inside passes, outside fails".into(),
         Some(known) => {
             let cause = cause.as_ref().map(|cause| &*cause.what);
             let reasons: Vec<&str> = cause.into_iter().chain(reason.as_deref()).collect();
-            format!("known limitation, may lie outside, but {known}: {}", reasons.join(" "))
+            format!(
+                "known limitation of our method, which may lie outside, but {known}; a run of another code \
+                 fails outside: {}",
+                reasons.join(" ")
+            )
         }
     }
 }

@@ -7,12 +7,14 @@ use std::path::Path;
 use base::files::{self, write_atomically};
 use base::gate::{Judgement, Verdict};
 use base::record;
+use base::submission::Submission;
 use base::text::escaped;
 use harness::case::{self, Case, Tier};
 use harness::notes::Notes;
 use harness::runs::{Judged, JudgedRun};
 use harness::study::Study;
-use harness::suite::{JudgedOf, Suite};
+use harness::suite::{CaseResults, Suite};
+use report::Counts;
 use serde::{Deserialize, Serialize};
 
 use super::{Failure, output};
@@ -90,6 +92,55 @@ pub struct Verdicts {
     pub runs: Vec<RunVerdicts>,
     /// studies of all cases and of the method
     pub studies: Vec<StudyVerdicts>,
+    /// runs of other codes
+    #[serde(default)]
+    pub submissions: Vec<SubmissionVerdicts>,
+}
+
+/// A run of another code and the judgements on it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SubmissionVerdicts {
+    /// name of the case
+    pub case: String,
+    /// name of the variant of the problem
+    pub variant: String,
+    /// `key=value` of settings that differ from the defaults of the variant
+    pub set: Vec<String>,
+    /// names the record
+    pub key: String,
+    /// who made the run
+    pub submission: Submission,
+    /// does the program contain the record? Then it decides no exit code
+    pub embedded: bool,
+    /// how it ended
+    pub status: record::Status,
+    /// the judgements by the gates that apply
+    pub judged: Vec<Judged>,
+    /// gates that do not apply, and why
+    pub not_applicable: BTreeMap<String, String>,
+}
+
+impl SubmissionVerdicts {
+    /// The verdicts on a run of another code; none of a run of ours.
+    pub fn of(case: &dyn Case, run: &JudgedRun, embedded: bool) -> Option<Self> {
+        let (apply, others) = run.applicable();
+        Some(Self {
+            case: case.name().into(),
+            variant: run.planned.spec.variant.clone(),
+            set: case::changed(case, &run.planned.spec),
+            key: run.record.key().to_string(),
+            submission: run.record.submission.as_deref()?.clone(),
+            embedded,
+            status: run.record.status.clone(),
+            judged: apply.into_iter().cloned().collect(),
+            not_applicable: others.into_iter().map(|(id, why)| (id.into(), why.into())).collect(),
+        })
+    }
+
+    /// The problem in words.
+    pub fn problem(&self) -> String {
+        format!("{} {} {}", self.case, self.variant, self.set.join(" ")).trim_end().into()
+    }
 }
 
 /// A run and the judgements on it.
@@ -131,7 +182,7 @@ pub fn tier_name(tier: Tier) -> String {
 }
 
 impl Verdicts {
-    /// Every judgement.
+    /// Every judgement on our own runs.
     pub fn judged(&self) -> impl Iterator<Item = &Judged> {
         let of_runs = self.runs.iter().flat_map(|run| &run.judged);
         of_runs.chain(self.studies.iter().flat_map(|study| &study.judged))
@@ -157,6 +208,11 @@ impl Verdicts {
         let of_cases = suite.cases.iter().flat_map(|results| {
             results.studies.iter().map(|study| of_study(results.case.name(), study))
         });
+        let of_others = suite.cases.iter().flat_map(|of| {
+            let all = [(&of.runs.submissions, false), (&of.runs.peers, true)].into_iter();
+            let all = all.flat_map(|(runs, embedded)| runs.iter().map(move |run| (run, embedded)));
+            all.filter_map(|(run, embedded)| SubmissionVerdicts::of(of.case, run, embedded))
+        });
         let counts = suite.counts();
         let there_are = Verdict::ALL.into_iter().filter(|of| counts.count(*of) > 0);
         Verdicts {
@@ -169,6 +225,7 @@ impl Verdicts {
                 .flat_map(|of| of.runs.all.iter().map(|run| of_run(of.case, run)))
                 .collect(),
             studies: of_cases.collect(),
+            submissions: of_others.collect(),
         }
     }
 }
@@ -188,35 +245,104 @@ pub fn value(judgement: &Judgement) -> String {
     judgement.value.map_or("not measured".into(), |value| report::sig(value, 5))
 }
 
-/// A test case a gate, by case. Failing gates are failures; a limitation and an expected failure are
-/// skipped, with the verdict as the message.
+/// Runs of other codes in the store as a table, those with failing gates first; of many the first.
+pub fn submissions(suite: &Suite) -> String {
+    let of = |(results, run): (&CaseResults, &JudgedRun)| {
+        SubmissionVerdicts::of(results.case, run, false)
+    };
+    let mut all: Vec<SubmissionVerdicts> = suite.submissions().filter_map(of).collect();
+    let failing = |of: &SubmissionVerdicts| -> Vec<String> {
+        let failing = of.judged.iter().filter(|judged| judged.judgement.verdict.is_failure());
+        failing.map(|judged| judged.gate.id.clone()).collect()
+    };
+    all.sort_by_key(|of| (failing(of).is_empty(), !of.judged.is_empty()));
+    let row = |of: &SubmissionVerdicts| {
+        let failing = failing(of);
+        let [passed, failed, others] =
+            [of.judged.len() - failing.len(), failing.len(), of.not_applicable.len()];
+        let failing = failing.join(" ");
+        let counts = [failed, passed, others].map(|count| count.to_string());
+        [
+            &[format!("{} ({})", of.submission, of.submission.division), of.problem()],
+            &counts[..],
+            &[failing],
+        ]
+        .concat()
+    };
+    let heads =
+        ["runs of other codes", "problem", "fail", "pass", "not applicable", "gates that fail"];
+    let table = output::table(&heads, all.iter().take(MOST_SHOWN).map(row));
+    let unjudged = all.iter().filter(|of| of.judged.is_empty()).count();
+    let words = match (all.len().saturating_sub(MOST_SHOWN), unjudged) {
+        (0, 0) => String::new(),
+        (more, unjudged) => format!("{more} more; judged by no gate: {unjudged}\n"),
+    };
+    if all.is_empty() { String::new() } else { format!("\n{table}{words}") }
+}
+
+/// What came of all gates, of our own runs and of those of other codes in the store.
+pub fn headline(suite: &Suite) -> String {
+    let ours = suite.counts().headline();
+    let others = Counts::of(suite.submitted().map(|of| of.judged.judgement.verdict)).headline();
+    match suite.submissions().next() {
+        None => ours,
+        Some(_) => format!("Our own runs: {ours}. Runs of other codes: {others}."),
+    }
+}
+
+/// Runs of other codes that are told in a line each.
+const MOST_SHOWN: usize = 20;
+
+/// A test case a gate, by case, and a suite for each run of another code in the store. Failing gates are
+/// failures; a limitation, an expected failure and a gate that does not apply are skipped, with the reason.
 fn junit(suite: &Suite) -> String {
     let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
     for results in &suite.cases {
-        let counts = results.counts();
-        let [pass, failed] = [Verdict::Pass, Verdict::Fail].map(|verdict| counts.count(verdict));
-        let (name, all) = (escaped(results.case.name()), results.judged().count());
-        let skipped = all - pass - failed;
-        text += &format!(
-            "  <testsuite name=\"{name}\" tests=\"{all}\" failures=\"{failed}\" skipped=\"{skipped}\">\n"
-        );
-        for JudgedOf { judged, .. } in results.judged() {
-            let Judged { gate, judgement, .. } = judged;
-            let message = format!("{} {}; {}", value(judgement), gate.bounds(), judged.words());
-            let body = match judgement.verdict {
-                Verdict::Pass => String::new(),
-                Verdict::Fail => format!(
-                    "<failure message=\"{}\">{}</failure>",
-                    escaped(&message),
-                    escaped(&gate.because)
-                ),
-                _ => format!("<skipped message=\"{}\"/>", escaped(&message)),
-            };
-            let id = escaped(&gate.id);
-            text +=
-                &format!("    <testcase classname=\"{name}\" name=\"{id}\">{body}</testcase>\n");
+        let judged = results.judged().map(|of| of.judged);
+        text += &testsuite(results.case.name(), judged, &BTreeMap::new());
+        let others = results.runs.submissions.iter();
+        for of in others.filter_map(|run| SubmissionVerdicts::of(results.case, run, false)) {
+            let name = format!("{} by {}", of.problem(), of.submission);
+            text += &testsuite(&name, of.judged.iter(), &of.not_applicable);
         }
-        text += "  </testsuite>\n";
     }
     text + "</testsuites>\n"
+}
+
+/// Judgements as test cases, and gates that are skipped, each with the reason.
+fn testsuite<'a>(
+    name: &str,
+    judged: impl Iterator<Item = &'a Judged>,
+    skipped: &BTreeMap<String, String>,
+) -> String {
+    let of_gate = |Judged { gate, judgement, .. }: &Judged, words: &str| {
+        let message = format!("{} {}; {words}", value(judgement), gate.bounds());
+        match judgement.verdict {
+            Verdict::Pass => String::new(),
+            Verdict::Fail => format!(
+                "<failure message=\"{}\">{}</failure>",
+                escaped(&message),
+                escaped(&gate.because)
+            ),
+            _ => skip(&message),
+        }
+    };
+    let mut bodies: Vec<(&str, String)> =
+        judged.map(|judged| (&*judged.gate.id, of_gate(judged, &judged.words()))).collect();
+    bodies.extend(skipped.iter().map(|(id, why)| (&**id, skip(&format!("not applicable: {why}")))));
+    let count = |begin: &str| bodies.iter().filter(|(_, body)| body.starts_with(begin)).count();
+    let (name, all) = (escaped(name), bodies.len());
+    let (failed, skipped) = (count("<failure"), count("<skipped"));
+    let mut text = format!(
+        "  <testsuite name=\"{name}\" tests=\"{all}\" failures=\"{failed}\" skipped=\"{skipped}\">\n"
+    );
+    for (id, body) in &bodies {
+        let id = escaped(id);
+        text += &format!("    <testcase classname=\"{name}\" name=\"{id}\">{body}</testcase>\n");
+    }
+    text + "  </testsuite>\n"
+}
+
+fn skip(message: &str) -> String {
+    format!("<skipped message=\"{}\"/>", escaped(message))
 }

@@ -32,16 +32,16 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let folder = OutputFolder::create(&arguments.out)?;
     let (tier, any_build) = (arguments.tier, arguments.making.any_build);
     let (suite, listed, lacking) = match &arguments.store {
-        Some(store) if arguments.partial => {
-            let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
-            let Stored { made, missing, .. } = stored;
-            let lacking = lacking(missing, store, &made);
-            let told = tell(&plans, &lacking);
-            (judge(plans, tier, made, &lacking), list(lacking.values().collect()), told)
-        }
         Some(store) => {
-            let suite = verify::of_store(world.cases, tier, store, any_build, world)?;
-            (suite, String::new(), None)
+            let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
+            if arguments.partial {
+                partial(plans, tier, store, stored)
+            } else if verify::has_submissions_alone(&stored, tier) {
+                let (suite, _, told) = partial(plans, tier, store, stored);
+                (suite, String::new(), told)
+            } else {
+                (verify::of_stored(plans, tier, stored), String::new(), None)
+            }
         }
         None => {
             let store = Store::open(&folder.path().join("records"))?;
@@ -73,7 +73,8 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         return Err(Failure::usage(reasons.join("\n")));
     }
     let took = report::seconds(start.elapsed().as_secs_f64());
-    output::print(&format!("{listed}{}\n{}\n", suite.counts().headline(), path.display()))?;
+    let (headline, others) = (judged::headline(&suite), judged::submissions(&suite));
+    output::print(&format!("{listed}{others}{headline}\n{}\n", path.display()))?;
     output::say(&format!("the page shows {} in {took}", verify::runs(&suite)));
     match sound {
         Ok(_) => Ok(verify::exit(&suite)),
@@ -148,6 +149,14 @@ pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite,
     let lacks = |name: &str| lacking.values().any(|(job, _)| job.case.name() == name);
     plans.retain(|(case, _)| !lacks(case.name()));
     (suite::judge(plans, tier, made), told)
+}
+
+/// The suite of what a store has, a list of what it lacks, and what is told of that.
+pub fn partial(plans: Plans, tier: Tier, store: &Path, stored: Stored) -> (Suite, String, Told) {
+    let Stored { made, missing, .. } = stored;
+    let lacking = lacking(missing, store, &made);
+    let told = tell(&plans, &lacking);
+    (judge(plans, tier, made, &lacking), list(lacking.values().collect()), told)
 }
 
 fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {

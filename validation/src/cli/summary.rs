@@ -16,7 +16,7 @@ use harness::{
 };
 use report::Counts;
 
-use super::{explain, output};
+use super::{explain, judged, output};
 
 /// Failures that are told in full; of more the names are.
 const IN_FULL: usize = 5;
@@ -39,6 +39,7 @@ pub fn summary(suite: &Suite) -> String {
     text += "The error is that of the recommended variant, its cost that on one core; the margin is the\n\
              unused share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
     text += &failures(suite);
+    text += &judged::submissions(suite);
     let counts = suite.counts();
     let limited = counts.count(Verdict::Limitation);
     if limited > 0 {
@@ -48,7 +49,7 @@ pub fn summary(suite: &Suite) -> String {
             limited.headline()
         );
     }
-    text + &format!("\n{}\n", counts.headline())
+    text + &format!("\n{}\n", judged::headline(suite))
 }
 
 /// How the gates of a case ended, the error of its recommended variant with the cost, and the gate that is

@@ -8,14 +8,14 @@ use harness::{
     case::{Case, Tier},
     make::{self, Making, Stored},
     store::Store,
-    suite::{self, Plans, Suite},
+    suite::{self, JudgedOf, Plans, Suite},
 };
 
 use validation::peers;
 
 use super::{
-    Early, Exit, Failure, Outcome, World, arguments, judged, output, summary::summary,
-    tell_trouble, trouble,
+    Early, Exit, Failure, Outcome, World, arguments, judged, output, report::partial,
+    summary::summary, tell_trouble, trouble,
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
@@ -74,8 +74,16 @@ pub fn runs(suite: &Suite) -> String {
 
 /// What a run or its record that failed ends with, 1 if a gate failed.
 pub fn exit(suite: &Suite) -> Exit {
-    let verdict =
-        if suite.counts().count(Verdict::Fail) == 0 { Exit::Pass } else { Exit::GateFailed };
+    let fails = |of: JudgedOf| of.judged.judgement.verdict == Verdict::Fail;
+    let mut all = suite.judged().chain(suite.submitted()).peekable();
+    let verdict = match (all.peek().is_none(), suite.submissions().next().is_none()) {
+        (true, false) => {
+            output::say("touchstone: no gate applies to the runs of other codes in the store");
+            Exit::Usage
+        }
+        _ if all.any(fails) => Exit::GateFailed,
+        _ => Exit::Pass,
+    };
     trouble(&suite.made).unwrap_or(verdict)
 }
 
@@ -121,7 +129,30 @@ pub fn of_store(
     any_build: bool,
     world: &World,
 ) -> Result<Suite, Failure> {
-    let (plans, Stored { made, missing, other }) = stored(cases, tier, path, any_build, world)?;
+    let (plans, stored) = stored(cases, tier, path, any_build, world)?;
+    if has_submissions_alone(&stored, tier) {
+        return Ok(partial(plans, tier, path, stored).0);
+    }
+    Ok(of_stored(plans, tier, stored))
+}
+
+/// Does a store hold nothing but runs of other codes? What was not to be made there is no failure.
+pub fn has_submissions_alone(stored: &Stored, tier: Tier) -> bool {
+    let Stored { made, missing, other } = stored;
+    let is_alone = made.records.is_empty() && made.unsound.is_empty() && *other == 0;
+    if is_alone && !made.submissions.is_empty() {
+        output::say(&format!(
+            "note: the store has runs of other codes alone; the {} runs of this program in the {} tier are \
+             absent, and are not judged",
+            missing.len(),
+            judged::tier_name(tier)
+        ));
+    }
+    is_alone && !made.submissions.is_empty()
+}
+
+/// Judges what was found of plans; gates of runs that are missing fail.
+pub fn of_stored(plans: Plans, tier: Tier, Stored { made, missing, other }: Stored) -> Suite {
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
         output::say(&format!(
@@ -130,7 +161,7 @@ pub fn of_store(
             judged::tier_name(tier)
         ));
     }
-    Ok(suite::judge(plans, tier, made))
+    suite::judge(plans, tier, made)
 }
 
 /// The plans of a tier, and what a store has of them.

@@ -329,6 +329,17 @@ fn table(tier: Tier) -> table::Table<HydrostaticSettings, Group> {
 }
 
 /// The error of the pressure over resolutions, and what the gates must detect.
+/// Water at rest is exact for any compressibility; judged are 20 rows.
+const SEALED: Draws = Draws {
+    variants: &["modern"],
+    resolution: ("rows", [14.0, 32.0]),
+    order: 1.0,
+    metrics: &["p_l2"],
+    set: &[],
+    others: &[("compressibility", Drawn::Between(0.001, 0.05))],
+    free: &[],
+};
+
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     let level = |s: &HydrostaticSettings| (1.0 / s.rows as f64, format!("{} rows", s.rows));
@@ -350,7 +361,12 @@ fn declaration(tier: Tier) -> Declaration {
     ];
     let run = HYDROSTATIC.spec("modern", |_| ());
     let sensitivity = Some(Sensitivity::new(tier, [run], watched));
-    Declaration { accuracy: vec![accuracy], sensitivity, ..Declaration::default() }
+    Declaration {
+        accuracy: vec![accuracy],
+        sensitivity,
+        sealed: Some(SEALED),
+        ..Declaration::default()
+    }
 }
 
 fn gates(row: &Row) -> Vec<Gate> {

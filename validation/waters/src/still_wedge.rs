@@ -277,6 +277,17 @@ fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
     vec![base.with_limitation(Bound::Within(-0.53, 0.5 * dx), why, &UNWEIGHED), outside]
 }
 
+/// Water at rest is exact at any spacing.
+const SEALED: Draws = Draws {
+    variants: &["modern"],
+    resolution: ("n", [10.0, 28.0]),
+    order: 1.0,
+    metrics: &["p_l2", "p_base"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     let level = |s: &Wedge| (1.0 / s.n as f64, format!("{} spacings deep", s.n));
@@ -298,5 +309,11 @@ fn declaration(tier: Tier) -> Declaration {
     let pictures = vec![
         table.picture(texts, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]),
     ];
-    Declaration { accuracy: vec![accuracy], pictures, sensitivity, ..Declaration::default() }
+    Declaration {
+        accuracy: vec![accuracy],
+        pictures,
+        sensitivity,
+        sealed: Some(SEALED),
+        ..Declaration::default()
+    }
 }

@@ -10,6 +10,17 @@ use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study}
 use maths::metrics::norms::rms;
 use report::{Axis, ColourMap};
 
+/// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.
+const SEALED: Draws = Draws {
+    variants: &["carried"],
+    resolution: ("n", [8.0, 14.0]),
+    order: 1.0,
+    metrics: &["l2_u", "force_error"],
+    set: &[],
+    others: &[("re", Drawn::Judged)],
+    free: &["end"],
+};
+
 /// The declaration of a tier.
 pub fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
@@ -25,6 +36,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         is_stable: Some(is_stable),
         studies: Some(Box::new(move |runs| studies(tier, runs))),
         sensitivity: Some(sensitivity(tier, &table)),
+        sealed: Some(SEALED),
         ..Declaration::default()
     }
 }

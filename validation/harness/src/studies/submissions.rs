@@ -1,6 +1,7 @@
 //! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
 
 use base::{
+    gate::Verdict,
     record::Record,
     submission::{Division, OURS, SESSION, Submission},
 };
@@ -10,7 +11,7 @@ use super::anchor;
 use crate::{
     columns::Columns,
     declare::{Accuracy, Declaration, error_of},
-    runs::{JudgedRun, Runs},
+    runs::{Judged, JudgedRun, Runs},
     study::Study,
 };
 
@@ -58,7 +59,7 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
             seconds: record.cost.cpu_s,
         })
     };
-    let mut marks: Vec<Mark> = runs.submissions.iter().filter_map(of).collect();
+    let mut marks: Vec<Mark> = runs.of_others().filter_map(of).collect();
     marks.sort_by(|a, b| a.name.cmp(&b.name).then(a.seconds.total_cmp(&b.seconds)));
     let mut first: Vec<Mark> = Vec::new();
     for mark in marks {
@@ -88,18 +89,22 @@ fn better(marks: &[Mark]) -> Option<String> {
         let who = format!("{} ({many}{})", plain(&peer.name), peer.of.division);
         if error.is_finite() && peer.error < error {
             let [its, best] = [peer.error, error].map(|error| percent(error, 2));
-            found.push(format!("{who} has an error of {its}, the best of ours {best}"));
+            found.push(format!(
+                "{who} has an error of {its}, the best of ours in this problem {best}"
+            ));
         }
         let as_good = with().filter(|own| own.error <= peer.error);
         let time = least(&mut as_good.map(|own| own.seconds));
         if time.is_finite() && peer.seconds < time {
             let [its, best] = [peer.seconds, time].map(seconds);
-            found.push(format!("{who} takes {its}, the fastest of ours with no more error {best}"));
+            found.push(format!(
+                "{who} takes {its}, the fastest of ours in this problem with no more error {best}"
+            ));
         }
     }
     Some(match found.is_empty() {
-        true => "No other code below is more accurate than ours with as many particles, or faster with no \
-                 more error."
+        true => "No other code below is more accurate than ours in this problem with as many particles, or \
+                 faster with no more error."
             .into(),
         false => format!("Better than ours: {}.", found.join("; ")),
     })
@@ -107,10 +112,16 @@ fn better(marks: &[Mark]) -> Option<String> {
 
 /// Error against run time, a panel for each division in which other codes are.
 fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
-    let caption = "Runs of other codes (in parentheses the variant whose problem they ran), and ours of \
-                   the same session in black: error over the time of the loop on one core. Labels are \
-                   numbers of particles."
-        .to_string();
+    let mut caption =
+        "Runs of other codes (in parentheses the variant whose problem they ran): error over the time of \
+         the loop on one core, as submitted. Labels are numbers of particles."
+            .to_string();
+    if marks.iter().any(Mark::is_ours) {
+        caption += " Ours of the session in which the records of the program were made are black.";
+    }
+    if marks.iter().any(|mark| mark.session.is_none()) {
+        caption += " Runs from the store were made elsewhere, so that their seconds compare with no others.";
+    }
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
         let is_of = |mark: &&Mark| mark.of.division == division || mark.is_ours();
@@ -135,31 +146,82 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     panels.fold(figure, Figure::panel)
 }
 
-/// Where and when the runs that the program contains were made.
+/// A run with fewer particles measures what a step costs whatever their number.
+const FEW: usize = 120;
+
+/// Where and when the runs that the program contains were made, and what their reader must know.
 fn provenance(runs: &Runs) -> Option<String> {
-    let day = runs.submissions.iter().find_map(|run| session(&run.record))?;
-    Some(format!(
+    let day = runs.peers.iter().find_map(|run| session(&run.record))?;
+    let mut words = format!(
         "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
          turn with ours, each on one thread while other programs were at work. Their seconds \
-         compare with each other, not with those of other sections."
-    ))
+         compare with each other, not with those of other sections. The authors of the codes have not looked \
+         at the scripts that ran them: a run that is worse than what they publish is first of all a question \
+         to the script."
+    );
+    let records = || runs.peers.iter().map(|run| &run.record);
+    if records().any(|record| (1..=FEW).contains(&record.cost.particles)) {
+        words += " Seconds with 60 to 120 particles measure the overhead of a step, not the speed of a code.";
+    }
+    let is_ours = |of: &Submission| of.code == OURS;
+    let ours = records().filter(|record| record.submission.as_deref().is_some_and(is_ours));
+    if ours.into_iter().any(|record| record.variant == "curved") {
+        words += " Our `curved` was added after the first results of the others, of which two were better \
+                  than ours; a reader who compares first attempts leaves it out.";
+    }
+    Some(words)
+}
+
+/// Pairs of equal results that are told by name.
+const MOST_EQUAL: usize = 10;
+
+/// Results that several codes handed in.
+fn equal(runs: &Runs) -> Option<String> {
+    let mut found = Vec::new();
+    let of = |run: &JudgedRun| run.record.submission.as_deref().cloned();
+    let all: Vec<Submission> = runs.of_others().filter_map(of).collect();
+    for (k, one) in all.iter().enumerate().filter(|(_, one)| one.results.is_some()) {
+        let is_borrowed = |other: &&Submission| {
+            other.results == one.results && (&other.code, &other.scheme) != (&one.code, &one.scheme)
+        };
+        found.extend(
+            all[k + 1..]
+                .iter()
+                .filter(is_borrowed)
+                .map(|other| plain(&format!("{one} and {other}"))),
+        );
+    }
+    for run in runs.of_others() {
+        let is_same =
+            |own: &&JudgedRun| own.record.state.is_some() && own.record.state == run.record.state;
+        let ours = of(run).filter(|of| of.code != OURS).zip(runs.all.iter().find(is_same));
+        found.extend(ours.map(|(of, own)| {
+            format!("{} and our own `{}`", plain(&of.to_string()), own.record.variant)
+        }));
+    }
+    let more = found.len().saturating_sub(MOST_EQUAL);
+    found.truncate(MOST_EQUAL);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    let words = "**Equal results, to the last bit, were handed in:**";
+    (!found.is_empty()).then(|| format!("{words} {}{more}.", found.join("; ")))
 }
 
 /// All submissions of a case, if there are any: the closed division, then the open one.
 pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
-    if runs.submissions.is_empty() {
-        return None;
-    }
+    runs.of_others().next()?;
     let id = anchor(case, "submissions");
     let accuracy = declared.accuracy.iter();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));
-    let words = first.into_iter().chain(provenance(runs));
+    let words = first.into_iter().chain(equal(runs)).chain(provenance(runs));
     let study = words.fold(Study::new(&id, "Runs of other codes"), Study::prose);
     let study = study.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
              the bounds of the same gates; known limitations of our own method are no excuse. A gate is not \
-             applicable if the results do not determine its metric.",
+             applicable if the results do not determine its metric. A record proves nothing that its results \
+             do not: `touchstone submit` measures them again, and refuses a record in the store that says \
+             something else of them. Versions, seconds and steps are as submitted, for this program cannot \
+             check them.",
         );
     let study = match &found {
         Some((accuracy, marks)) => study.block(figure(&format!("{id}-cost"), accuracy, marks)),
@@ -171,7 +233,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
 /// The runs of the closed division, then those of the open one, the best first.
 fn table(declared: &Declaration, runs: &Runs) -> report::Table {
     type Row<'a> = (&'a Submission, &'a JudgedRun, f64, &'a str);
-    let rows = runs.submissions.iter().filter_map(|run| {
+    let rows = runs.of_others().filter_map(|run| {
         let mut all = declared.accuracy.iter();
         let found = all.find_map(|of| Some((error_of(&of.error, &run.record)?, &*of.label)));
         let (error, of) = found.unwrap_or((f64::NAN, ""));
@@ -179,12 +241,8 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
     });
     let mut rows: Vec<Row> = rows.collect();
     rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
-    let gates = |(_, run, ..): &Row| {
-        let (apply, others) = run.applicable();
-        let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
-        let passed = apply.len() - failed;
-        format!("{passed} pass, {failed} fail, {} not applicable", others.len())
-    };
+    let accuracy = accuracy_metrics(declared);
+    let others = accuracy.clone();
     let mut columns = Columns::<Row>::default();
     if rows.iter().any(|row| row.3 != rows[0].3) {
         columns = columns.text("what the error is", |(.., of)| of.to_string());
@@ -199,13 +257,53 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
         })
         .of(["error", "-"], |(_, _, error, _)| *error, |error| Cell::percent(error, 2))
         .of(["processor time", "s"], |(_, run, ..)| run.record.cost.cpu_s, Cell::seconds)
-        .text("gates", gates)
+        .text("accuracy", move |(_, run, ..)| of_gates(run, &accuracy)[0].clone())
+        .text("other gates that fail", move |(_, run, ..)| of_gates(run, &others)[1].clone())
+        .text("all gates", |(_, run, ..)| all_gates(run))
         .text("ended", |(_, run, ..)| run.record.status.to_string())
         .table(
             "Closed division: our particles, spacing and support of the kernel. Open division: other \
-             particles or another resolution, at a stated cost. In each the best first.",
+             particles or another resolution, at a stated cost. In each the best first. The accuracy is \
+             judged by gates on the error; none means that no gate judges it. Versions and processor times \
+             are as submitted.",
             rows,
         )
+}
+
+/// Names, without their times, of the metrics that say how accurate a run is.
+fn accuracy_metrics(declared: &Declaration) -> Vec<String> {
+    let errors = declared.accuracy.iter().map(|of| &of.error.name);
+    let compared = declared.comparisons.iter().map(|of| &of.metric.name);
+    let shown = declared.card.iter().map(|of| &of.metric.name);
+    errors.chain(compared).chain(shown).map(|name| base_of(name).to_string()).collect()
+}
+
+/// `l2` of `l2@0.1`.
+fn base_of(metric: &str) -> &str {
+    metric.split('@').next().unwrap_or(metric)
+}
+
+/// The verdict on the accuracy, and the names of other gates that fail.
+fn of_gates(run: &JudgedRun, accuracy: &[String]) -> [String; 2] {
+    let (apply, _) = run.applicable();
+    let fails = |judged: &&&Judged| judged.judgement.verdict.is_failure();
+    let (of_error, others): (Vec<&Judged>, Vec<&Judged>) = apply
+        .into_iter()
+        .partition(|of| accuracy.iter().any(|name| *name == base_of(&of.gate.metric)));
+    let verdict = match (of_error.is_empty(), of_error.iter().any(|of| fails(&of))) {
+        (true, _) => "none".to_string(),
+        (_, true) => Verdict::Fail.to_string(),
+        _ => Verdict::Pass.to_string(),
+    };
+    let failing: Vec<String> =
+        others.iter().filter(fails).map(|judged| judged.gate.id.clone()).collect();
+    [verdict, if failing.is_empty() { "–".into() } else { failing.join(", ") }]
+}
+
+fn all_gates(run: &JudgedRun) -> String {
+    let (apply, others) = run.applicable();
+    let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
+    format!("{} pass, {failed} fail, {} not applicable", apply.len() - failed, others.len())
 }
 
 #[cfg(test)]
@@ -215,7 +313,7 @@ mod tests {
     fn of(code: &str) -> Submission {
         let [version, scheme, method] = ["1", "scheme", ""].map(String::from);
         let (code, division) = (code.to_string(), Division::Closed);
-        Submission { code, version, scheme, division, method, seed: None }
+        Submission { code, version, scheme, division, method, results: None, seed: None }
     }
 
     fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {
@@ -236,7 +334,10 @@ mod tests {
         };
         assert!(with(0.03, 2.0, "a").starts_with("No other code"));
         let text = with(0.01, 5.0, "a");
-        assert!(text.contains("the best of ours 2.0") && !text.contains("takes"), "{text}");
+        assert!(
+            text.contains("the best of ours in this problem 2.0") && !text.contains("takes"),
+            "{text}"
+        );
         let text = with(0.03, 0.5, "a");
         assert!(
             text.contains("with no more error 1.0") && !text.contains("has an error"),

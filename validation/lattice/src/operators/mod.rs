@@ -13,7 +13,12 @@ mod study;
 #[cfg(test)]
 mod tests;
 
-use harness::{composed::*, context::Context, declare::Declaration, method::*};
+use harness::{
+    composed::*,
+    context::Context,
+    declare::{Declaration, Drawn, Draws},
+    method::*,
+};
 use schemes::lattice;
 
 base::settings! {
@@ -144,6 +149,17 @@ fn variants() -> Compositions<OperatorSettings> {
     subjects().fold(none, add).all
 }
 
+/// On a lattice the gain of an operator follows from theory for any number of particles.
+const SEALED: Draws = Draws {
+    variants: &[],
+    resolution: ("n", [24.0, 96.0]),
+    order: 0.0,
+    metrics: &["symbol_error"],
+    set: &["disorder=0"],
+    others: &[("h_over_dx", Drawn::Judged)],
+    free: &[],
+};
+
 /// Operators on particles.
 pub static OPERATORS: Composed<OperatorSettings> = Composed {
     name: "operators",
@@ -161,6 +177,7 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
     variants,
     declaration: |tier| Declaration {
         studies: Some(Box::new(move |runs| study::studies(tier, runs))),
+        sealed: Some(SEALED),
         ..Declaration::default()
     },
     plan: plan::plan,

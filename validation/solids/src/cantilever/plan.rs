@@ -88,6 +88,17 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
     }
 }
 
+/// The finite elements are of the bar of any number of layers.
+const SEALED: Draws = Draws {
+    variants: &["lagrangian", "lagrangian-saint-venant"],
+    resolution: ("n", [5.0, 10.0]),
+    order: 2.0,
+    metrics: &["frequency_error"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
 /// In the full tier which errors of constants the gates detect, and what can be measured of a path alone.
 pub fn declaration(tier: Tier) -> Declaration {
     let constants =
@@ -106,7 +117,16 @@ pub fn declaration(tier: Tier) -> Declaration {
     };
     let (accuracy, curve) = (vec![accuracy], Some(path_of_end()));
     let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
-    Declaration { accuracy, sensitivity, stepwise, of_methods, curve, ..Declaration::default() }
+    let sealed = Some(SEALED);
+    Declaration {
+        accuracy,
+        sensitivity,
+        stepwise,
+        of_methods,
+        curve,
+        sealed,
+        ..Declaration::default()
+    }
 }
 
 /// The path of the end: a bar of uniform strain, whose end is there, stands for it.

@@ -56,6 +56,17 @@ fn path_and_extents() -> Curve {
 }
 
 /// Everything that the harness draws and judges.
+/// Finite elements are of the speeds that are judged, and know no direction of the flight.
+const SEALED: Draws = Draws {
+    variants: &["lagrangian"],
+    resolution: ("spacing", [0.1, 0.25]),
+    order: 1.0,
+    metrics: &["histories", "width_min_error"],
+    set: &[],
+    others: &[("speed", Drawn::Judged), ("angle", Drawn::Any(0.0, 90.0))],
+    free: &[],
+};
+
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     Declaration {
@@ -71,6 +82,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         stepwise: STEPWISE,
         curve: Some(path_and_extents()),
         accuracy: vec![accuracy],
+        sealed: Some(SEALED),
         ..Declaration::default()
     }
 }

@@ -13,6 +13,17 @@ pub fn is_stable(record: &Record) -> bool {
     record.status == Status::Completed && is_below(ENERGY_GAP, 0.02) && is_below(MACH, 0.5)
 }
 
+/// The experiment is the same at any spacing, and its distance from the model does not fall with it.
+const SEALED: Draws = Draws {
+    variants: &["modern"],
+    resolution: ("n", [14.0, 40.0]),
+    order: 0.0,
+    metrics: &["front_rms_shifted", "height_rms_shifted"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
 /// All of it.
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
@@ -40,6 +51,7 @@ pub fn declaration(tier: Tier) -> Declaration {
         sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
         curve: Some(front()),
+        sealed: Some(SEALED),
         ..Declaration::default()
     }
 }

@@ -1,0 +1,286 @@
+//! Sealed problems: settings that are drawn where a reference holds, and gates whose bounds follow from those
+//! of judged runs. Between the resolutions of two judged runs the bound is interpolated, logarithm over
+//! logarithm; beyond them it changes with the formal order.
+
+use base::{
+    functions::{exp, ln},
+    gate::{Bound, Evidence, Gate},
+    random::Random,
+    settings::Kind,
+    spec::{RunSpec, Task},
+};
+use serde_json::Value;
+
+use crate::{
+    case::{Case, Planned, Tier},
+    plan,
+};
+
+/// What the sealed problems of a case draw, and by what they are judged.
+#[derive(Clone, Copy)]
+pub struct Draws {
+    /// The variants whose errors change with the order below; all if none is named.
+    pub variants: &'static [&'static str],
+    /// The setting of the resolution, a number of spacings or a spacing, and the ends between which it is
+    /// drawn.
+    pub resolution: (&'static str, [f64; 2]),
+    /// The formal order of the errors in the spacing.
+    pub order: f64,
+    /// The errors that may be judged; those that the plans judge of the variant are.
+    pub metrics: &'static [&'static str],
+    /// `key=value` of settings that all have.
+    pub set: &'static [&'static str],
+    /// Other settings that are drawn.
+    pub others: &'static [(&'static str, Drawn)],
+    /// Settings in which judged runs may differ, for they change none of the errors.
+    pub free: &'static [&'static str],
+}
+
+/// How a setting is drawn that is not the resolution.
+#[derive(Clone, Copy)]
+pub enum Drawn {
+    /// Evenly in the logarithm between these ends, within the values of judged runs.
+    Between(f64, f64),
+    /// One of the values of judged runs.
+    Judged,
+    /// Evenly between these ends: the reference and the error are the same for all.
+    Any(f64, f64),
+}
+
+/// The bound of a judged run.
+struct Level {
+    /// Spacings over a length of the problem: more is finer.
+    fineness: f64,
+    /// The largest magnitude of the error.
+    most: f64,
+    gate: Gate,
+    settings: Value,
+}
+
+impl Draws {
+    /// How fine a resolution is.
+    fn fineness(&self, case: &dyn Case, settings: &Value) -> Option<f64> {
+        let value = number(settings, self.resolution.0)?;
+        Some(if is_count(case, self.resolution.0) { value } else { 1.0 / value })
+    }
+
+    /// The judged runs of a variant whose gates are on a metric; none if one of them is a control or may lie
+    /// outside, for such a bound says nothing of the variant.
+    fn levels(&self, case: &dyn Case, variant: &str, metric: &str) -> Vec<Level> {
+        let set: Vec<String> = self.set.iter().map(ToString::to_string).collect();
+        if !self.variants.is_empty() && !self.variants.contains(&variant) {
+            return Vec::new();
+        }
+        let Ok(base) = case.settings(variant, &set) else { return Vec::new() };
+        let may_differ = |name: &str| {
+            let drawn = self.others.iter().filter(|(_, how)| !matches!(how, Drawn::Any(..)));
+            let mut names = drawn.map(|(name, _)| name).chain(self.free);
+            name == self.resolution.0 || names.any(|other| *other == name)
+        };
+        let is_alike = |spec: &RunSpec| {
+            let given = base.as_object().into_iter().flatten();
+            let is_plain = spec.mutation.is_none() && spec.disorder.is_none();
+            spec.variant == variant
+                && is_plain
+                && given
+                    .into_iter()
+                    .all(|(name, value)| may_differ(name) || spec.settings.get(name) == Some(value))
+        };
+        let mut levels: Vec<Level> = Vec::new();
+        let plans =
+            [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(case, tier));
+        for Planned { spec, gates, .. } in plans {
+            if spec.task != Task::Simulate || !is_alike(&spec) {
+                continue;
+            }
+            let Some(fineness) = self.fineness(case, &spec.settings) else { continue };
+            for gate in gates.into_iter().filter(|gate| gate.metric == metric) {
+                if gate.control || gate.known.is_some() {
+                    return Vec::new();
+                }
+                let is_new = levels.iter().all(|level| level.gate.id != gate.id);
+                let settings = spec.settings.clone();
+                if let (true, Some(most)) = (is_new, most(&gate)) {
+                    levels.push(Level { fineness, most, gate, settings });
+                }
+            }
+        }
+        levels.sort_by(|a, b| a.fineness.total_cmp(&b.fineness));
+        levels
+    }
+
+    /// The bound at a resolution, and where it comes from.
+    fn bound(&self, levels: &[&Level], fineness: f64) -> Option<(f64, String)> {
+        let worst = |levels: &mut dyn Iterator<Item = &&Level>| -> Option<(f64, f64, String)> {
+            let worst = levels.max_by(|a, b| a.most.total_cmp(&b.most))?;
+            Some((worst.fineness, worst.most, worst.gate.id.clone()))
+        };
+        let of = |at: f64| worst(&mut levels.iter().filter(|level| level.fineness == at));
+        let before = levels.iter().rev().find(|level| level.fineness <= fineness);
+        let after = levels.iter().find(|level| level.fineness >= fineness);
+        let near = |level: Option<&&Level>| level.and_then(|level| of(level.fineness));
+        match (near(before), near(after)) {
+            (Some((coarse, at_coarse, a)), Some((fine, at_fine, b))) if coarse < fine => {
+                let share = ln(fineness / coarse) / ln(fine / coarse);
+                let most = at_coarse * exp(share * ln(at_fine / at_coarse));
+                Some((most, format!("The bound lies between those of {a} and {b}, by resolution.")))
+            }
+            (Some((at, most, a)), _) | (None, Some((at, most, a))) => {
+                let (factor, order) = (exp(self.order * ln(at / fineness)), self.order);
+                let words =
+                    format!("The bound is that of {a} at this resolution, with order {order}.");
+                Some((most * factor, words))
+            }
+            (None, None) => None,
+        }
+    }
+
+    /// The judged runs that have the drawn values: those of [`Drawn::Judged`] have the same ones.
+    fn with_values<'a>(&self, levels: &'a [Level], settings: &Value) -> Vec<&'a Level> {
+        let is_same = |level: &&Level| {
+            let judged = self.others.iter().filter(|(_, how)| matches!(how, Drawn::Judged));
+            judged.into_iter().all(|(name, _)| level.settings.get(name) == settings.get(name))
+        };
+        levels.iter().filter(is_same).collect()
+    }
+}
+
+/// The largest magnitude that a gate allows: none of windows of our own methods, and of counts.
+fn most(gate: &Gate) -> Option<f64> {
+    match (gate.bound, gate.evidence) {
+        (Bound::Within(..), Evidence::Theory) => None,
+        (Bound::Below(most), _) => Some(most),
+        (Bound::Within(low, high), _) if low < 0.0 && high > 0.0 => Some(high.max(-low)),
+        _ => None,
+    }
+    .filter(|most| *most > 0.0)
+}
+
+fn number(settings: &Value, name: &str) -> Option<f64> {
+    settings.get(name).and_then(Value::as_f64)
+}
+
+fn is_count(case: &dyn Case, name: &str) -> bool {
+    case.fields().iter().any(|field| field.name == name && field.kind == Kind::Count)
+}
+
+/// `key=value` of the settings of a sealed problem.
+///
+/// # Errors
+/// If no judged run tells a bound.
+pub fn draw(case: &dyn Case, variant: &str, random: &mut Random) -> Result<Vec<String>, String> {
+    let draws = of(case)?;
+    let levels = draws.metrics.iter().map(|metric| draws.levels(case, variant, metric));
+    let Some(levels) = levels.into_iter().find(|levels| !levels.is_empty()) else {
+        return Err(format!(
+            "{} {variant} has no sealed problems, for no bound of its errors is known at other settings; \
+             variants that have: {}",
+            case.name(),
+            draws.variants.join(", ")
+        ));
+    };
+    let three_digits = |value: f64| format!("{value:.2e}").parse().unwrap_or(value);
+    let in_logarithm = |[low, high]: [f64; 2], share: f64| low * exp(share * ln(high / low));
+    let text = |name: &str, value: f64| match is_count(case, name) {
+        true => format!("{name}={}", value.round()),
+        false => format!("{name}={}", three_digits(value)),
+    };
+    let mut set: Vec<String> = draws.set.iter().map(ToString::to_string).collect();
+    let (name, ends) = draws.resolution;
+    set.push(text(name, in_logarithm(ends, random.uniform())));
+    for (name, how) in draws.others {
+        let share = random.uniform(); // drawn in any case, so that the others do not depend on it
+        let mut judged: Vec<f64> =
+            levels.iter().filter_map(|level| number(&level.settings, name)).collect();
+        judged.sort_by(f64::total_cmp);
+        judged.dedup();
+        let ends = judged.first().zip(judged.last()).map(|(low, high)| [*low, *high]);
+        let value = match *how {
+            Drawn::Any(low, high) => Some(text(name, low + share * (high - low))),
+            Drawn::Judged => judged
+                .get((share * judged.len() as f64) as usize)
+                .map(|value| format!("{name}={value}")),
+            Drawn::Between(least, most) => ends
+                .map(|[low, high]| [low.max(least), high.min(most)])
+                .filter(|[low, high]| low < high)
+                .map(|ends| text(name, in_logarithm(ends, share))),
+        };
+        // A setting that the variant does not read is left out.
+        let with = |one: &String| [&set[..], std::slice::from_ref(one)].concat();
+        set.extend(value.filter(|one| case.settings(variant, &with(one)).is_ok()));
+    }
+    Ok(set)
+}
+
+/// What a case declares of sealed problems.
+fn of(case: &dyn Case) -> Result<Draws, String> {
+    case.declaration(Tier::Quick).sealed.ok_or_else(|| {
+        format!(
+            "{} has no sealed problems: it declares no settings at which a reference holds and a bound is \
+             known",
+            case.name()
+        )
+    })
+}
+
+/// The gates of a sealed problem, one for each metric that judged runs of the variant have.
+pub fn gates(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
+    let Ok(draws) = of(case) else { return Vec::new() };
+    let gate = |metric: &&str| {
+        let levels = draws.levels(case, &spec.variant, metric);
+        let levels = draws.with_values(&levels, &spec.settings);
+        let (most, words) = draws.bound(&levels, draws.fineness(case, &spec.settings)?)?;
+        let like = &levels.first()?.gate;
+        let bound = match like.bound {
+            Bound::Within(..) => Bound::Within(-most, most),
+            _ => Bound::Below(most),
+        };
+        let id = format!("{}.{}.sealed.{metric}", case.name(), spec.variant);
+        Some(Gate::new(id, *metric, bound, like.evidence, words + " " + &like.because))
+    };
+    draws.metrics.iter().filter_map(gate).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn level(fineness: f64, most: f64) -> Level {
+        let gate = Gate::new("c.v", "l2", Bound::Below(most), Evidence::Analytic, "made up");
+        Level { fineness, most, gate, settings: Value::Null }
+    }
+
+    /// Of order 2 beyond the judged runs, interpolated between them, and the largest of equal resolutions.
+    #[test]
+    fn bounds_follow_from_those_of_judged_runs() {
+        let draws = Draws {
+            variants: &["v"],
+            resolution: ("n", [10.0, 80.0]),
+            order: 2.0,
+            metrics: &["l2"],
+            set: &[],
+            others: &[],
+            free: &[],
+        };
+        let levels = [level(20.0, 0.04), level(20.0, 0.02), level(80.0, 0.01)];
+        let levels: Vec<&Level> = levels.iter().collect();
+        for (fineness, expected) in
+            [(10.0, 0.16), (20.0, 0.04), (40.0, 0.02), (80.0, 0.01), (160.0, 0.0025)]
+        {
+            let (found, _) = draws.bound(&levels, fineness).expect("a bound");
+            assert!((found / expected - 1.0).abs() < 1e-12, "{fineness}: {found}");
+        }
+        assert!(draws.bound(&[], 10.0).is_none());
+    }
+
+    /// A window about the theory of our own steps is no bound for another code.
+    #[test]
+    fn windows_of_theory_and_counts_give_no_bound() {
+        let of = |bound, evidence| most(&Gate::new("c.v", "l2", bound, evidence, "made up"));
+        assert_eq!(of(Bound::Below(0.1), Evidence::Theory), Some(0.1));
+        assert_eq!(of(Bound::Within(-0.2, 0.1), Evidence::Reference), Some(0.2));
+        assert_eq!(of(Bound::Within(-0.2, 0.1), Evidence::Theory), None);
+        assert_eq!(of(Bound::Within(0.1, 0.2), Evidence::Analytic), None);
+        assert_eq!(of(Bound::Equals(0.0), Evidence::Invariant), None);
+    }
+}

@@ -1,0 +1,351 @@
+//! Runs of other codes in a store: judged where our own runs are, compared by code and scheme, and none is
+//! lost in silence.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use base::{record::Record, reference::sha256};
+use serde_json::Value;
+
+const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
+/// A gate of the problem that the submissions of these tests solve.
+const GATE: &str = "couette.modern.20.l2@0.1";
+
+fn touchstone(folder: &Path, line: &str) -> Output {
+    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
+}
+
+/// What a command prints, and its exit code.
+fn of(folder: &Path, line: &str) -> (String, i32) {
+    let output = touchstone(folder, line);
+    let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    (format!("{out}{error}"), output.status.code().unwrap())
+}
+
+/// Our own results as those of another code, made once.
+fn solved() -> &'static Path {
+    static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().unwrap();
+        let (words, code) = of(folder.path(), "export couette --variant modern --out own --solve");
+        assert_eq!(code, 0, "{words}");
+        folder
+    });
+    folder.path()
+}
+
+/// A submission by the code `code` in the folder `to`, whose velocities are ours times a factor.
+fn submission(to: &Path, code: [&str; 2], factor: f64) {
+    let own = solved().join("own");
+    fs::create_dir(to).unwrap();
+    fs::copy(own.join("problem.json"), to.join("problem.json")).unwrap();
+    fs::copy(own.join("system.json"), to.join("system.json")).unwrap();
+    let method = format!(
+        "{{\"code\": \"{}\", \"version\": \"{}\", \"scheme\": \"s\", \"division\": \"closed\", \
+         \"settings\": {{}}, \"changed\": \"nothing\"}}",
+        code[0], code[1]
+    );
+    fs::write(to.join("method.json"), method).unwrap();
+    let text = fs::read_to_string(own.join("results.csv")).unwrap();
+    let mut lines = text.lines();
+    let mut scaled = lines.next().unwrap().to_string() + "\n";
+    let column = scaled.split(',').position(|head| head.starts_with("u[")).expect("a column");
+    for line in lines {
+        let mut cells: Vec<String> = line.split(',').map(String::from).collect();
+        cells[column] = (factor * cells[column].parse::<f64>().unwrap()).to_string();
+        scaled += &(cells.join(",") + "\n");
+    }
+    fs::write(to.join("results.csv"), scaled).unwrap();
+}
+
+fn records(store: &Path) -> Vec<PathBuf> {
+    let mut paths: Vec<PathBuf> =
+        fs::read_dir(store).unwrap().flatten().map(|entry| entry.path()).collect();
+    paths.sort();
+    paths
+}
+
+/// `judge`, `report`, verdicts.json and JUnit did not know submissions, and a store of them alone was "604
+/// gates fail".
+#[test]
+fn submissions_are_judged_where_our_own_runs_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    submission(&at.join("good"), ["good code", "1"], 1.0);
+    submission(&at.join("bad"), ["bad code", "1"], 1.5);
+    assert_eq!(of(at, "submit couette good --store st").1, 0);
+    let judged = |line: &str| {
+        let output = touchstone(at, &format!("{line} --junit junit.xml"));
+        let verdicts = String::from_utf8_lossy(&output.stdout).into_owned();
+        let junit = fs::read_to_string(at.join("junit.xml")).unwrap();
+        (verdicts, junit, output.status.code().unwrap())
+    };
+    let (words, _, code) = judged("judge couette --store st");
+    assert_eq!(code, 0, "our own runs are absent and do not fail: {words}");
+    assert!(!words.contains("gates fail"), "{words}");
+    assert_eq!(of(at, "submit couette bad --store st").1, 1);
+    let (words, junit, code) = judged("judge couette --store st");
+    assert_eq!(code, 1, "{words}");
+    let line = words.lines().find(|line| line.contains("bad code")).expect("a line");
+    assert!(line.contains(GATE), "{words}");
+    assert!(junit.contains("couette modern by bad code 1, s") && junit.contains("<failure"));
+    assert!(!junit.contains("PySPH"), "records of the program are none of the store's");
+    let (json, _, code) = judged("judge couette --store st --json");
+    assert_eq!(code, 1);
+    let verdicts: Value = serde_json::from_str(&json).unwrap();
+    let all = verdicts["submissions"].as_array().unwrap();
+    let by = |code: &str| all.iter().find(|of| of["submission"]["code"] == code).expect("a code");
+    let verdict = |of: &Value| {
+        let judged = of["judged"].as_array().unwrap();
+        judged.iter().find(|judged| judged["gate"] == GATE).unwrap()["verdict"].clone()
+    };
+    assert_eq!(["good code", "bad code"].map(|code| verdict(by(code))), ["pass", "fail"]);
+    assert_eq!(["bad code", "PySPH"].map(|code| &by(code)["embedded"]), [false, true]);
+    assert!(verdicts["counts"].get("fail").is_none(), "{}", verdicts["counts"]);
+    submission(&at.join("borrowed"), ["second code", "7"], 1.0);
+    assert_eq!(of(at, "submit couette borrowed --store st").1, 0);
+    let (words, code) = of(at, "report --store st --out page");
+    assert!(code == 1 && words.contains("bad code"), "{words}");
+    let page = fs::read_to_string(at.join("page/index.html")).unwrap();
+    for part in ["bad code 1, s", "as submitted", "proves nothing", "not looked at the scripts"] {
+        assert!(page.contains(part), "the page lacks {part:?}");
+    }
+    let told = page.split("Equal results, to the last bit").nth(1).expect("they are told");
+    let told = told.split("</p>").next().unwrap();
+    assert!(told.contains("good code 1, s") && told.contains("second code 7, s"), "{told}");
+    assert!(!told.contains("bad code"), "{told}");
+}
+
+/// Gates of submissions were not compared, and a new version was another run.
+#[test]
+fn a_code_that_fails_in_a_new_version_is_a_new_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    submission(&at.join("a"), ["code", "1"], 1.0);
+    submission(&at.join("b"), ["code", "2"], 1.5);
+    submission(&at.join("c"), ["code", "1"], 1.0001);
+    for (from, to) in [("a", "one"), ("b", "two"), ("c", "three"), ("a", "both"), ("b", "both")] {
+        let (words, code) = of(at, &format!("submit couette {from} --store {to}"));
+        assert!(code < 2, "{words}");
+    }
+    let compared = |line: &str| {
+        let output = touchstone(at, &format!("compare {line} --json"));
+        let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (json["new_failures"].as_u64().unwrap(), output.status.code().unwrap())
+    };
+    assert_eq!(compared("one two"), (1, 1));
+    assert_eq!(compared("one both"), (1, 1), "the old version is still there");
+    assert_eq!(compared("two one"), (0, 0), "it passes now");
+    assert_eq!(compared("one three"), (0, 0), "other results that pass too");
+    assert_eq!(compared("one one"), (0, 0));
+    let (words, _) = of(at, "compare one two");
+    assert!(words.contains("version 1") && words.contains("version 2"), "{words}");
+    fs::remove_file(&records(&at.join("two"))[0]).unwrap();
+    submission(&at.join("d"), ["another code", "1"], 1.0);
+    assert_eq!(of(at, "submit couette d --store two").1, 0);
+    let (words, code) = of(at, "compare one two");
+    assert!(code == 1 && words.contains("gone: 1") && words.contains("new: "), "{words}");
+}
+
+/// A second submission of one method took the place of the first, also a failing one that of a passing one.
+#[test]
+fn a_submission_never_takes_the_place_of_another_in_silence() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let store = at.join("st");
+    submission(&at.join("a"), ["code", "1"], 1.0);
+    submission(&at.join("b"), ["code", "1"], 1.5);
+    assert_eq!(of(at, "submit couette a --store st").1, 0);
+    assert_eq!(of(at, "submit couette b --store st").1, 1);
+    assert_eq!(records(&store).len(), 2, "both are kept");
+    let written = || records(&store).iter().map(|path| fs::read(path).unwrap()).collect::<Vec<_>>();
+    let before = written();
+    assert_eq!(of(at, "submit couette a --store st").1, 0, "the same once more");
+    // Other columns first, other digits: the same results.
+    let text = fs::read_to_string(at.join("a/results.csv")).unwrap();
+    let swapped = |line: &str| {
+        let mut cells: Vec<&str> = line.split(',').collect();
+        cells.swap(0, 1);
+        cells.join(",") + "\n"
+    };
+    fs::write(at.join("a/results.csv"), text.lines().map(swapped).collect::<String>()).unwrap();
+    assert_eq!(of(at, "submit couette a --store st").1, 0);
+    assert_eq!(written(), before);
+    let system = fs::read_to_string(at.join("a/system.json")).unwrap();
+    let other: Value = serde_json::from_str(&system).unwrap();
+    let mut other = other.as_object().unwrap().clone();
+    other.insert("machine".into(), "another".into());
+    fs::write(at.join("a/system.json"), serde_json::to_string(&other).unwrap()).unwrap();
+    let (words, code) = of(at, "submit couette a --store st");
+    assert!(code == 2 && words.contains("says something else: machine"), "{words}");
+    assert_eq!(written(), before);
+}
+
+/// A record can be edited and given a digest that fits: only its results tell.
+#[test]
+fn a_forged_record_is_refused_by_its_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    submission(&at.join("a"), ["code", "1"], 1.5);
+    assert_eq!(of(at, "submit couette a --store st").1, 1);
+    let path = &records(&at.join("st"))[0];
+    let record = Record::from_json(&fs::read_to_string(path).unwrap()).unwrap();
+    let mut forged = record.clone();
+    forged.metrics.get_mut("l2@0.1").unwrap().value = 1e-5;
+    let json = forged.to_json().unwrap();
+    assert!(Record::from_json(&json).is_ok(), "its digest fits");
+    fs::write(path, json).unwrap();
+    let (words, code) = of(at, "submit couette a --store st");
+    assert!(code == 2 && words.contains("l2@0.1 (1e-5 there"), "{words}");
+}
+
+/// Equal results of two codes have equal digests, and the machine of the other code is not that of this program.
+#[test]
+fn results_have_a_digest_and_machines_are_not_mixed() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    submission(&at.join("a"), ["first", "1"], 1.0);
+    submission(&at.join("b"), ["second", "7"], 1.0);
+    for name in ["a", "b"] {
+        assert_eq!(of(at, &format!("submit couette {name} --store st")).1, 0);
+    }
+    let [a, b] = [0, 1].map(|k| {
+        let text = fs::read_to_string(&records(&at.join("st"))[k]).unwrap();
+        Record::from_json(&text).unwrap()
+    });
+    let results = |of: &Record| of.submission.clone().unwrap().results.unwrap();
+    assert_eq!((results(&a), results(&a).len()), (results(&b), sha256(b"").len()));
+    let system = fs::read_to_string(at.join("a/system.json")).unwrap();
+    let system: Value = serde_json::from_str(&system).unwrap();
+    assert_eq!(a.numerics["machine"].as_str(), system["machine"].as_str());
+}
+
+/// The settings that a challenge draws for a method, or why there are none.
+fn drawn(at: &Path, method: &str, arguments: &str) -> Result<String, String> {
+    fs::write(at.join("method.json"), method).unwrap();
+    let output =
+        touchstone(at, &format!("challenge {arguments} --method method.json --out sealed"));
+    let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    match output.status.code() {
+        Some(0) => Ok(out.into_owned()),
+        Some(2) => Err(error.into_owned()),
+        code => panic!("{code:?}: {error}"),
+    }
+}
+
+/// A solver could grind: `changed: "nothing 2"` drew another problem with the same seed.
+#[test]
+fn words_of_a_method_draw_nothing_and_what_it_is_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let method = |version: &str, settings: &str, changed: &str| {
+        format!(
+            "{{\"code\": \"c\", \"version\": \"{version}\", \"scheme\": \"WCSPH\", \"division\": \
+             \"closed\", \"settings\": {settings}, \"changed\": \"{changed}\"}}"
+        )
+    };
+    let settings = r#"{"h": 1.5, "note": "a", "on": true}"#;
+    let of = |text: &str| drawn(folder.path(), text, "couette --seed 7").unwrap();
+    let first = of(&method("1", settings, "nothing"));
+    let spaced = method("1", settings, "nothing").replace(": ", " :\n ");
+    let same = [
+        method("1", settings, "nothing 2"),
+        method("1", r#"{"note": "b", "on": true, "h": 15e-1}"#, "nothing"),
+        method("1 ", settings, "nothing"),
+        method("1", settings, "nothing").replace("WCSPH", "wcsph!"),
+        spaced,
+    ];
+    for text in same {
+        assert_eq!(of(&text), first, "{text}");
+    }
+    let others = [
+        method("2", settings, "nothing"),
+        method("1", r#"{"h": 1.6, "note": "a", "on": true}"#, "nothing"),
+        method("1", r#"{"h": 1.5, "note": "a", "on": false}"#, "nothing"),
+        method("1", settings, "nothing").replace("closed", "open"),
+        method("1", settings, "nothing").replace("WCSPH", "ISPH"),
+    ];
+    for text in others {
+        assert_ne!(of(&text), first, "{text}");
+    }
+    let other_seed = drawn(folder.path(), &method("1", settings, "nothing"), "couette --seed 8");
+    assert_ne!(other_seed.unwrap(), first);
+}
+
+/// What no submission can have was sealed, and problems that nobody can judge.
+#[test]
+fn what_has_no_bound_or_is_no_method_is_not_sealed() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let method = "{\"code\": \"c\", \"version\": \"1\", \"scheme\": \"s\", \"division\": \"closed\", \
+                  \"settings\": {}, \"changed\": \"\"}";
+    for text in
+        ["", "[]", "<script>", &method.replace("closed", "none"), &method.replace("\"c\"", "\"\"")]
+    {
+        let words = drawn(at, text, "couette --seed 1").unwrap_err();
+        assert!(words.contains("no submission can have this method"), "{text}: {words}");
+    }
+    for (arguments, expected) in [
+        ("elastic_bar --seed 1", "elastic_bar has no sealed problems"),
+        ("couette --variant seed --seed 1", "variants that have: modern"),
+        ("couette --variant nothing --seed 1", "no variant is called \"nothing\""),
+    ] {
+        let words = drawn(at, method, arguments).unwrap_err();
+        assert!(words.contains(expected), "{arguments}: {words}");
+    }
+    assert!(!at.join("sealed").exists(), "nothing is written");
+}
+
+/// Sealed problems were never judged: our own runs pass, and twice the velocity fails.
+#[test]
+fn sealed_problems_are_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let method = fs::read_to_string(solved().join("own/method.json")).unwrap();
+    let cases: [(&str, &str, &[u64]); 4] = [
+        ("couette", "l2_worst", &[1, 2]),
+        ("taylor_couette", "l2", &[1]),
+        ("hydrostatic", "p_l2", &[1]),
+        ("operators", "symbol_error", &[1]),
+    ];
+    for (case, metric, seeds) in cases {
+        for seed in seeds {
+            let _ = fs::remove_dir_all(at.join("sealed"));
+            let set = drawn(at, &method, &format!("{case} --seed {seed}")).unwrap();
+            let set: String = set.split_whitespace().map(|one| format!(" --set {one}")).collect();
+            let (words, code) =
+                of(at, &format!("export {case}{set} --out own{case}{seed} --solve"));
+            assert_eq!(code, 0, "{words}");
+            let own = at.join(format!("own{case}{seed}"));
+            for name in ["results.csv", "system.json"] {
+                fs::copy(own.join(name), at.join("sealed").join(name)).unwrap();
+            }
+            let id = format!(".sealed.{metric}");
+            let readme = fs::read_to_string(at.join("sealed/README.md")).unwrap();
+            assert!(readme.contains(&id), "{readme}");
+            let (words, code) = of(at, &format!("submit {case} sealed --store st --all"));
+            assert!(code == 0 && words.contains(&id), "{case}{set}: {words}");
+            double(
+                &at.join("sealed/results.csv"),
+                if metric == "p_l2" { "density[" } else { "u[" },
+            );
+            let (words, code) = of(at, &format!("submit {case} sealed --store st --all"));
+            assert!(code == 1 && words.contains(&id), "twice as much, {case}{set}: {words}");
+        }
+    }
+}
+
+/// Multiplies a column by two, or makes densities 2 % larger where the water has its own weight.
+fn double(path: &Path, column: &str) {
+    let text = fs::read_to_string(path).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    let k = head.split(',').position(|name| name.starts_with(column)).expect("a column");
+    let factor = if column == "u[" { 2.0 } else { 1.02 };
+    let row = |row: &str| {
+        let mut cells: Vec<String> = row.split(',').map(String::from).collect();
+        cells[k] = (factor * cells[k].parse::<f64>().unwrap()).to_string();
+        cells.join(",") + "\n"
+    };
+    fs::write(path, format!("{head}\n{}", rows.lines().map(row).collect::<String>())).unwrap();
+}
