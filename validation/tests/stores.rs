@@ -289,7 +289,7 @@ fn what_has_no_bound_or_is_no_method_is_not_sealed() {
     for (arguments, expected) in [
         ("elastic_bar --seed 1", "elastic_bar has no sealed problems"),
         ("couette --variant seed --seed 1", "variants that have: modern"),
-        ("couette --variant nothing --seed 1", "no variant is called \"nothing\""),
+        ("couette --variant nothing --seed 1", "is called \"nothing\""),
     ] {
         let words = drawn(at, method, arguments).unwrap_err();
         assert!(words.contains(expected), "{arguments}: {words}");
