@@ -21,8 +21,8 @@ use crate::{
 pub struct Draws {
     /// The variants whose errors change with the order below; all if none is named.
     pub variants: &'static [&'static str],
-    /// The setting of the resolution, a number of spacings or a spacing, and the ends between which it is
-    /// drawn.
+    /// The setting of the resolution, a number of spacings or a spacing of which a whole number is a length of
+    /// 1, and the ends between which it is drawn.
     pub resolution: (&'static str, [f64; 2]),
     /// The formal order of the errors in the spacing.
     pub order: f64,
@@ -187,7 +187,12 @@ pub fn draw(case: &dyn Case, variant: &str, random: &mut Random) -> Result<Vec<S
     };
     let mut set: Vec<String> = draws.set.iter().map(ToString::to_string).collect();
     let (name, ends) = draws.resolution;
-    set.push(text(name, in_logarithm(ends, random.uniform())));
+    let drawn = in_logarithm(ends, random.uniform());
+    set.push(match is_count(case, name) {
+        true => text(name, drawn),
+        // A length is a whole number of spacings.
+        false => format!("{name}={}", 1.0 / (1.0 / drawn).round()),
+    });
     for (name, how) in draws.others {
         let share = random.uniform(); // drawn in any case, so that the others do not depend on it
         let mut judged: Vec<f64> =

@@ -318,10 +318,13 @@ fn problem(
             case::spec(case, variant, &arguments.set)?
         }
     };
-    if let Some(sealed) = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref()) {
-        challenge::check(case, sealed, &entry.method, &spec).map_err(Failure::usage)?;
+    let sealed = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
+    let check = |sealed| challenge::check(case, sealed, &entry.method, &spec);
+    sealed.map_or(Ok(()), check).map_err(Failure::usage)?;
+    let mut problem = Problem::of(case, spec)?;
+    if let Some(sealed) = sealed {
+        problem = problem.sealed(case, sealed.clone());
     }
-    let problem = Problem::of(case, spec)?;
     let agrees = entry.asked.as_ref().map_or(Ok(()), |asked| asked.agrees(&problem));
     agrees.map_err(|flaw| refused(vec![flaw]))?;
     Ok(problem)
