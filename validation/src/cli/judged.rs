@@ -15,6 +15,7 @@ use harness::study::Study;
 use harness::suite::{JudgedOf, Suite};
 use serde::{Deserialize, Serialize};
 
+use super::comparisons::{self, ComparisonVerdict};
 use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
@@ -90,6 +91,9 @@ pub struct Verdicts {
     pub runs: Vec<RunVerdicts>,
     /// studies of all cases and of the method
     pub studies: Vec<StudyVerdicts>,
+    /// comparisons of all cases with references; builds of before have none
+    #[serde(default)]
+    pub comparisons: Vec<ComparisonVerdict>,
 }
 
 /// A run and the judgements on it.
@@ -169,6 +173,7 @@ impl Verdicts {
                 .flat_map(|of| of.runs.all.iter().map(|run| of_run(of.case, run)))
                 .collect(),
             studies: of_cases.collect(),
+            comparisons: comparisons::of(suite),
         }
     }
 }
