@@ -411,8 +411,13 @@ impl<X: Numbers> ParticleData<X> {
 
     /// Counts a pair sweep that begins, of forces alone or one that completes a right-hand side.
     pub fn count(&mut self, phase: Phase) {
+        self.count_pairs(phase, self.neighbours.pairs());
+    }
+
+    /// Counts pair sweeps that begin, over this many neighbours in all, which need not be those of the lists.
+    pub fn count_pairs(&mut self, phase: Phase, neighbours: u64) {
         self.enter(phase);
-        self.progress.work.pair_interactions += self.neighbours.pairs();
+        self.progress.work.pair_interactions += neighbours;
         if phase != Phase::Forces {
             self.progress.work.right_hand_sides += self.counts[0] as u64;
         }

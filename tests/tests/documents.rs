@@ -6,7 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use base::gate::{Bound, Gate};
-use harness::{case::Tier, convergence::Level, plan, studies::validation::numerical};
+use harness::case::Tier;
+use harness::convergence::{Convergence, Level, convergence};
+use harness::{plan, studies::validation::numerical};
 use serde_json::Value;
 use touchstone_tests::snapshot;
 use validation::cases;
@@ -141,16 +143,19 @@ fn last_number(text: &str) -> Option<(f64, f64)> {
 }
 
 /// The numbers that a comment behind a number in a document stands for: `<!-- snapshot; run; metric -->` a
-/// result, `<!-- gate NAME -->` the ends of a bound, `<!-- u_val snapshot; run, run; metric; u_D -->` the
-/// uncertainty of a ladder, coarse to fine, whose resolution comes first in the name of a run; `None` of any
-/// other comment.
+/// result, `<!-- gate NAME -->` the ends of a bound. Of a ladder, coarse to fine, whose resolution comes
+/// first in the name of a run, `<!-- U_num snapshot; run, run; metric -->` is the uncertainty of 95 % by the
+/// ladder, `<!-- order … -->` the order of its errors and the ends of its interval, and `<!-- limit … -->`
+/// where it leads; `None` of any other comment.
 fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
     if let Some(name) = comment.strip_prefix("gate ") {
         let gate = gates.iter().find(|gate| gate.id == name);
         return Some(gate.map(ends).unwrap_or_default());
     }
-    if let Some(ladder) = comment.strip_prefix("u_val ") {
-        return Some(uncertainty(ladder).into_iter().collect());
+    if let Some((kind, ladder)) = comment.split_once(' ')
+        && let "U_num" | "order" | "limit" = kind
+    {
+        return Some(ladder_says(kind, ladder).unwrap_or_default());
     }
     let [name, run, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
     // Metrics are in the snapshot of the variant, steps and pair interactions in that of its work.
@@ -160,11 +165,9 @@ fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
     Some(value.into_iter().filter_map(Value::as_f64).collect())
 }
 
-/// u_val of the ladder and the u_D that a comment names.
-fn uncertainty(comment: &str) -> Option<f64> {
-    let [name, runs, metric, reference] = comment.split("; ").collect::<Vec<_>>()[..] else {
-        return None;
-    };
+/// What the ladder that a comment names says: U_num, the order with the ends of its interval, or the limit.
+fn ladder_says(kind: &str, comment: &str) -> Option<Vec<f64>> {
+    let [name, runs, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
     let snapshot = snapshot(name)?;
     let level = |run: &str| {
         let resolution: f64 = run.split(['=', ' ']).nth(1)?.parse().ok()?;
@@ -172,8 +175,14 @@ fn uncertainty(comment: &str) -> Option<f64> {
         Some(Level { spacing: 1.0 / resolution, value })
     };
     let levels: Vec<Level> = runs.split(", ").map(level).collect::<Option<_>>()?;
-    let reference: f64 = reference.parse().ok()?;
-    Some((numerical(&levels).0.powi(2) + reference * reference).sqrt())
+    match kind {
+        "U_num" => Some(vec![numerical(&levels).expanded]),
+        "limit" => Some(vec![numerical(&levels).limit]),
+        _ => {
+            let Convergence { order, interval, .. } = convergence(&levels, None).ok()?;
+            Some(vec![order, interval[0], interval[1]])
+        }
+    }
 }
 
 /// The ends of the bound of a gate and of that of its limitation.
@@ -305,7 +314,10 @@ fn faults_of_a_document_are_seen() {
     assert_eq!(sources("gate none", &gates), Some(Vec::new()), "a missing gate is a fault");
     assert_eq!(sources("couette.plain; rows=20; none", &gates), Some(Vec::new()));
     assert_eq!(sources("a remark", &gates), None);
-    let of = |runs: &str| uncertainty(&format!("couette.modern; {runs}; l2_worst; 0"));
-    assert!(of("rows=10, rows=14, rows=20").is_some_and(|found| found > 1e-4));
-    assert_eq!(of("rows=10, rows=15, rows=20"), None, "a missing run is a fault");
+    let of = |kind, runs: &str| ladder_says(kind, &format!("couette.modern; {runs}; l2_worst"));
+    for (kind, count) in [("U_num", 1), ("limit", 1), ("order", 3)] {
+        let found = of(kind, "rows=10, rows=14, rows=20").unwrap();
+        assert!(found.len() == count && found[0].abs() > 1e-9, "{kind}: {found:?}");
+        assert_eq!(of(kind, "rows=10, rows=15, rows=20"), None, "a missing run is a fault");
+    }
 }

@@ -1,6 +1,7 @@
 //! Properties that cross the crates, as one program: a scheme that several of them use is compiled once.
 
 mod channel_bounds;
+mod comparisons;
 mod consistent;
 mod cost;
 mod damaged;

@@ -37,14 +37,16 @@ impl Loaded<'_> {
 
 /// A load, `()` if there is none.
 pub trait Load: Clone + Send + Sync + 'static {
-    /// Adds the accelerations \[m/s²\] that follow.
-    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]);
+    /// Adds the accelerations \[m/s²\] that follow; the number of neighbours in all its pair sweeps.
+    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64;
     /// The energy that the forces derive from \[J/m\].
     fn energy(&self, on: &Loaded) -> f64;
 }
 
 impl Load for () {
-    fn push(&self, _: &Loaded, _: &mut [Vector2<f64>]) {}
+    fn push(&self, _: &Loaded, _: &mut [Vector2<f64>]) -> u64 {
+        0
+    }
     fn energy(&self, _: &Loaded) -> f64 {
         0.0
     }
@@ -55,8 +57,9 @@ impl Load for () {
 pub struct Weight(pub Vector2<f64>);
 
 impl Load for Weight {
-    fn push(&self, _: &Loaded, accelerations: &mut [Vector2<f64>]) {
+    fn push(&self, _: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64 {
         accelerations.iter_mut().for_each(|a| *a += self.0);
+        0
     }
     fn energy(&self, on: &Loaded) -> f64 {
         let of =
@@ -218,9 +221,11 @@ impl BetweenFaces {
 }
 
 impl Load for BetweenFaces {
-    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) {
+    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64 {
         let Reference { sizes, masses, .. } = on.reference;
         let seen = self.seen(on);
+        // Each of two is a neighbour of the other, in the sweep over ψ and in that over the forces.
+        let neighbours = 4 * seen.len() as u64;
         let excess = self.excess(sizes, &seen);
         let slope = |k: usize| {
             let e = excess[k].max(0.0);
@@ -235,6 +240,7 @@ impl Load for BetweenFaces {
                 accelerations[j] -= force / masses[j];
             }
         }
+        neighbours
     }
     fn energy(&self, on: &Loaded) -> f64 {
         let sizes = &on.reference.sizes;

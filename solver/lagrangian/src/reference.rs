@@ -77,6 +77,8 @@ pub struct Reference {
     /// The neighbours of particle k are `fours[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
     fours: Vec<Four>,
+    /// Neighbours of all particles.
+    pairs: u64,
 }
 
 fn determinant(m: &Matrix2<f64>) -> f64 {
@@ -150,6 +152,7 @@ impl Reference {
             self.fours.push(four);
         }
         self.starts.push(self.fours.len() as u32);
+        self.pairs += near.len() as u64;
         let determinant = determinant(&moments) / (volume * volume);
         let inverse = inverse(&moments).filter(|_| determinant > SINGULAR);
         self.inverse.extend(inverse);
@@ -181,6 +184,11 @@ impl Reference {
     /// Number of particles.
     pub fn count(&self) -> usize {
         self.volumes.len()
+    }
+
+    /// Neighbours of all particles, images among them.
+    pub fn pairs(&self) -> u64 {
+        self.pairs
     }
 
     /// The neighbours of particle k.

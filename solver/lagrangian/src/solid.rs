@@ -109,14 +109,16 @@ impl<K, L, C> std::ops::Deref for Solid<K, L, C> {
 }
 
 impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
-    /// Derives everything from the positions.
-    fn evaluate(&mut self) {
+    /// Derives everything from the positions; the number of neighbours in all pair sweeps, of which a body
+    /// has two, over gradients and over forces.
+    fn evaluate(&mut self) -> u64 {
         self.data.enter(Phase::Forces);
         self.body.deform(self.data.fluid_mut(), &mut self.accelerations);
         self.data.enter(Phase::Walls);
         let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };
-        self.loads.push(&on, &mut self.accelerations);
+        let of_loads = self.loads.push(&on, &mut self.accelerations);
         self.data.enter(Phase::Rest);
+        2 * self.body.reference.pairs() + of_loads
     }
 }
 
@@ -127,8 +129,8 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
             evolved.velocity += acceleration * half;
             evolved.position += evolved.velocity * dt;
         }
-        self.data.count(Phase::Both);
-        self.evaluate();
+        let neighbours = self.evaluate();
+        self.data.count_pairs(Phase::Rest, neighbours);
         for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
             evolved.velocity += acceleration * half;
         }

@@ -273,3 +273,54 @@ fn a_body_touches_itself_where_it_is_no_neighbour() {
     assert_eq!(energy(0.2), 0.0);
     assert!(energy(0.5) > 0.01);
 }
+
+/// Pairs of these places, each counted twice, that are nearer than a distance and that `is_pair` accepts.
+fn near(at: &[Vector2<f64>], most: f64, is_pair: impl Fn(usize, usize) -> bool) -> u64 {
+    let near = |i: usize, j: usize| i != j && (at[i] - at[j]).norm() < most && is_pair(i, j);
+    let of = |i: usize| (0..at.len()).filter(|j| near(i, *j)).count() as u64;
+    (0..at.len()).map(of).sum()
+}
+
+/// A step sweeps twice over the neighbours of the reference, for gradients and for forces, and twice over the
+/// faces that see each other, for ψ and for the forces of the contact. Pairs of two bodies are no neighbours
+/// in the reference, although they are near there.
+#[test]
+fn a_step_counts_each_sweep_over_the_reference_and_over_the_contact() {
+    let scene = two(contact());
+    let bodies = scene.bodies.clone();
+    let places: Vec<Vector2<f64>> = scene.particles.iter().map(|p| p.position).collect();
+    let mut solid = build::<Hencky, _, _>(scene);
+    let before = solid.work();
+    assert_eq!(solid.advance(1e-3, 1e-3, &mut ()), solver::Outcome::Reached);
+    let within = near(&places, 2.0 * 1.2, |i, j| bodies[i] == bodies[j]);
+    let across = near(&places, 2.0 * 1.2, |i, j| bodies[i] != bodies[j]);
+    let sizes: Vec<f64> = solid.body.reference.sizes.clone();
+    let state = solid.checkpoint();
+    let at: Vec<(u32, Vector2<f64>)> =
+        state.particles.iter().map(|(id, particle)| (*id, particle.position)).collect();
+    let faces = solid.body.reference.faces.clone();
+    let seen = |i: &u32, j: &u32| {
+        let [i, j] = [*i as usize, *j as usize];
+        let apart = (at[i].1 - at[j].1).norm();
+        bodies[at[i].0 as usize] != bodies[at[j].0 as usize] && apart < sizes[i] + sizes[j]
+    };
+    let touching =
+        faces.iter().map(|i| faces.iter().filter(|j| seen(i, j)).count() as u64).sum::<u64>();
+    assert!(within > 400 && across > 50 && touching > 10, "{within} {across} {touching}");
+    assert_eq!(solid.work().pair_interactions - before.pair_interactions, 2 * (within + touching));
+    assert_eq!(solid.work().right_hand_sides, places.len() as u64);
+}
+
+/// Images at planes and across periods are neighbours too: on a lattice in a periodic box each particle has
+/// all that are within 2.4 spacings.
+#[test]
+fn neighbours_across_periods_count_and_restoring_counts_nothing() {
+    let domain = Domain::torus(8.0, 6.0);
+    let mut solid =
+        build::<Hencky, _, _>(SolidScene { domain, ..scene(block(8, 6, 0.0), Open, ()) });
+    assert_eq!(solid.advance(1e-3, 1e-3, &mut ()), solver::Outcome::Reached);
+    assert_eq!(solid.work().pair_interactions, 2 * 48 * 20);
+    let state = solid.checkpoint();
+    solid.restore(&state).unwrap();
+    assert_eq!(solid.work().pair_interactions, 2 * 48 * 20);
+}

@@ -222,7 +222,7 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
                 value: runs.value(&row.run.spec, L2),
             };
             let levels = table.of(of).filter(|row| row.variant == name).map(level).collect();
-            Line { name, levels, gate: gate(of, name) }
+            Line { name, levels, formal: 2.0, gate: gate(of, name) }
         };
         let (axes, slopes) = (["dx/L [-]", "error of the velocity [-]"], &[1.0, 2.0]);
         Refinement {

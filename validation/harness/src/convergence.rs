@@ -3,11 +3,14 @@
 //! With the local orders p_k = ln(E_k/E_{k+1}) / ln(h_k/h_{k+1}) between successive levels, coarse
 //! to fine, and p̂ the slope of the least-squares line through all levels, the label is
 //!
-//! - [`Label::Asymptotic`] if p̂ > 0 and every p_k is within 15 % of p̂;
+//! - [`Label::OrdersAgree`] if p̂ > 0 and every p_k is within 15 % of p̂: one power law describes all levels,
+//!   of whatever order;
+//! - [`Label::Asymptotic`] if moreover p̂ is the formal order of the method: this is declared, lies in the
+//!   confidence interval of p̂, and p̂ is within 15 % of it, since the interval of three levels is wide;
 //! - [`Label::FloorReached`] if the p_k begin with one or more that are at least half of the
 //!   largest and at least 0.5, and all later ones (at least the last one) are below half of the
 //!   largest: the error first decreased with a clear order and then stopped decreasing;
-//! - [`Label::NotAsymptotic`] otherwise.
+//! - [`Label::NotYet`] otherwise.
 
 use base::functions::ln;
 
@@ -15,6 +18,8 @@ use base::functions::ln;
 pub const SAME_ORDER: f64 = 0.15;
 /// A local order below this fraction of the largest one has left the power law.
 pub const LEFT_THE_LAW: f64 = 0.5;
+/// The interval of an order that is found exactly has no width but this.
+const ROUND_OFF: f64 = 1e-9;
 /// The slowest fall of the error that counts as convergence towards a floor.
 pub const SLOWEST: f64 = 0.5;
 
@@ -30,12 +35,31 @@ pub struct Level {
 /// What the levels show; the rule is in the module's documentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Label {
-    /// One order describes all levels.
+    /// One order describes all levels, and it is the formal one.
     Asymptotic,
+    /// One order describes all levels; it is not the formal one, or none is declared.
+    OrdersAgree,
     /// The error fell with some order and then stopped falling.
     FloorReached,
     /// Neither: the fitted order means nothing.
-    NotAsymptotic,
+    NotYet,
+}
+
+impl Label {
+    /// Whether one order describes all levels.
+    pub fn is_one_order(self) -> bool {
+        matches!(self, Self::Asymptotic | Self::OrdersAgree)
+    }
+
+    /// The name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Asymptotic => "asymptotic",
+            Self::OrdersAgree => "orders agree",
+            Self::FloorReached => "floor reached",
+            Self::NotYet => "not yet",
+        }
+    }
 }
 
 /// The outcome of [`convergence`].
@@ -53,11 +77,12 @@ pub struct Convergence {
     pub label: Label,
 }
 
-/// Order of the errors of three or more levels in any sequence, with the actual ratios of spacing.
+/// Order of the errors of three or more levels in any sequence, with the actual ratios of spacing, of a
+/// method that has this formal order, if one is declared.
 ///
 /// # Errors
 /// Why there is none, in words; an error of exactly 0 has no order and is refused.
-pub fn convergence(levels: &[Level]) -> Result<Convergence, String> {
+pub fn convergence(levels: &[Level], formal: Option<f64>) -> Result<Convergence, String> {
     let levels = sorted(levels)?;
     let x: Vec<f64> = levels.iter().map(|level| ln(level.spacing)).collect();
     let y: Vec<f64> = levels.iter().map(|level| ln(level.value)).collect();
@@ -65,8 +90,8 @@ pub fn convergence(levels: &[Level]) -> Result<Convergence, String> {
     let half_width = student_t(levels.len() - 2) * standard_error;
     let local_orders: Vec<f64> =
         (1..x.len()).map(|k| (y[k - 1] - y[k]) / (x[k - 1] - x[k])).collect();
-    let label = label(order, &local_orders);
     let interval = [order - half_width, order + half_width];
+    let label = label(order, interval, &local_orders, formal);
     Ok(Convergence { order, standard_error, interval, local_orders, label })
 }
 
@@ -106,19 +131,17 @@ pub fn slope(x: &[f64], y: &[f64]) -> (f64, f64) {
     (slope, (square / (n - 2.0) / sxx).sqrt())
 }
 
-fn label(order: f64, local: &[f64]) -> Label {
+fn label(order: f64, [low, high]: [f64; 2], local: &[f64], formal: Option<f64>) -> Label {
     if order > 0.0 && local.iter().all(|p| (p - order).abs() <= SAME_ORDER * order) {
-        return Label::Asymptotic;
+        let is_in = |p: f64| (low - ROUND_OFF..=high + ROUND_OFF).contains(&p);
+        let is_formal = |p: &f64| is_in(*p) && (p - order).abs() <= SAME_ORDER * p;
+        return formal.filter(is_formal).map_or(Label::OrdersAgree, |_| Label::Asymptotic);
     }
     let largest = local.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let falls = |p: &f64| *p >= (LEFT_THE_LAW * largest).max(SLOWEST);
     let falling = local.iter().take_while(|p| falls(p)).count();
     let flat = local[falling..].iter().all(|p| *p < LEFT_THE_LAW * largest);
-    if falling >= 1 && falling < local.len() && flat {
-        Label::FloorReached
-    } else {
-        Label::NotAsymptotic
-    }
+    if falling >= 1 && falling < local.len() && flat { Label::FloorReached } else { Label::NotYet }
 }
 
 /// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees; beyond ten that of ten, which is wider by
@@ -147,7 +170,7 @@ mod tests {
     fn a_power_law_is_found_exactly() {
         let mut shuffled = levels(SPACINGS, |h| 3.0 * powf(h, 1.7));
         shuffled.swap(0, 2);
-        let found = convergence(&shuffled).expect("usable");
+        let found = convergence(&shuffled, Some(1.7)).expect("usable");
         assert_relative_eq!(found.order, 1.7, epsilon = 1e-12);
         assert!(found.standard_error < 1e-12);
         assert_eq!(found.label, Label::Asymptotic);
@@ -159,8 +182,11 @@ mod tests {
     fn the_prototype_is_of_second_order() {
         let errors = [(10.0, 1.78e-2), (20.0, 4.4e-3), (40.0, 1.09e-3)];
         let found =
-            convergence(&errors.map(|(n, value)| Level { spacing: 1.0 / n, value })).unwrap();
-        assert!((found.order - 2.015).abs() < 1e-3 && found.label == Label::Asymptotic);
+            convergence(&errors.map(|(n, value)| Level { spacing: 1.0 / n, value }), Some(2.0))
+                .unwrap();
+        assert!((found.order - 2.015).abs() < 1e-3);
+        // 2 lies outside of the narrow interval 2.005 … 2.025.
+        assert_eq!(found.label, Label::OrdersAgree);
         let width = found.interval[1] - found.interval[0];
         assert_relative_eq!(width, 2.0 * 12.7062 * found.standard_error, epsilon = 1e-12);
     }
@@ -185,7 +211,7 @@ mod tests {
     fn an_order_has_the_interval_of_its_standard_error() {
         let errors = [(1.0, 1.0), (0.5, 0.5), (0.25, 0.5), (0.125, 0.125)];
         let levels = errors.map(|(spacing, value)| Level { spacing, value });
-        let found = convergence(&levels).expect("usable");
+        let found = convergence(&levels, Some(2.0)).expect("usable");
         assert_relative_eq!(found.order, 0.9, max_relative = 1e-12);
         for (local, expected) in found.local_orders.iter().zip([1.0, 0.0, 2.0]) {
             assert_relative_eq!(*local, expected, epsilon = 1e-12);
@@ -206,7 +232,7 @@ mod tests {
         for (level, noise) in noisy.iter_mut().zip(noise) {
             level.value *= 1.0 + noise;
         }
-        let found = convergence(&noisy).expect("usable");
+        let found = convergence(&noisy, Some(2.0)).expect("usable");
         assert_eq!(found.label, Label::Asymptotic);
         assert!(found.standard_error > 1e-3);
         assert!(found.interval[0] < 2.0 && 2.0 < found.interval[1]);
@@ -219,7 +245,7 @@ mod tests {
         let label = |errors: [f64; 4]| {
             let levels: Vec<_> =
                 rows.iter().zip(errors).map(|(h, value)| Level { spacing: *h, value }).collect();
-            convergence(&levels).expect("usable").label
+            convergence(&levels, Some(2.0)).expect("usable").label
         };
         for errors in
             [[3.615e-2, 2.369e-2, 2.068e-2, 1.994e-2], [1.713e-2, 3.744e-3, 5.061e-4, 5.529e-4]]
@@ -229,14 +255,14 @@ mod tests {
     }
 
     #[test]
-    fn scatter_and_growth_are_not_asymptotic() {
+    fn scatter_and_growth_have_no_order_yet() {
         for errors in [[1.0, 0.1, 0.2, 0.01], [1.0, 1.1, 0.9, 1.0], [1.0, 2.0, 4.0, 8.0]] {
             let mut levels = levels(SPACINGS, |_| 0.0);
             for (level, error) in levels.iter_mut().zip(errors) {
                 level.value = error;
             }
-            let found = convergence(&levels).expect("usable");
-            assert_eq!(found.label, Label::NotAsymptotic, "{errors:?}");
+            let found = convergence(&levels, Some(2.0)).expect("usable");
+            assert_eq!(found.label, Label::NotYet, "{errors:?}");
         }
     }
 
@@ -244,28 +270,55 @@ mod tests {
     #[test]
     fn labels_change_where_their_rule_says() {
         for (order, local, expected) in [
-            (2.0, [2.28, 1.72], Label::Asymptotic),   // 14 % off
-            (2.0, [2.32, 2.0], Label::NotAsymptotic), // 16 % off
-            (-2.0, [-2.0, -2.0], Label::NotAsymptotic),
+            (2.0, [2.28, 1.72], Label::Asymptotic), // 14 % off
+            (2.0, [2.32, 2.0], Label::NotYet),      // 16 % off
+            (-2.0, [-2.0, -2.0], Label::NotYet),
             (1.5, [2.0, 0.98], Label::FloorReached), // below half of the largest
-            (1.5, [2.0, 1.02], Label::NotAsymptotic),
+            (1.5, [2.0, 1.02], Label::NotYet),
             (0.3, [0.52, 0.1], Label::FloorReached),
-            (0.3, [0.48, 0.1], Label::NotAsymptotic), // never fell with an order of 0.5
-            (0.5, [0.1, 2.0], Label::NotAsymptotic),
+            (0.3, [0.48, 0.1], Label::NotYet), // never fell with an order of 0.5
+            (0.5, [0.1, 2.0], Label::NotYet),
         ] {
-            assert_eq!(label(order, &local), expected, "order {order}, local orders {local:?}");
+            let found = label(order, [order - 0.1, order + 0.1], &local, Some(2.0));
+            assert_eq!(found, expected, "order {order}, local orders {local:?}");
         }
+    }
+
+    /// Errors with one order are asymptotic only if that order is the formal one.
+    #[test]
+    fn an_order_is_asymptotic_if_it_is_the_formal_one_within_its_interval() {
+        for (order, half_width, formal, expected) in [
+            (1.9, 0.2, Some(2.0), Label::Asymptotic),
+            (1.9, 0.05, Some(2.0), Label::OrdersAgree), // 2 is outside of 1.85 … 1.95
+            (2.1, 0.05, Some(2.0), Label::OrdersAgree),
+            (1.31, 0.2, Some(2.0), Label::OrdersAgree),
+            (1.31, 1.5, Some(2.0), Label::OrdersAgree), // an interval so wide holds any order
+            (0.84, 0.1, Some(1.0), Label::OrdersAgree),
+            (0.9, 0.15, Some(1.0), Label::Asymptotic),
+            (2.0, 0.1, None, Label::OrdersAgree),
+        ] {
+            let interval = [order - half_width, order + half_width];
+            let found = label(order, interval, &[order, order], formal);
+            assert_eq!(found, expected, "{order} ± {half_width}, formal {formal:?}");
+        }
+        // Through the fit: errors of order 1.3 are not those of a method of second order.
+        let levels = levels(SPACINGS, |h| powf(h, 1.3));
+        let of = |formal| convergence(&levels, formal).expect("usable").label;
+        assert_eq!([of(Some(2.0)), of(Some(1.3))], [Label::OrdersAgree, Label::Asymptotic]);
     }
 
     #[test]
     fn what_has_no_order_is_an_error() {
         let two = levels([0.2, 0.1], |h| h);
-        assert!(convergence(&two).unwrap_err().starts_with("there are 2 levels"));
+        assert!(convergence(&two, None).unwrap_err().starts_with("there are 2 levels"));
         for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
             let broken = levels([0.4, 0.2, 0.1], |h| if h < 0.15 { bad } else { h });
-            assert!(convergence(&broken).is_err_and(|e| e.contains("cannot be used")), "{bad}");
+            assert!(
+                convergence(&broken, None).is_err_and(|e| e.contains("cannot be used")),
+                "{bad}"
+            );
         }
         let twins = levels([0.2, 0.1, 0.1], |h| h);
-        assert!(convergence(&twins).unwrap_err().ends_with("the same spacing 0.1"));
+        assert!(convergence(&twins, None).unwrap_err().ends_with("the same spacing 0.1"));
     }
 }

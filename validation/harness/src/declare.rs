@@ -105,7 +105,7 @@ pub struct Card {
     pub reach: (&'static str, &'static str, &'static str),
 }
 
-/// A comparison with a reference, whose uncertainty is that of ASME V&V 20.
+/// A comparison with a reference: exact, or with an uncertainty by ASME V&V 20.
 #[derive(Clone)]
 pub struct Comparison {
     /// What is compared, with its unit if that is a length or a velocity.
@@ -136,6 +136,11 @@ impl Comparison {
         let (what, levels) = (format!("`{}`: {what}", ladder.variant), ladder.levels.clone());
         let (metric, inputs) = (metric.into(), Vec::new());
         Self { what, against, metric, levels, inputs, reference, because }
+    }
+
+    /// Whether neither the reference nor what is put in has an uncertainty.
+    pub fn is_exact(&self) -> bool {
+        self.reference == 0.0 && self.inputs.is_empty()
     }
 }
 
@@ -174,9 +179,8 @@ pub struct History {
     pub name: String,
     /// Its points.
     pub points: PointsOf,
-    /// Members part where they differ by more than u_val of a comparison, times its unit in that of the
-    /// history.
-    pub tolerance: (Comparison, f64),
+    /// Members part where they differ by more than this, the standard uncertainty of the experiment.
+    pub tolerance: f64,
     /// The same of each experiment.
     pub measured: Vec<Vec<(f64, f64)>>,
     /// Is it drawn?
@@ -214,7 +218,8 @@ pub struct Accuracy {
     pub about: String,
     /// Name of the spacing with its unit, for axes.
     pub spacing: &'static str,
-    /// The order that the method should have, drawn as a grey line; none if nothing is known.
+    /// The formal order of the method, drawn as a grey line; none if nothing is known. Errors with one order
+    /// are called asymptotic only if it is this one.
     pub slope: Option<f64>,
     /// One ladder of resolutions per variant, coarse to fine.
     pub ladders: Vec<Ladder>,

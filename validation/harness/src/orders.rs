@@ -8,7 +8,7 @@ use report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
-    convergence::{Convergence, Label, Level, convergence},
+    convergence::{Convergence, Level, convergence},
     study::Study,
 };
 
@@ -33,6 +33,8 @@ pub struct Line {
     pub name: &'static str,
     /// Errors, coarse to fine.
     pub levels: Vec<Level>,
+    /// The order that theory gives.
+    pub formal: f64,
     /// Judges the order.
     pub gate: Gate,
 }
@@ -50,11 +52,12 @@ pub fn study(
         plot(of.title, of.axes, lines, of.slopes)
     };
     let panels = all.iter().map(panel);
+    let found = |line: &Line| convergence(&line.levels, Some(line.formal));
     let figure = Figure::new(study.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
     type Row<'a> = (&'a str, &'a Line, Found);
     let rows: Vec<Row> = all
         .iter()
-        .flat_map(|of| of.lines.iter().map(|line| (of.title, line, convergence(&line.levels))))
+        .flat_map(|of| of.lines.iter().map(|line| (of.title, line, found(line))))
         .collect();
     let errors = |(_, line, _): &Row| listed(line.levels.iter().map(|level| level.value), 3);
     let table = Columns::<Row>::default()
@@ -114,9 +117,7 @@ impl<'a, T> Columns<'a, T> {
         };
         let order = of(|of| format!("{} ± {}", sig(of.order, 3), sig(of.standard_error, 2)));
         let label = move |item: &T| match found(item) {
-            Ok(Convergence { label: Label::Asymptotic, .. }) => "asymptotic".into(),
-            Ok(Convergence { label: Label::FloorReached, .. }) => "floor reached".into(),
-            Ok(Convergence { label: Label::NotAsymptotic, .. }) => "not asymptotic".into(),
+            Ok(Convergence { label, .. }) => label.name().into(),
             Err(error) => format!("no order: {error}"),
         };
         self.num(["order ± standard error", "-"], move |item| Cell::text(order(item)))

@@ -17,6 +17,7 @@ use harness::suite::{CaseResults, Suite};
 use report::Counts;
 use serde::{Deserialize, Serialize};
 
+use super::comparisons::{self, ComparisonVerdict};
 use super::{Failure, output};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
@@ -95,6 +96,9 @@ pub struct Verdicts {
     /// runs of other codes
     #[serde(default)]
     pub submissions: Vec<SubmissionVerdicts>,
+    /// comparisons of all cases with references; builds of before have none
+    #[serde(default)]
+    pub comparisons: Vec<ComparisonVerdict>,
 }
 
 /// A run of another code and the judgements on it.
@@ -226,6 +230,7 @@ impl Verdicts {
                 .collect(),
             studies: of_cases.collect(),
             submissions: of_others.collect(),
+            comparisons: comparisons::of(suite),
         }
     }
 }

@@ -14,6 +14,7 @@
 mod arguments;
 mod checkpoint;
 mod compare;
+mod comparisons;
 mod doctor;
 mod exchange;
 mod explain;

@@ -25,7 +25,7 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
     let compared = validation::line(&declared.comparisons, runs);
-    facts.extend(compared.map(|text| ("Comparisons by V&V 20:".into(), text)));
+    facts.extend(compared.map(|text| ("Comparisons with references:".into(), text)));
     facts.extend(reach(card, runs).map(|text| ("Completed for".into(), text)));
     // The two causes that most gates share.
     let causes = by_cause(judged.iter().copied(), |judged| judged).into_iter().take(2);

@@ -104,7 +104,7 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
         let points = points(accuracy, of, runs);
         let level = |point: &Point| Level { spacing: point.spacing, value: point.error };
         let levels: Vec<Level> = points.iter().map(level).collect();
-        let found = convergence(&levels);
+        let found = convergence(&levels, accuracy.slope);
         Row { of, points, levels, found }
     };
     let rows: Vec<Row> = accuracy.ladders.iter().map(row).collect();
@@ -164,12 +164,15 @@ fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
 /// Behind everything else.
 const PALE: Colour = Colour(222, 222, 222);
 
+const LABELS: &str = "*Orders agree*: every local order is within 15 % of the fitted one; *asymptotic*: \
+    moreover the formal order of the method is within 15 % of it and in its 95 % interval; *floor reached*: \
+    the error fell with an order and then stopped; *not yet*: none of these.";
 const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
     every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
 
 /// Orders, intervals, and what errors cost.
 fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
-    let about = format!("Observed orders of accuracy. {} {TIMES}", accuracy.about);
+    let about = format!("Observed orders of accuracy. {} {LABELS} {TIMES}", accuracy.about);
     let finest = |row: &Row| row.points.last().map_or(f64::NAN, |p| p.error);
     let columns = Columns::default()
         .code("variant", |row: &Row| row.of.variant)
@@ -298,7 +301,7 @@ mod tests {
         assert_eq!(column(table, "variant"), ["`seed`", "`best`"]);
         let local = column(table, "local orders, coarse to fine");
         assert_eq!(local, ["2.0, 2.0, 2.0", "3.0, 3.0, 3.0"]);
-        assert_eq!(column(table, "label"), ["asymptotic", "asymptotic"]);
+        assert_eq!(column(table, "label"), ["asymptotic", "orders agree"], "2 is the formal order");
         let finest = column(table, "finest error");
         assert_eq!(finest, ["0.062 %", "0.0016 %"], "4/80² and 8/80³");
         let times = GOALS.map(|goal| column(table, &format!("time to {}", percent(goal, 1))));

@@ -6,7 +6,7 @@ use base::{
 };
 use report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig};
 
-use super::{anchor, validation::Found};
+use super::anchor;
 use crate::{
     columns::Columns,
     declare::{Ensemble, Ensembles, History, Number},
@@ -31,19 +31,15 @@ struct Followed<'a> {
     of: &'a History,
     /// One a member.
     curves: Vec<Curve>,
-    /// Members part by more than this.
-    tolerance: f64,
     /// When they do, or why that is not known.
     horizon: Result<Horizon, String>,
 }
 
 impl<'a> Followed<'a> {
-    fn of(of: &'a History, records: &[&Record], runs: &Runs) -> Self {
+    fn of(of: &'a History, records: &[&Record]) -> Self {
         let curves: Vec<Curve> = records.iter().map(|record| (of.points)(record)).collect();
-        let (comparison, unit) = &of.tolerance;
-        let tolerance = Found::of(comparison, runs).uncertainty() * unit;
-        let horizon = Horizon::of(&curves, tolerance);
-        Self { of, curves, tolerance, horizon }
+        let horizon = Horizon::of(&curves, of.tolerance);
+        Self { of, curves, horizon }
     }
 
     /// The end of the runs; NaN if there are none.
@@ -77,7 +73,7 @@ pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
     let all: Vec<Made> = ensembles.of.iter().map(made).collect();
     let (mut followed, mut numbers) = (Vec::new(), Vec::new());
     for made in &all {
-        let of = |of| (made, Followed::of(of, &made.records, runs));
+        let of = |of| (made, Followed::of(of, &made.records));
         followed.extend(made.of.histories.iter().map(of));
         let values =
             |of: &Number| made.records.iter().filter_map(|record| (of.value)(record)).collect();
@@ -117,7 +113,7 @@ fn horizons(unit: &str, all: &[(&Made, Followed)]) -> Table {
     let caption = format!(
         "Horizons: the median over all pairs of members of the time at which they first differ by \
          more than the tolerance, with the interval of {} % of a bootstrap over the members, and the time at \
-         which the first pair parts. The tolerance is u_val of the comparison with the experiment. A dash \
+         which the first pair parts. The tolerance is the standard uncertainty of the experiment. A dash \
          is a time that no run reaches.",
         sig(100.0 * CONFIDENCE, 2)
     );
@@ -131,7 +127,7 @@ fn horizons(unit: &str, all: &[(&Made, Followed)]) -> Table {
         .text("resolution", |(made, _)| made.of.label.clone())
         .text("members", |(made, _)| format!("{} of {}", made.records.len(), made.of.members.len()))
         .text("history", |(_, followed)| followed.of.name.clone())
-        .of(["tolerance", ""], |(_, followed)| followed.tolerance, show)
+        .of(["tolerance", ""], |(_, followed)| followed.of.tolerance, show)
         .of(["horizon", unit], horizon(|horizon| horizon.time), show)
         .of(["from", unit], horizon(|horizon| horizon.within[0]), show)
         .of(["to", unit], horizon(|horizon| horizon.within[1]), show)
@@ -241,7 +237,7 @@ mod tests {
     use super::*;
     use crate::{
         runs::JudgedRun,
-        studies::tests::{ERROR, column, comparison, run, spec, tables},
+        studies::tests::{ERROR, column, run, spec, tables},
     };
 
     const ALL: usize = 20;
@@ -249,12 +245,6 @@ mod tests {
     /// Members k = 1 … 20 whose history is (k − 10.5) 1e-6 exp(2t) until t = 8 and whose number is k.
     fn member(n: usize) -> JudgedRun {
         run(spec("seed", n), |record| record.put(ERROR, n as f64))
-    }
-
-    /// The levels of a comparison with u_val = 0.03: u_num is the distance of two.
-    fn ladder() -> Vec<JudgedRun> {
-        let of = |(n, error)| run(spec("seed", n), |record| record.put(ERROR, error));
-        [(1000, 0.04), (1001, 0.01)].map(of).into()
     }
 
     fn ensembles() -> Ensembles {
@@ -269,7 +259,7 @@ mod tests {
         let history = History {
             name: "level [H]".into(),
             points: Box::new(points),
-            tolerance: (comparison("seed", &[1000, 1001]), 2.0),
+            tolerance: 0.06,
             measured: vec![vec![(0.0, 0.0), (9.0, 1.0)]],
             is_drawn: true,
             gate: Some(gate("agree", Bound::Above(4.0))),
@@ -293,9 +283,8 @@ mod tests {
     }
 
     /// The names of the gates that fail, and the study.
-    fn judged(members: Vec<JudgedRun>, with_ladder: bool) -> (Vec<String>, Study) {
-        let others = if with_ladder { ladder() } else { Vec::new() };
-        let runs = Runs::new([members, others].concat());
+    fn judged(members: Vec<JudgedRun>) -> (Vec<String>, Study) {
+        let runs = Runs::new(members);
         let study = study("case", &ensembles(), &runs);
         let failed = study.judged.iter().filter(|of| of.judgement.verdict.is_failure());
         (failed.map(|of| of.gate.id.clone()).collect(), study)
@@ -311,9 +300,9 @@ mod tests {
 
     #[test]
     fn a_known_divergence_and_known_quantiles_are_shown_and_judged() {
-        let (failed, study) = judged(all(), true);
+        let (failed, study) = judged(all());
         assert_eq!(failed, [""; 0]);
-        // Tolerance 2 · 0.03 = 0.06. The first pair, 19 e-6 apart, parts at ln(0.06/19e-6)/2 = 4.03, and the
+        // The first pair, 19 e-6 apart, parts at ln(0.06/19e-6)/2 = 4.03, and the
         // median, of 6e-6, at ln(0.06/6e-6)/2 = 4.61: each at the next sample.
         let found = row(&study, 0, &["members", "tolerance", "horizon", "first pair", "verdict"]);
         assert_eq!(found, ["20 of 20", "0.0600", "4.61", "4.03", "predictable until 4.61"]);
@@ -327,6 +316,18 @@ mod tests {
         let [plot] = figure.expect("a figure").panels.as_slice() else { panic!("one plot") };
         // Two bands, the median, one series of the experiment until the end of the runs, the horizon.
         assert_eq!(plot.layers.len(), 5);
+        // The history of member k is (k − 10.5) 1e-6 exp(2t): at t = 8 the range is ± 9.5, the quartiles ±
+        // 4.75.
+        let unit = 1e-6 * base::functions::exp(16.0);
+        for (layer, ends) in plot.layers.iter().zip([[-9.5, 9.5], [-4.75, 4.75]]) {
+            let Layer::Band { points, .. } = layer else { panic!("a band") };
+            let (t, low, high) = points.last().expect("points");
+            assert!((t - 8.0).abs() < 0.05);
+            let unit = unit * base::functions::exp(2.0 * (t - 8.0));
+            for (found, expected) in [low, high].into_iter().zip(ends) {
+                assert!((found / unit / expected - 1.0).abs() < 1e-9, "{found}, not {expected}");
+            }
+        }
     }
 
     #[test]
@@ -334,7 +335,7 @@ mod tests {
         let mut diverged = all();
         diverged[4].record.status = Status::Interrupted { step: 1, time: 0.1 };
         for members in [diverged, all()[1..].to_vec()] {
-            let (failed, study) = judged(members, true);
+            let (failed, study) = judged(members);
             assert_eq!(failed, ["case.ensemble.members"]);
             assert_eq!(row(&study, 0, &["members"]), ["19 of 20"]);
         }
@@ -343,22 +344,19 @@ mod tests {
     #[test]
     fn what_cannot_be_told_has_its_reason_and_fails_its_gate() {
         let reason = |study: &Study| row(study, 0, &["horizon", "verdict"]);
-        let (failed, one) = judged(all()[..1].to_vec(), true);
+        let (failed, one) = judged(all()[..1].to_vec());
         assert_eq!(failed, ["case.ensemble.members", "case.agree", "case.median"]);
         assert_eq!(reason(&one), ["–", "nothing can be said: 1 members; 6 are needed"]);
         assert_eq!(row(&one, 1, &["median"]), ["1.00 (– … –)"]);
-        let (failed, none) = judged(Vec::new(), true);
+        let (failed, none) = judged(Vec::new());
         assert_eq!(failed.len(), 3);
         assert_eq!(row(&none, 1, &["median", "least"]), ["– (– … –)", "–"]);
-        let (failed, unknown) = judged(all(), false);
-        assert_eq!(failed, ["case.agree"]);
-        assert_eq!(reason(&unknown), ["–", "nothing can be said: the tolerance is not known"]);
     }
 
     #[test]
     fn members_that_never_part_agree_until_the_end_of_the_runs() {
         let same = |n| run(spec("seed", n), |record| record.put(ERROR, 10.5));
-        let (failed, study) = judged((1..=ALL).map(same).collect(), true);
+        let (failed, study) = judged((1..=ALL).map(same).collect());
         assert_eq!(failed, [""; 0]);
         assert_eq!(row(&study, 0, &["horizon", "verdict"]), ["–", "all agree until 8.00"]);
     }

@@ -1,54 +1,103 @@
-//! The uncertainty of comparisons with references, by ASME V&V 20-2009: E = S − D, result less data, against
-//! u_val = (u_num² + u_input² + u_D²)^(1/2).
+//! Comparisons with references. Against an exact one all of the error is numerical: it has an order, and
+//! falls or stops falling. Where the reference or the inputs have an uncertainty, E = S − D, result minus
+//! data, is held against twice u_val = (u_num² + u_input² + u_D²)^(1/2), by ASME V&V 20-2009.
 
 use base::{
     functions::{ln, powf},
     spec::RunSpec,
 };
-use report::{Cell, percent, sig};
+use report::{Cell, Table, percent, sig};
 
 use super::anchor;
 use crate::{
     columns::Columns,
-    convergence::{Convergence, Label, Level, convergence},
+    convergence::{Convergence, Label, Level, SLOWEST, convergence},
     declare::Comparison,
+    orders::Found as Order,
     runs::Runs,
     study::Study,
 };
 
-/// Roache's factor of safety, and what makes his index a standard uncertainty (V&V 20, section 2).
-const SAFETY: f64 = 1.25 / 1.15;
-/// The orders that differences of three levels may show: a lower one is taken as this, and a higher one than
-/// the method has is a coincidence, not a limit that is approached.
-const ORDERS: [f64; 2] = [0.5, 2.5];
-/// A comparison whose uncertainty is larger than this share of what is compared would not tell a result that
-/// is wrong by a tenth: then |E| < u_val says nothing.
+/// Roache's factor of safety of an order that levels test, and what makes his index, which lies to one side
+/// of the result, a standard uncertainty (V&V 20, section 2).
+const TESTED: [f64; 2] = [1.25, 1.15];
+/// The factor of Eça & Hoekstra (2014) where nothing tests an order or there is none, and what makes that
+/// uncertainty of 95 %, which lies to both sides, a standard one.
+const UNTESTED: [f64; 2] = [3.0, 2.0];
+/// The largest order that differences of three levels may show: a higher one than the method has is a
+/// coincidence, not a limit that is approached.
+const FASTEST: f64 = 2.5;
+/// What makes u_val an uncertainty of 95 %.
+const EXPANDS: f64 = 2.0;
+/// A comparison whose uncertainty of 95 % is larger than this share of what is compared would not tell a
+/// result that is wrong by a tenth: then a small E says nothing.
 const TELLS: f64 = 0.1;
 
-/// What is known of one comparison. Missing is NaN.
+/// What a ladder says of its finest level.
 #[derive(Clone, Debug, PartialEq)]
+pub struct Numerical {
+    /// U_num, within which the limit of refinement lies at 95 %. NaN if it is not known.
+    pub expanded: f64,
+    /// u_num.
+    pub standard: f64,
+    /// The limit itself: by the order, or the finest level if there is none.
+    pub limit: f64,
+    /// Does the ladder show an order?
+    pub has_order: bool,
+    /// How it was found, in words.
+    pub how: String,
+}
+
+/// What is known of one comparison. Missing is NaN.
+#[derive(Clone, Debug)]
 pub struct Found {
-    /// E = S − D.
+    /// E = S − D, of the finest level.
     pub error: f64,
-    /// u_num, and in words how it follows from the levels.
-    pub numerical: (f64, String),
+    /// What the levels say of it.
+    pub numerical: Numerical,
     /// u_input.
     pub input: f64,
     /// u_D.
     pub reference: f64,
+    /// If the reference is exact: the order of the magnitude of the error.
+    pub exact: Option<Order>,
 }
 
 /// What can be said of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Said {
-    /// |E| < u_val.
+    /// Against an exact reference: the error falls, for the interval of its order is above 0.
+    Converges,
+    /// Against an exact reference: the error tends to another limit than 0, or fell and then stopped falling.
+    Stops,
+    /// |E| ≤ 2 u_val.
     NotDistinguishable,
-    /// |E| > u_val.
+    /// |E| > 2 u_val.
     ModelError,
-    /// |E| < u_val, and u_val is too large to say anything.
+    /// |E| ≤ 2 u_val, and u_val is too large to say anything.
     TooUncertain,
+    /// The ladder shows no order.
+    LadderDoesNotTell,
     /// A run or its ladder is missing.
     Unknown,
+}
+
+impl Said {
+    /// All, each with its name for programs and the one under which it is counted.
+    const NAMES: [(Self, &str, &str); 7] = [
+        (Self::Converges, "converges", "converging to the exact solution"),
+        (Self::Stops, "stops", "stopping at an error"),
+        (Self::NotDistinguishable, "not-distinguishable", "not distinguishable from the reference"),
+        (Self::ModelError, "model-error", "with an error beyond the uncertainty"),
+        (Self::TooUncertain, "too-uncertain", "too uncertain"),
+        (Self::LadderDoesNotTell, "ladder-does-not-tell", "of which the ladder does not tell"),
+        (Self::Unknown, "unknown", "without a run"),
+    ];
+
+    /// The name for programs.
+    pub fn name(self) -> &'static str {
+        Self::NAMES.into_iter().find(|of| of.0 == self).map_or("unknown", |of| of.1)
+    }
 }
 
 impl Found {
@@ -63,6 +112,7 @@ impl Found {
         let squares = comparison.inputs.iter().map(change).map(|change| change * change);
         Self {
             error: levels.last().map_or(f64::NAN, |level| level.value),
+            exact: comparison.is_exact().then(|| convergence(&magnitudes(&levels), None)),
             numerical: numerical(&levels),
             input: squares.fold(0.0, |sum, square| sum + square).sqrt(),
             reference: comparison.reference,
@@ -71,119 +121,195 @@ impl Found {
 
     /// u_val.
     pub fn uncertainty(&self) -> f64 {
-        let parts = [self.numerical.0, self.input, self.reference];
+        let parts = [self.numerical.standard, self.input, self.reference];
         parts.into_iter().fold(0.0, |sum, part| sum + part * part).sqrt()
+    }
+
+    /// The ends of the interval of 95 % of the limit of refinement, by the ladder alone.
+    pub fn interval(&self) -> [f64; 2] {
+        [self.error - self.numerical.expanded, self.error + self.numerical.expanded]
     }
 
     /// The verdict.
     pub fn said(&self) -> Said {
-        let (error, uncertainty) = (self.error.abs(), self.uncertainty());
-        match error > uncertainty {
+        let Numerical { has_order, .. } = self.numerical;
+        let (error, uncertainty) = (self.error.abs(), EXPANDS * self.uncertainty());
+        match &self.exact {
             _ if !(error.is_finite() && uncertainty.is_finite()) => Said::Unknown,
-            true => Said::ModelError,
-            false if uncertainty > TELLS => Said::TooUncertain,
-            false => Said::NotDistinguishable,
+            Some(Ok(of)) if self.stops(of) => Said::Stops,
+            Some(Ok(Convergence { interval: [low, _], .. })) if *low > 0.0 => Said::Converges,
+            None if has_order && error > uncertainty => Said::ModelError,
+            None if has_order && uncertainty > TELLS => Said::TooUncertain,
+            None if has_order => Said::NotDistinguishable,
+            _ => Said::LadderDoesNotTell,
+        }
+    }
+
+    /// Whether errors against an exact reference tend to another limit than 0. By levels that approach one,
+    /// it must be beyond the uncertainty; without it, they must have fallen and then stopped.
+    fn stops(&self, of: &Convergence) -> bool {
+        match self.numerical.has_order {
+            true => !of.label.is_one_order() && self.error.abs() > self.numerical.expanded,
+            false => of.label == Label::FloorReached,
         }
     }
 
     /// The verdict in words.
     pub fn in_words(&self) -> String {
-        let [error, uncertainty] = [self.error, self.uncertainty()].map(|value| percent(value, 2));
+        let [error, uncertainty] =
+            [self.error, EXPANDS * self.uncertainty()].map(|value| percent(value, 2));
         match self.said() {
+            Said::Converges => format!("converges with order {}", self.order()),
+            Said::Stops => format!("stops at {}", percent(self.numerical.limit.abs(), 2)),
             Said::NotDistinguishable => {
                 "not distinguishable from the reference at this uncertainty".into()
             }
             Said::ModelError => format!("model error {error} ± {uncertainty}"),
             Said::TooUncertain => format!("uncertain by {uncertainty}: nothing can be said"),
+            Said::LadderDoesNotTell => "the ladder does not tell".into(),
             Said::Unknown => "runs are missing: nothing can be said".into(),
+        }
+    }
+
+    /// The order of an error against an exact reference with its interval.
+    fn order(&self) -> String {
+        match &self.exact {
+            Some(Ok(Convergence { order, interval, .. })) => with_interval(*order, *interval),
+            _ => "–".into(),
         }
     }
 }
 
-/// u_num of the finest of some levels, coarse to fine, and how it was found. Where one order describes all
-/// errors, or the last three approach a limit, it is the grid convergence index of the two finest with that
-/// order, as a standard uncertainty; else half of the range of the last three, or the distance of the only
-/// two.
-pub fn numerical(levels: &[Level]) -> (f64, String) {
+fn with_interval(order: f64, interval: [f64; 2]) -> String {
+    let [order, low, high] = [order, interval[0], interval[1]].map(|order| sig(order, 2));
+    format!("{order} ({low} … {high})")
+}
+
+fn magnitudes(levels: &[Level]) -> Vec<Level> {
+    levels.iter().map(|level| Level { value: level.value.abs(), ..*level }).collect()
+}
+
+/// What levels, coarse to fine, say of the finest. Where one order describes all errors, of one sign, it is
+/// the grid convergence index of the two finest with that order. Where differences of the last three have an
+/// order, which three levels fix and cannot test, it is three times the distance from the limit of that
+/// order; else three times the range of the last three, or the distance of the only two.
+pub fn numerical(levels: &[Level]) -> Numerical {
+    let found = |[limit, distance]: [f64; 2],
+                 [factor, coverage]: [f64; 2],
+                 order: Option<String>,
+                 how: &str| {
+        let (expanded, has_order) = (factor * distance, order.is_some());
+        let how = order.map_or(how.into(), |order| format!("order {order}{how}"));
+        Numerical { expanded, standard: expanded / coverage, limit, has_order, how }
+    };
     let finest = &levels[levels.len().saturating_sub(3)..];
-    let range = finest.iter().map(|level| level.value);
-    let (low, high) = (range.clone().fold(f64::NAN, f64::min), range.fold(f64::NAN, f64::max));
+    let values = finest.iter().map(|level| level.value);
+    let range = values.clone().fold(f64::NAN, f64::max) - values.fold(f64::NAN, f64::min);
+    let unknown = |how| found([f64::NAN; 2], UNTESTED, None, how);
     let [coarse, middle, fine] = match finest {
         levels if levels.iter().any(|level| !level.value.is_finite()) => {
-            return (f64::NAN, "a level is missing".into());
+            return unknown("a level is missing");
         }
-        [] | [_] => return (f64::NAN, "one level".into()),
-        [_, _] => return (high - low, "distance of two levels".into()),
+        [] | [_] => return unknown("one level"),
+        [_, fine] => return found([fine.value, range], UNTESTED, None, "distance of two levels"),
         [coarse, middle, fine, ..] => [coarse, middle, fine],
     };
     let [first, last] = [middle.value - coarse.value, fine.value - middle.value];
     let [wide, ratio] = [coarse.spacing / middle.spacing, middle.spacing / fine.spacing];
-    let index = |order: f64| SAFETY * last.abs() / (powf(ratio, order) - 1.0);
-    let magnitudes: Vec<Level> =
-        levels.iter().map(|level| Level { value: level.value.abs(), ..*level }).collect();
-    match convergence(&magnitudes) {
-        Ok(Convergence { order, interval: [low, high], label: Label::Asymptotic, .. })
-            if order >= ORDERS[0] =>
-        {
-            let [order_, low, high] = [order, low, high].map(|order| sig(order, 2));
-            (index(order), format!("order {order_} ({low} … {high})"))
-        }
-        _ => match order_of_differences(first / last, [wide, ratio]) {
-            Some(order) => (index(order), format!("order {} of differences", sig(order, 2))),
-            None => (0.5 * (high - low), "half of the range".into()),
-        },
+    let by_order = |order: f64| {
+        let left = last / (powf(ratio, order) - 1.0);
+        [fine.value + left, left.abs()]
+    };
+    let is_of_one_sign = levels.iter().all(|level| level.value * fine.value > 0.0);
+    let of_all = convergence(&magnitudes(levels), None).ok();
+    let tested =
+        of_all.filter(|of| of.label.is_one_order() && of.order >= SLOWEST && is_of_one_sign);
+    if let Some(Convergence { order, interval, .. }) = tested {
+        return found(by_order(order), TESTED, Some(with_interval(order, interval)), "");
+    }
+    match order_of_differences(first / last, [wide, ratio]) {
+        Some(order) => found(by_order(order), UNTESTED, Some(sig(order, 2)), " of differences"),
+        None => found([fine.value, range], UNTESTED, None, "no order: range of three levels"),
     }
 }
 
 /// The order p of (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ) = this ratio of differences, by Celik's iteration (2008); none if
-/// the differences do not shrink, change their sign, or shrink too fast.
+/// the differences do not shrink, change their sign, or shrink too slowly or too fast.
 fn order_of_differences(differences: f64, [wide, ratio]: [f64; 2]) -> Option<f64> {
     let next = |p: f64| {
         let uneven = (powf(ratio, p) - 1.0) / (powf(wide, p) - 1.0);
-        (ln(differences * uneven) / ln(ratio)).clamp(ORDERS[0], ORDERS[1])
+        (ln(differences * uneven) / ln(ratio)).clamp(SLOWEST, FASTEST)
     };
     let order = (0..50).fold(1.0, |p, _| next(p));
-    (differences > 1.0 && order < ORDERS[1]).then_some(order)
+    (differences > 1.0 && SLOWEST < order && order < FASTEST).then_some(order)
 }
 
-/// All comparisons of a case in one table.
+const OF_EXACT: &str = "\
+    Errors against references that are exact, by the finest level. All of such an error is numerical: \
+    V&V 20 has nothing to say of it. Order: of all levels, with its interval of 95 %. *Converges*: this \
+    interval is above 0. *Stops at*: the differences of the last three levels approach another limit \
+    than 0, by more than three times the distance from it, or the error fell and then stopped falling.";
+
+const OF_UNCERTAIN: &str = "\
+    Uncertainty of the comparisons with references that have their own, by ASME V&V 20-2009. E is the \
+    finest result minus the reference; norms have no sign. u_num follows from the ladder. Where one \
+    order describes all levels, U_num of 95 % is 1.25 times the distance of the finest from the limit of \
+    that order (grid convergence index), and u_num is U_num/1.15. Where the differences of the last \
+    three levels have an order, which nothing tests, U_num is 3 times the distance from its limit, and \
+    else 3 times the range of the last three (Eça & Hoekstra 2014); u_num is U_num/2. u_input is the \
+    change by inputs that are wrong by their own uncertainty, of the coarsest run; u_D the uncertainty \
+    that the reference states; u_val the root of the sum of squares. |E| ≤ 2 u_val: not distinguishable; \
+    |E| > 2 u_val: model error. If |E| ≤ 2 u_val and 2 u_val is above a tenth of what is compared, \
+    nothing can be said. Without an order there is neither: the ladder does not tell.";
+
+/// All comparisons of a case: those with exact references, and the others.
 pub fn study(case: &str, comparisons: &[Comparison], runs: &Runs) -> Study {
-    let caption = "Uncertainty of the comparisons by ASME V&V 20-2009. E is the finest result less the \
-                   reference; norms have no sign. u_num follows from the ladder: the grid convergence index \
-                   of the two finest runs with the observed order, times 1/1.15; where errors are not \
-                   monotone, or fall faster than with an order of 2.5, half of the range of the last three. \
-                   u_input is the change by inputs that are wrong by their own uncertainty, of the coarsest \
-                   run; u_D the uncertainty that the reference states; u_val the root of the sum of squares. \
-                   |E| < u_val: not distinguishable; |E| > u_val: model error. If |E| < u_val and u_val is \
-                   above a tenth of what is compared, nothing can be said.";
-    type Row<'a> = (&'a Comparison, Found);
     let rows: Vec<Row> = comparisons.iter().map(|of| (of, Found::of(of, runs))).collect();
-    let show = |value| Cell::percent(value, 2);
-    let table = Columns::<Row>::default()
-        .text("comparison", |(of, _)| of.what.clone())
+    let (exact, uncertain): (Vec<Row>, Vec<Row>) =
+        rows.into_iter().partition(|(_, found)| found.exact.is_some());
+    let study = Study::new(&anchor(case, "uncertainty"), "Comparisons with references");
+    let tables = [(exact, of_exact as fn(&[Row]) -> Table), (uncertain, of_uncertain)];
+    let tables = tables.into_iter().filter(|(rows, _)| !rows.is_empty());
+    tables.fold(study, |study, (rows, table)| study.block(table(&rows)))
+}
+
+type Row<'a> = (&'a Comparison, Found);
+
+fn columns<'a>() -> Columns<'a, Row<'a>> {
+    Columns::default()
+        .text("comparison", |(of, _): &Row| of.what.clone())
         .text("with", |(of, _)| of.against)
         .of(["E", "-"], |(_, found)| found.error, show)
-        .of(["u_num", "-"], |(_, found)| found.numerical.0, show)
-        .text("from", |(_, found)| found.numerical.1.clone())
+}
+
+fn show(value: f64) -> Cell {
+    Cell::percent(value, 2)
+}
+
+fn of_exact(rows: &[Row]) -> Table {
+    columns()
+        .text("order (95 %)", |(_, found)| found.order())
+        .text("verdict", |(_, found)| found.in_words())
+        .table(OF_EXACT, rows)
+}
+
+fn of_uncertain(rows: &[Row]) -> Table {
+    columns()
+        .of(["U_num", "-"], |(_, found)| found.numerical.expanded, show)
+        .of(["u_num", "-"], |(_, found)| found.numerical.standard, show)
+        .text("from", |(_, found)| found.numerical.how.clone())
         .of(["u_input", "-"], |(_, found)| found.input, show)
         .of(["u_D", "-"], |(_, found)| found.reference, show)
         .text("u_input and u_D", |(of, _)| of.because)
         .of(["u_val", "-"], |(_, found)| found.uncertainty(), show)
         .text("verdict", |(_, found)| found.in_words())
-        .table(caption, &rows);
-    Study::new(&anchor(case, "uncertainty"), "Uncertainty of every comparison").block(table)
+        .table(OF_UNCERTAIN, rows)
 }
 
 /// One line for the card of a case: how many comparisons ended how.
 pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
     let said: Vec<Said> = comparisons.iter().map(|of| Found::of(of, runs).said()).collect();
-    let names = [
-        (Said::NotDistinguishable, "not distinguishable from the reference"),
-        (Said::ModelError, "with an error beyond the uncertainty"),
-        (Said::TooUncertain, "too uncertain"),
-        (Said::Unknown, "without a run"),
-    ];
-    let counted = names.into_iter().filter_map(|(of, name)| {
+    let counted = Said::NAMES.into_iter().filter_map(|(of, _, name)| {
         let count = said.iter().filter(|said| **said == of).count();
         (count > 0).then(|| format!("{count} {name}"))
     });
@@ -195,7 +321,7 @@ mod tests {
     use super::*;
     use crate::studies::tests::{column, comparison, runs, spec, tables};
 
-    fn of(values: &[(f64, f64)]) -> (f64, String) {
+    fn of(values: &[(f64, f64)]) -> Numerical {
         let level = |&(n, value): &(f64, f64)| Level { spacing: 1.0 / n, value };
         numerical(&values.iter().map(level).collect::<Vec<_>>())
     }
@@ -204,62 +330,132 @@ mod tests {
         assert!((value / expected - 1.0).abs() < 1e-6, "{value} instead of {expected}");
     }
 
+    /// Errors 3/n² of any sign: the distance from the limit 0 is the error itself.
     #[test]
-    fn a_power_law_has_its_own_error_as_uncertainty_times_the_factor() {
-        // Errors 3/n² of any sign: the index is the error itself.
+    fn a_power_law_has_its_index_with_the_factor_of_a_tested_order() {
         for sign in [1.0, -1.0] {
-            let (found, how) = of(&[10.0, 14.0, 20.0, 40.0].map(|n| (n, sign * 3.0 / (n * n))));
-            near(found, 3.0 / 1600.0 * 1.25 / 1.15);
-            assert!(how.starts_with("order 2.0 ("), "{how}");
+            let found = of(&[10.0, 14.0, 20.0, 40.0].map(|n| (n, sign * 3.0 / (n * n))));
+            near(found.expanded, 1.25 * 3.0 / 1600.0);
+            near(found.standard, found.expanded / 1.15);
+            assert!(found.limit.abs() < 1e-12 && found.has_order);
+            assert!(found.how.starts_with("order 2.0 ("), "{}", found.how);
         }
-        // 0.5 + 1/n approaches a limit that is not 0, on uneven spacings, and is no slow power law.
-        let (found, how) = of(&[10.0, 14.0, 20.0].map(|n| (n, 0.5 + 1.0 / n)));
-        near(found, 0.05 * 1.25 / 1.15);
-        assert_eq!(how, "order 1.0 of differences");
-        // An order beyond 2.5, or below 1/2, is not believed.
-        let (found, how) = of(&[(10.0, 1.0), (20.0, 0.51), (40.0, 0.5)]);
-        assert_eq!((found, &*how), (0.25, "half of the range"));
-        let (_, how) = of(&[(10.0, 1.0), (20.0, 0.5), (40.0, 0.1)]);
-        assert_eq!(how, "order 0.50 of differences");
+        // A power law whose sign alternates approaches 0, but not from one side: its last three range by
+        // 0.03.
+        let found = of(&[(10.0, 0.04), (20.0, -0.02), (40.0, 0.01)]);
+        near(found.expanded, 3.0 * 0.06);
+        // An order below 1/2 is no order: the range of 0.8, 0.9 and 1.
+        let slow = [1.0_f64, 0.9, 0.8].map(|value| (value.powf(-1.0 / 0.2), value));
+        let found = of(&slow);
+        near(found.expanded, 3.0 * 0.2);
+        assert!(!found.has_order, "{}", found.how);
+    }
+
+    /// 0.5 + 1/n approaches a limit that is not 0, on uneven spacings. Three levels fix its order.
+    #[test]
+    fn an_order_that_nothing_tests_has_the_larger_factor() {
+        let found = of(&[10.0, 14.0, 20.0].map(|n| (n, 0.5 + 1.0 / n)));
+        near(found.expanded, 3.0 * 0.05);
+        near(found.standard, 1.5 * 0.05);
+        near(found.limit, 0.5);
+        assert_eq!((found.has_order, &*found.how), (true, "order 1.0 of differences"));
     }
 
     #[test]
-    fn what_is_not_monotone_has_a_range_and_what_is_missing_has_nothing() {
-        let (found, how) = of(&[(5.0, 9.0), (10.0, -0.02), (14.0, 0.03), (20.0, 0.01)]);
-        assert_eq!((found, &*how), (0.025, "half of the range"));
-        // Differences that grow approach nothing.
-        let (found, how) = of(&[(10.0, -0.1), (14.0, 0.0), (20.0, 0.3)]);
-        assert_eq!((found, &*how), (0.2, "half of the range"));
-        let (found, how) = of(&[(10.0, 0.3), (20.0, 0.1)]);
-        assert!((found - 0.2).abs() < 1e-15 && how == "distance of two levels");
+    fn a_ladder_without_an_order_has_three_times_its_range() {
+        for (values, range, why) in [
+            ([-0.02, 0.03, 0.01], 0.05, "not monotone"),
+            ([-0.1, 0.0, 0.3], 0.4, "differences that grow"),
+            ([1.0, 0.51, 0.5], 0.5, "beyond an order of 2.5"),
+            ([1.0, 0.5, 0.1], 0.9, "below an order of 1/2"),
+            ([0.3, 0.3, 0.3], 0.0, "nothing changes"),
+        ] {
+            // A coarser level counts for nothing here.
+            let found = of(&[(5.0, 9.0), (10.0, values[0]), (20.0, values[1]), (40.0, values[2])]);
+            assert!((found.expanded - 3.0 * range).abs() < 1e-12, "{why}: {found:?}");
+            assert!((found.standard - 1.5 * range).abs() < 1e-12, "{why}: {found:?}");
+            assert_eq!((found.limit, found.has_order), (values[2], false), "{why}");
+            assert_eq!(found.how, "no order: range of three levels", "{why}");
+        }
+        let found = of(&[(10.0, 0.3), (20.0, 0.1)]);
+        near(found.expanded, 0.6);
+        assert!(!found.has_order && found.how == "distance of two levels");
         for values in [&[][..], &[(10.0, 0.1)], &[(10.0, 0.1), (20.0, f64::NAN), (40.0, 0.1)]] {
-            assert!(of(values).0.is_nan());
+            assert!(of(values).expanded.is_nan() && of(values).standard.is_nan());
         }
     }
 
     #[test]
     fn verdicts_follow_from_the_error_and_all_uncertainties() {
-        let found = |error, parts: [f64; 3]| Found {
+        let found = |error, [standard, input, reference]: [f64; 3], has_order| Found {
             error,
-            numerical: (parts[0], String::new()),
-            input: parts[1],
-            reference: parts[2],
+            numerical: Numerical {
+                expanded: 2.0 * standard,
+                standard,
+                limit: error,
+                has_order,
+                how: String::new(),
+            },
+            input,
+            reference,
+            exact: None,
         };
-        near(found(0.0, [0.02, 0.03, 0.06]).uncertainty(), 0.07);
-        assert_eq!(found(-0.069, [0.02, 0.03, 0.06]).said(), Said::NotDistinguishable);
-        assert_eq!(found(-0.071, [0.02, 0.03, 0.06]).said(), Said::ModelError);
-        assert_eq!(found(0.1, [0.2, 0.0, 0.0]).said(), Said::TooUncertain);
-        assert_eq!(found(0.3, [0.2, 0.0, 0.0]).said(), Said::ModelError);
-        for missing in [found(f64::NAN, [0.0; 3]), found(0.1, [f64::NAN, 0.0, 0.0])] {
-            assert_eq!(missing.said(), Said::Unknown);
+        let parts = [0.004, 0.006, 0.012];
+        near(found(0.0, parts, true).uncertainty(), 0.014);
+        assert_eq!(found(-0.0279, parts, true).said(), Said::NotDistinguishable);
+        assert_eq!(found(-0.0281, parts, true).said(), Said::ModelError);
+        assert_eq!(found(0.1, [0.0501, 0.0, 0.0], true).said(), Said::TooUncertain);
+        assert_eq!(found(0.1, [0.0501, 0.0, 0.0], true).said(), Said::TooUncertain);
+        assert_eq!(found(0.09, [0.0499, 0.0, 0.0], true).said(), Said::NotDistinguishable);
+        assert_eq!(found(0.3, [0.1, 0.0, 0.0], true).said(), Said::ModelError);
+        // However large the error is: without an order there is no model error.
+        for error in [0.0, 0.01, 1e3] {
+            let found = found(error, parts, false);
+            assert_eq!(
+                (found.said(), &*found.in_words()),
+                (Said::LadderDoesNotTell, "the ladder does not tell")
+            );
         }
-        let words = found(-0.071, [0.02, 0.03, 0.06]).in_words().replace('\u{a0}', " ");
-        assert_eq!(words, "model error −7.1 % ± 7.0 %");
+        for missing in [f64::NAN, f64::INFINITY] {
+            assert_eq!(found(missing, [0.0; 3], true).said(), Said::Unknown);
+            assert_eq!(found(0.1, [missing, 0.0, 0.0], true).said(), Said::Unknown);
+        }
+        let words = found(-0.0281, parts, true).in_words().replace('\u{a0}', " ");
+        assert_eq!(words, "model error −2.8 % ± 2.8 %");
+    }
+
+    /// Against an exact reference an error converges or stops at a number, whatever C and p are: it is never
+    /// not distinguishable, and no error of a model.
+    #[test]
+    fn against_an_exact_reference_an_error_converges_or_stops() {
+        let verdict = |error: &dyn Fn(f64) -> f64| {
+            let all = [8, 10, 14, 20];
+            let runs = runs(all.map(|n| (spec("best", n), error(n as f64))));
+            let found = Found::of(&comparison("best", &all), &runs);
+            (found.said(), found.in_words().replace('\u{a0}', " "))
+        };
+        for (factor, order) in [(3.0, 2.0), (-0.1, 1.0), (40.0, 0.7)] {
+            let (said, words) = verdict(&|n| factor * powf(n, -order));
+            assert_eq!(said, Said::Converges, "{words}");
+            assert!(
+                words.starts_with(&format!("converges with order {}", sig(order, 2))),
+                "{words}"
+            );
+        }
+        let expected = (Said::Stops, "stops at 1.0 %".to_string());
+        assert_eq!(verdict(&|n| 0.01 + 1.0 / (n * n)), expected);
+        assert_eq!(verdict(&|n| -0.01 - 1.0 / (n * n)), expected);
+        // Fell with second order, and then rises.
+        let floor = |n: f64| if n < 15.0 { 1.0 / (n * n) } else { 0.006 };
+        assert_eq!(verdict(&floor), (Said::Stops, "stops at 0.60 %".into()));
+        let noise = |n: f64| if n == 10.0 || n == 20.0 { 0.3 } else { 0.1 };
+        assert_eq!(verdict(&noise).0, Said::LadderDoesNotTell);
+        assert_eq!(verdict(&|n| if n == 10.0 { f64::NAN } else { 1.0 / n }).0, Said::Unknown);
     }
 
     #[test]
     fn a_comparison_reads_its_ladder_and_the_runs_of_its_inputs() {
-        let comparison = Comparison {
+        let uncertain = Comparison {
             inputs: vec![
                 [spec("best", 40), spec("changed", 1)],
                 [spec("best", 40), spec("changed", 2)],
@@ -267,23 +463,57 @@ mod tests {
             reference: 0.01,
             ..comparison("best", &[10, 20, 40])
         };
-        let of = |n: f64| 0.1 + 1.0 / n;
+        let of = |n: f64| 0.2 + 1.0 / n;
         let mut all: Vec<_> = [10, 20, 40].map(|n| (spec("best", n), of(n as f64))).into();
         all.extend([(spec("changed", 1), of(40.0) + 0.03), (spec("changed", 2), of(40.0) - 0.04)]);
         let runs = runs(all);
-        let found = Found::of(&comparison, &runs);
+        let found = Found::of(&uncertain, &runs);
         near(found.input, 0.05);
-        near(found.numerical.0, 0.025 * 1.25 / 1.15);
-        near(found.error, 0.125);
+        near(found.numerical.standard, 1.5 * 0.025);
+        near(found.error, 0.225);
         assert_eq!(found.said(), Said::ModelError);
-        let all = [comparison];
-        let table = study("a_case", &all, &runs);
-        assert_eq!(
-            (&*table.id, &*column(tables(&table)[0], "E")[0]),
-            ("a-case-uncertainty", "12 %")
-        );
+        let all = [uncertain, comparison("best", &[10, 20, 40])];
+        let study = study("a_case", &all, &runs);
+        assert_eq!(study.id, "a-case-uncertainty");
+        let [exact, uncertain] = tables(&study)[..] else { panic!("two tables") };
+        assert_eq!(column(uncertain, "E"), ["22 %"]);
+        assert_eq!(column(uncertain, "u_input"), ["5.0 %"]);
+        assert_eq!(column(exact, "verdict"), ["stops at 20 %"]);
         let said = line(&all, &runs).expect("a line");
-        assert_eq!(said, "1 with an error beyond the uncertainty");
+        assert_eq!(said, "1 stopping at an error, 1 with an error beyond the uncertainty");
         assert_eq!(line(&[], &runs), None);
+    }
+
+    /// Each verdict is counted under its own name.
+    #[test]
+    fn the_card_counts_each_verdict_under_its_own_name() {
+        let uncertain =
+            |variant, ns: &[usize]| Comparison { reference: 0.01, ..comparison(variant, ns) };
+        let (ladder, law) = ([10, 14, 20], |n: f64| 1.0 / (n * n));
+        let of = |variant, value: &dyn Fn(f64) -> f64| {
+            ladder.map(|n| (spec(variant, n), value(n as f64)))
+        };
+        let all = [
+            of("law", &law),
+            of("floor", &|n| 0.4 + law(n)),
+            of("noise", &|n| if n == 14.0 { 0.02 } else { 0.01 }),
+            of("slow", &|n| 0.02 + 2.0 / n),
+        ];
+        let runs = runs(all.concat());
+        let compared = [
+            comparison("law", &ladder),
+            comparison("floor", &ladder),
+            uncertain("law", &ladder),
+            uncertain("floor", &ladder),
+            uncertain("slow", &ladder),
+            uncertain("noise", &ladder),
+            uncertain("none", &ladder),
+            uncertain("missing", &ladder),
+        ];
+        let expected = "\
+            1 converging to the exact solution, 1 stopping at an error, 1 not distinguishable from the \
+            reference, 1 with an error beyond the uncertainty, 1 too uncertain, 1 of which the ladder \
+            does not tell, 2 without a run";
+        assert_eq!(line(&compared, &runs).as_deref(), Some(expected));
     }
 }

@@ -122,7 +122,8 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
                 spacing: refined.spacing(&row.settings),
                 value: runs.value(&row.run.spec, metric),
             };
-            Line { name: of.name, levels: rows.map(level).collect(), gate: refined.gate(of) }
+            let (levels, formal) = (rows.map(level).collect(), refined.expected(of));
+            Line { name: of.name, levels, formal, gate: refined.gate(of) }
         });
         let is_second = matches!(refined, For::Lattice | For::Neighbours);
         let slopes: &[f64] = if is_second { &[2.0] } else { &[1.0] };

@@ -182,7 +182,7 @@ fn tank_references(run: &str) -> Vec<Gate> {
     let model = "By volume of fluid this model differs from the experiment by 26, 17, -7 and -60 % at P1 to \
                  P4. The bound adds, either way, 10 % of that impulse, 9 % at P2, and its uncertainty, which \
                  is 3, 3, 2 and 18 %.";
-    let spread = 2.0 * IMPULSE_SPREAD / 2.0_f64.sqrt();
+    let spread = 2.0 * IMPULSE_SPREAD;
     let of_model = [(0.257, 0.13), (0.173, 0.12), (-0.074, 0.12), (-0.600, 0.28)];
     let impulses = IMPULSE.into_iter().zip(of_model).map(|(sensor, (away, share))| {
         let of = |share: f64| (1.0 + away) * (1.0 + share) - 1.0;

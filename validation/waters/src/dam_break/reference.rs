@@ -2,14 +2,17 @@
 //! them: from the model it is an error of the method.
 
 use base::reference::Reference as Package;
-use std::sync::LazyLock;
+use std::{f64::consts::SQRT_2, sync::LazyLock};
 
 use super::*;
 
 /// Spread of digitised curves of the front of Martin & Moyce \[a\].
 pub const FRONT_SPREAD: f64 = 0.1;
-/// By which the impulse on P2L differs from that on P2, for one (H/g)^(1/2) from the arrival at P1.
-pub const IMPULSE_SPREAD: f64 = 0.06;
+/// Standard uncertainty of levels: the rms distance of two series at H4 \[H\].
+pub const LEVEL_SPREAD: f64 = 0.024;
+/// Standard uncertainty of impulses, as a share: those on P2L and P2 for one (H/g)^(1/2) from the arrival at
+/// P1 differ by 0.06, √2 times that of one sensor.
+pub const IMPULSE_SPREAD: f64 = 0.06 / SQRT_2;
 /// What three other codes of particles gave for Z at T = 2 and 3, as the founders measured it in 2025-26:
 /// SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
 pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
