@@ -125,7 +125,8 @@ fn kept(case: &str) -> Vec<Kept> {
             ]
         }
         "taylor_couette" => vec![(vec!["extrapolating-wall", "interface-wall"], vec!["layers=8"])],
-        "taylor_green" => vec![(vec!["consistent"], vec!["n=32 perturb=0"])],
+        // `modern` loses the flow to disorder that grows from round-off: its error is a headline.
+        "taylor_green" => vec![(vec!["consistent", "modern"], vec!["n=32 perturb=0"])],
         "periodic_hill" => vec![(vec!["carried"], vec!["n=10 end=30"])],
         "cavity" => vec![(vec!["carried", "consistent"], vec!["n=14", "n=16"])],
         _ => [kept_solid(case), kept_water(case)].concat(),
@@ -178,7 +179,10 @@ fn kept_solid(case: &str) -> Vec<Kept> {
                 ["n=8 end=0.1 courant=0.1", "n=8 end=0.1 courant=0.4", "n=8 end=0.1 courant=0.8"];
             vec![(vec!["bare"], steps.to_vec())]
         }
-        "oscillating_plate" => vec![(vec!["bare"], vec!["n=5"])],
+        "oscillating_plate" => {
+            vec![(vec!["bare", "seed"], vec!["n=5"]), (vec!["lagrangian"], vec!["n=5 end=3.1"])]
+        }
+        "cantilever" => vec![(vec!["lagrangian"], vec!["n=5 end=0.75"])],
         "rubber_rings" => vec![
             (vec!["seed"], vec!["spacing=0.2"]),
             (vec!["lagrangian"], vec!["spacing=0.2", "spacing=0.2 speed=0.03"]),

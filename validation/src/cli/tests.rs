@@ -19,7 +19,7 @@ use clap::Parser;
 use harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
-    declare::{Card, Declaration},
+    declare::{Breaks, Card, Declaration, Stated},
     make::{self, Made, Making},
     runs::{Judged, Runs},
     store::Store,
@@ -117,13 +117,22 @@ impl Case for Staged {
         let run = || case::spec(self, "right", &["re=1".to_string()]).expect("staged settings");
         let card = || Card {
             title: "Main",
-            picture: ("none", 0),
-            error: "made up".into(),
+            picture: "none",
             metric: ERROR.into(),
+            stated: |_| Stated {
+                name: "made up".into(),
+                against: "nothing",
+                uncertainty: None,
+                unit: "",
+            },
+            beside: None,
             runs: vec![run()],
-            against: "nothing",
-            uncertainty: None,
-            reach: ("re", "", ""),
+            breaks: Breaks {
+                setting: "re",
+                words: ["", ""],
+                has_broken: |_| Some(false),
+                sign: "",
+            },
         };
         let (name, card) = (self.name, (self.name == "main").then(card));
         let studies = move |runs: &Runs| {

@@ -303,7 +303,7 @@ fn gates(row: &Row) -> Vec<Gate> {
         gates.extend([(A_ERROR, 0.058), (B_ERROR, 0.64 / n)].map(|(metric, known)| {
             let gate = gate(metric, bound, Evidence::Analytic, axes);
             match variant {
-                "seed" => gate.with_limitation(Bound::Below(known), short, &SHORT_KERNEL),
+                "seed" => gate.with_limitation(Bound::Below(known), short, &SHORT_KERNEL).fitted(),
                 _ => gate,
             }
         }));

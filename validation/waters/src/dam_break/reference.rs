@@ -8,6 +8,9 @@ use super::*;
 
 /// Spread of digitised curves of the front of Martin & Moyce \[a\].
 pub const FRONT_SPREAD: f64 = 0.1;
+/// Standard uncertainty of the front of Lobovsky et al. \[H\]: two series arrive 0.038 (H/g)^(1/2) apart, √2
+/// times that of one, at a speed of 1.515 (g H)^(1/2).
+pub const TANK_FRONT_SPREAD: f64 = 0.041;
 /// By which the impulse on P2L differs from that on P2, for one (H/g)^(1/2) from the arrival at P1.
 pub const IMPULSE_SPREAD: f64 = 0.06;
 /// What three other codes of particles gave for Z at T = 2 and 3, as the founders measured it in 2025-26:
