@@ -38,9 +38,10 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         format!("**Supporting cases:** {}.", others.join("; ")),
         "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
          known limitation if it lies outside and inside of a second bound, which follows from the cause, or \
-         is fitted to own runs and says so, and fails otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched, and \
-         [limitations](#limitations) are grouped by cause. Results of other codes and [reference \
-         data](#references) are stored; all else comes from the runs of this report."
+         is fitted to own runs and says so, and fails otherwise; controls must lie outside. \
+         [All verdicts](#verdicts) can be searched, and [limitations](#limitations) are grouped by cause. \
+         Results of other codes and [reference data](#references) are stored; all else comes from the \
+         runs of this report."
             .to_string(),
     ];
     let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];

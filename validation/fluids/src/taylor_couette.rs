@@ -165,8 +165,8 @@ pub static CASE: Composed<CylinderSettings> = Composed {
     recommended: Recommended {
         variant: EXTRAPOLATING,
         because: "with 8 spacings across the gap its velocity is wrong by \
-                  0.57 %<!-- taylor_couette.extrapolating-wall; layers=8; l2 -->, that of `interface-wall` by \
-                  0.74 %<!-- taylor_couette.interface-wall; layers=8; l2 -->, and falls with a higher order",
+                  0.57 %<!-- taylor_couette.extrapolating-wall; layers=8; l2 -->, that of `interface-wall` \
+                  by 0.74 %<!-- taylor_couette.interface-wall; layers=8; l2 -->, whose order is lower",
         papers: Some(INTERFACE),
     },
     about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \

@@ -113,6 +113,11 @@ pub struct Stated {
 }
 
 impl Stated {
+    /// A setting as it is written in the words.
+    pub fn setting(settings: &Value, name: &str) -> String {
+        settings[name].as_f64().map_or_else(|| settings[name].to_string(), report::exact)
+    }
+
     /// A number in the unit of the error.
     pub fn number(&self, value: f64) -> String {
         if self.unit.is_empty() {

@@ -287,7 +287,7 @@ fn declaration(tier: Tier) -> Declaration {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders: ["seed", "modern"].map(ladder).into(),
-        ..Accuracy::new("still-wedge", P_BASE, "error of the pressure at the base [ρ g H]")
+        ..Accuracy::new("still-wedge", P_L2, "error of the pressure, rms [ρ g H]")
     };
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});

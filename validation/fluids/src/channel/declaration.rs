@@ -73,10 +73,13 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         picture,
         metric: L2_WORST.into(),
         stated: |settings| Stated {
-            name: format!(
-                "velocity at Re {}, {} rows, largest relative rms from νt/L² = 0.1 to {}",
-                settings["re"], settings["rows"], settings["end"]
-            ),
+            name: {
+                let [re, rows, end] =
+                    ["re", "rows", "end"].map(|name| Stated::setting(settings, name));
+                format!(
+                    "velocity at Re {re}, {rows} rows, largest relative rms from νt/L² = 0.1 to {end}"
+                )
+            },
             against: "the exact series",
             uncertainty: None,
             unit: "",

@@ -71,7 +71,8 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
         variant: "curved",
         because: "with 20 rows its velocity is wrong by \
                   0.081 %<!-- poiseuille.curved; rows=20; l2_worst -->, the paper's by \
-                  1.4 %<!-- poiseuille.seed; rows=20; l2_worst -->: its ghosts know the curvature at the wall",
+                  1.4 %<!-- poiseuille.seed; rows=20; l2_worst -->: its ghosts know the curvature at \
+                  the wall",
         papers: Some("seed"),
     },
     about: "Water rests between two infinite plates, L = 1 mm apart. At t = 0 a body force F = 8 nu V/L^2 \

@@ -56,8 +56,8 @@ fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
     ladder.flat_map(comparison).collect()
 }
 
-/// What the report says first of the case, at Re 50, where the flow separates: the ladder of the quick tier is
-/// at Re 10.
+/// What the report says first of the case, at Re 50, where the flow separates: the ladder of the quick tier
+/// is at Re 10.
 fn card(tier: Tier, accuracy: &Accuracy) -> Card {
     let shown = [RECOMMENDED, "interface-wall"];
     let quick = |variant| CASE.spec(variant, |s| flow(s, (50.0, 10, 30.0, false)));
@@ -67,10 +67,12 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         picture: "periodic-hill-pictures",
         metric: L2_U.into(),
         stated: |settings| Stated {
-            name: format!(
-                "velocity at ten stations at Re {} and t = {} H/U_b, {} spacings a hill, rms in U_b",
-                settings["re"], settings["end"], settings["n"]
-            ),
+            name: {
+                let [re, t, n] = ["re", "end", "n"].map(|name| Stated::setting(settings, name));
+                format!(
+                    "velocity at ten stations at Re {re} and t = {t} H/U_b, {n} spacings a hill, rms in U_b"
+                )
+            },
             against: "finite elements",
             uncertainty: settings["re"].as_f64().and_then(reference).map(|of| of.uncertainty),
             unit: "",

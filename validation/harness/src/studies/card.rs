@@ -143,3 +143,62 @@ fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> O
     let small = Figure::new(format!("{id}-small"), figure.caption.clone()).panel(plot);
     Some(small.panel_size(150.0, 90.0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        declare::Stated,
+        studies::tests::{ERROR, run, spec},
+    };
+
+    fn made_up() -> declare::Card {
+        declare::Card {
+            title: "Made up",
+            picture: "none",
+            metric: ERROR.into(),
+            stated: |settings| Stated {
+                name: format!("distance at n = {}", settings["n"]),
+                against: "nothing",
+                uncertainty: Some(0.5),
+                unit: "a",
+            },
+            beside: None,
+            runs: vec![spec("good", 1), spec("bad", 1)],
+            breaks: Breaks {
+                setting: "n",
+                words: ["n = ", ""],
+                has_broken: |record| Some(record.value(ERROR)? > 1.0),
+                sign: "it is torn",
+            },
+        }
+    }
+
+    /// The card said "completed for" the value of a torn run, and of a variant that diverged in another run.
+    #[test]
+    fn a_variant_breaks_at_its_least_value_that_is_torn_or_diverges() {
+        let of = |variant: &str, n, error: f64| run(spec(variant, n), |r| r.put(ERROR, error));
+        let mut diverged = of("bad", 4, 0.1);
+        let (field, value_text) = ("density".into(), "NaN".into());
+        diverged.record.status =
+            Status::Diverged { step: 1, time: 0.1, particle: 0, field, value_text };
+        let good = [of("good", 2, 0.5), of("good", 7, 0.9)];
+        let all = |more: Vec<_>| Runs::new(good.iter().cloned().chain(more).collect());
+        let whole = "`good` in no run at n = 2 to 7";
+        let torn = all(vec![of("bad", 1, 0.5), of("bad", 5, 2.0), of("bad", 6, 0.5)]);
+        let at = |n: usize| format!("{whole}; `bad` at n = {n} (it is torn, or it diverges)");
+        assert_eq!(breaks(&made_up(), &torn), Some(at(5)));
+        let both = all(vec![of("bad", 5, 2.0), diverged]);
+        assert_eq!(breaks(&made_up(), &both), Some(at(4)));
+        assert_eq!(breaks(&made_up(), &all(Vec::new())), Some(whole.into()));
+    }
+
+    /// An error has the unit and the words of the run that has it.
+    #[test]
+    fn an_error_is_stated_with_the_settings_of_its_run() {
+        let judged = run(spec("good", 3), |r| r.put(ERROR, -0.0576));
+        assert_eq!(headline(&made_up(), &judged.record), Ok("−0.058\u{a0}a".into()));
+        let stated = (made_up().stated)(&judged.record.settings).in_words();
+        assert_eq!(stated, "distance at n = 3, against nothing (± 0.50\u{a0}a)");
+    }
+}

@@ -145,7 +145,8 @@ fn card(accuracy: &Accuracy) -> Card {
             Stated {
                 name: format!(
                     "centre, width and height over time at {} c0 each, spacing {} L, in outer diameters",
-                    settings["speed"], settings["spacing"]
+                    Stated::setting(settings, "speed"),
+                    Stated::setting(settings, "spacing")
                 ),
                 against: "finite elements",
                 uncertainty: of.and_then(|of| Some(Reference::of("seed", &of)?.uncertainty)),
@@ -182,9 +183,10 @@ fn histories(tier: Tier) -> Curves {
         id: "rubber-rings-histories".into(),
         title: "Histories over finite elements".into(),
         caption: "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
-                  the width along and height across the line of flight. Coloured: the recommended variant and \
-                  the paper's. Black: finite elements with the law of the recommended variant, from which \
-                  those with the law of the paper differ little; their uncertainty is less than the width of the line."
+                  the width along and height across the line of flight. Coloured: the recommended variant \
+                  and the paper's. Black: finite elements with the law of the recommended variant, from \
+                  which those with the law of the paper differ little; their uncertainty is less than the width \
+                  of the line."
             .into(),
         panels: labels.into_iter().enumerate().map(panel).collect(),
     }

@@ -85,8 +85,8 @@ fn against_the_experiment(record: &Record) -> Option<String> {
     let [released, shifted, shift] =
         [FRONT.rms, FRONT.rms_shifted, FRONT.shift].map(|of| record.value(of));
     Some(format!(
-        "front against the experiment of {experiment} (± {}), rms: {} as released, {} after the best shift of \
-         its clock, by {}",
+        "front against the experiment of {experiment} (± {}), rms: {} as released, {} after the best shift \
+         of its clock, by {}",
         number(spread),
         number(released?),
         number(shifted?),
