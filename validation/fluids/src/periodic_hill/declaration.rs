@@ -90,18 +90,23 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
 
 /// Runs from rest alone: those from the reference end before they could leave it.
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
-    let about = "Flow over periodic hills at Re 50 after 40 H/U_b, against finite elements at ten stations. \
-                 In the quick tier at Re 10 after 10 H/U_b, when 0.3 % of U_b is left of the start.";
     let level = |s: &HillSettings| (1.0 / s.n as f64, format!("H/dx = {}", s.n));
     let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
         .map(|variant| table.ladder(&[For::Ladder], variant, level));
+    let run = ladders[0].levels.first().map(|level| &level.run.spec.settings);
+    let [re, end] =
+        ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));
+    let rest = if re == "10" { ", when 0.3 % of U_b is left of the start" } else { "" };
+    let about = format!(
+        "Flow over periodic hills at Re {re} after {end} H/U_b{rest}, against finite elements at ten stations."
+    );
     if tier == Tier::Full {
         let because = "Walls are of first order on disordered particles, sums of second.";
         let (id, bound) = (format!("{NAME}.{RECOMMENDED}.50.order"), Bound::Above(1.0));
         ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
-        about: about.into(),
+        about,
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
