@@ -6,9 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use base::gate::{Bound, Gate};
-use harness::case::Tier;
-use harness::convergence::{Convergence, Level, convergence};
-use harness::{plan, studies::validation::numerical};
+use harness::{
+    case::{Case, Tier},
+    convergence::{Convergence, Level, convergence},
+    plan,
+    studies::validation::numerical,
+};
 use serde_json::Value;
 use touchstone_tests::snapshot;
 use validation::cases;
@@ -23,6 +26,15 @@ const FOLDERS: [&str; 7] =
 
 fn read(path: &str) -> String {
     fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The reasons for the recommended variants, which state numbers as documents do.
+fn reasons() -> impl Iterator<Item = (String, String)> {
+    let of = |case: &&'static dyn Case| {
+        let name = format!("the reason of {}", case.name());
+        (name, case.recommended().because.to_string())
+    };
+    cases::CASES.iter().map(of)
 }
 
 /// Path and text of each document, by path.
@@ -211,7 +223,7 @@ fn all_gates() -> Vec<Gate> {
 #[test]
 fn numbers_with_a_source_are_those_of_the_source() {
     let (gates, mut wrong, mut count) = (all_gates(), Vec::new(), 0);
-    for (path, text) in documents() {
+    for (path, text) in documents().into_iter().chain(reasons()) {
         for (before, comment) in sourced(&without(&prose(&text), "`", "`")) {
             let Some(found) = sources(comment, &gates) else { continue };
             count += 1;
@@ -254,6 +266,35 @@ fn errors_and_limits_in_readme_have_sources() {
     }
     assert!(count >= 6, "the five cases and the supporting ones: {count} rows");
     assert_none("a number in README's table has a source", bare);
+}
+
+/// Shares and numbers with decimals in the reasons for the recommended variants come from runs or gates.
+#[test]
+fn numbers_of_recommended_variants_have_sources() {
+    let mut bare = Vec::new();
+    for (name, text) in reasons() {
+        let mut rest = &*text;
+        while let Some((before, after)) = rest.split_once("<!-- ") {
+            let kept = before.trim_end().trim_end_matches('%').trim_end();
+            bare.extend(stated(kept.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.')));
+            rest = after.split_once("-->").map_or("", |(_, rest)| rest);
+        }
+        bare.extend(stated(rest).map(|number| format!("{name}: {number}")));
+    }
+    assert_none("a number of a reason has a source", bare);
+}
+
+/// The words of a text that are results: shares, and numbers with decimals.
+fn stated(text: &str) -> impl Iterator<Item = String> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let is_result = |pair: &[&str]| {
+        let word = pair[0].trim_end_matches([',', ';', ':']);
+        let is_number = word.trim_start_matches(['-', '+']).parse::<f64>().is_ok();
+        is_number && (word.contains('.') || pair.get(1).is_some_and(|next| next.starts_with('%')))
+    };
+    let last = words.len().saturating_sub(1);
+    let found = (0..words.len()).filter(|k| is_result(&words[*k..=(*k + 1).min(last)]));
+    found.map(|k| words[k].to_string()).collect::<Vec<_>>().into_iter()
 }
 
 /// The words of a text that begin with a digit.
@@ -307,6 +348,7 @@ fn faults_of_a_document_are_seen() {
     assert_eq!(last_number("is −9.1 %"), Some((-0.091, 0.001)));
     assert_eq!(last_number("+1000"), Some((1000.0, 1.0)));
     assert_eq!(last_number("none"), None);
+    assert_eq!(stated("at T = 2 by 3 % or -0.5; 20 rows").collect::<Vec<_>>(), ["3", "-0.5;"]);
     assert_eq!(numbers("U_b at h0, +3 and 0.5"), ["3", "0.5"]);
     let name = "couette.plain.20.l2@0.1";
     let gates: Vec<Gate> = all_gates().into_iter().filter(|gate| gate.id == name).take(1).collect();

@@ -150,7 +150,7 @@ fn every_limitation_has_a_cause() {
         }
     }
     let words = |text: &str| text.split_whitespace().count();
-    for Cause { what, mend } in causes {
+    for Cause { what, mend, .. } in causes {
         assert!(words(&what) <= 25 && what.ends_with('.'), "one sentence: {what}");
         assert!(words(&mend) <= 20 && mend.ends_with('.'), "one sentence: {mend}");
     }

@@ -125,7 +125,8 @@ fn kept(case: &str) -> Vec<Kept> {
             ]
         }
         "taylor_couette" => vec![(vec!["extrapolating-wall", "interface-wall"], vec!["layers=8"])],
-        "taylor_green" => vec![(vec!["consistent"], vec!["n=32 perturb=0"])],
+        // `modern` loses the flow to disorder that grows from round-off: its error is a headline.
+        "taylor_green" => vec![(vec!["consistent", "modern"], vec!["n=32 perturb=0"])],
         "periodic_hill" => vec![(vec!["carried"], vec!["n=10 end=30"])],
         "cavity" => vec![(vec!["carried", "consistent"], vec!["n=14", "n=16"])],
         _ => [kept_solid(case), kept_water(case)].concat(),
@@ -178,7 +179,10 @@ fn kept_solid(case: &str) -> Vec<Kept> {
                 ["n=8 end=0.1 courant=0.1", "n=8 end=0.1 courant=0.4", "n=8 end=0.1 courant=0.8"];
             vec![(vec!["bare"], steps.to_vec())]
         }
-        "oscillating_plate" => vec![(vec!["bare"], vec!["n=5"])],
+        "oscillating_plate" => {
+            vec![(vec!["bare", "seed"], vec!["n=5"]), (vec!["lagrangian"], vec!["n=5 end=3.1"])]
+        }
+        "cantilever" => vec![(vec!["lagrangian"], vec!["n=5 end=0.75"])],
         "rubber_rings" => vec![
             (vec!["seed"], vec!["spacing=0.2"]),
             (vec!["lagrangian"], vec!["spacing=0.2", "spacing=0.2 speed=0.03"]),
@@ -255,7 +259,10 @@ fn group(metric: &str) -> &str {
 fn bounds_of_solids(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let little = "energy is lost to viscosity and may not be gained: 1 % for kinetic energy half a step late";
     match case {
-        "elastic_bar" => vec![("energy_change", Bound::Within(-0.5, 0.01), little)],
+        "elastic_bar" => vec![
+            ("energy_change", Bound::Within(-0.5, 0.01), little),
+            ("pulse_rms", Bound::Below(1.0), "1 is the error of a bar at rest"),
+        ],
         "spinning_disk" => vec![
             (
                 "largest_stress",
@@ -432,7 +439,9 @@ fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) ->
     if record.status != Status::Completed {
         outside.push(format!("{variant} {set}: {:?}", record.status));
     }
-    for (name, bound, because) in bounds_beside(case) {
+    // The error of a known limitation is bounded by its gate.
+    let is_lost = (case, &**variant) == ("taylor_green", "modern");
+    for (name, bound, because) in bounds_beside(case).into_iter().filter(|_| !is_lost) {
         for (metric, found) in &record.metrics {
             let time = metric.split('@').nth(1).and_then(|tau| tau.parse::<f64>().ok());
             let is_judged = group(metric) == name && time.is_none_or(|tau| tau >= 0.1);
@@ -526,6 +535,7 @@ fn the_disk_is_as_it_was() {
 #[test]
 fn the_plate_is_as_it_was() {
     check("oscillating_plate");
+    check("cantilever");
 }
 
 #[test]

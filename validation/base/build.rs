@@ -48,11 +48,13 @@ fn main() -> io::Result<()> {
 fn is_described(table: &Path) -> io::Result<bool> {
     let name = table.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let package = fs::read_to_string(table.with_file_name("datapackage.json"))?;
-    if !package.contains(&format!("\"{name}\"")) {
-        return Ok(false);
-    }
+    // The rest of a resource, which has its hash, follows its path.
+    let resources =
+        package.split("\"path\"").skip(1).map(|rest| rest.trim_start_matches([' ', ':']));
+    let is_this = |rest: &&str| rest.starts_with(&format!("\"{name}\""));
+    let Some(resource) = resources.into_iter().find(is_this) else { return Ok(false) };
     let hash = Hash::hash(&fs::read(table)?).map(|byte| format!("{byte:02x}")).concat();
-    if package.contains(&hash) {
+    if resource.contains(&format!("\"sha256:{hash}\"")) {
         return Ok(true);
     }
     let table = table.display();

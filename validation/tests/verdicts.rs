@@ -115,14 +115,14 @@ fn junit_counts_what_it_holds() {
     }
 }
 
-/// "1 gate is outside their bounds for known reasons".
+/// "1 known limitations".
 #[test]
 fn number_and_verb_agree() {
     let folder = tempfile::tempdir().unwrap();
     let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
     command.current_dir(folder.path()).args(["verify", "hydrostatic", "--store", "store"]);
     let text = String::from_utf8(command.output().unwrap().stdout).unwrap();
-    let limited = "1 gate is outside its bound for a known reason";
+    let limited = "1 known limitation";
     assert!(text.contains(&format!("\n{limited}; `touchstone explain")), "{text}");
     assert!(
         text.contains(&format!(" gates pass, {limited}, 1 control fails as it must")),

@@ -140,18 +140,27 @@ pub struct Cause {
     pub what: Cow<'static, str>,
     /// what would remove it, a sentence
     pub mend: Cow<'static, str>,
+    /// does it state where numbers are off, and not why?
+    #[serde(default)]
+    pub unexplained: bool,
 }
 
 impl Cause {
     /// A cause, and what would remove it.
     pub const fn new(what: &'static str, mend: &'static str) -> Self {
-        Self { what: Cow::Borrowed(what), mend: Cow::Borrowed(mend) }
+        Self { what: Cow::Borrowed(what), mend: Cow::Borrowed(mend), unexplained: false }
+    }
+
+    /// An error whose cause is not known, or in part alone, and how it could be found.
+    pub const fn unexplained(what: &'static str, mend: &'static str) -> Self {
+        Self { what: Cow::Borrowed(what), mend: Cow::Borrowed(mend), unexplained: true }
     }
 }
 
 impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} What would remove it: {}", self.what, self.mend)
+        let unexplained = if self.unexplained { "Unexplained. " } else { "" };
+        write!(f, "{unexplained}{} What would remove it: {}", self.what, self.mend)
     }
 }
 
@@ -174,6 +183,10 @@ pub struct Gate {
     pub because: String,
     /// what causes the limitation, and where its bound comes from
     pub reason: Option<String>,
+    /// is the bound of the limitation fitted to runs of this program, so that it says how far they lie
+    /// outside, and not how far the cause explains?
+    #[serde(default)]
+    pub fitted: bool,
     /// the cause that the limitation shares with other gates
     pub cause: Option<Cause>,
     /// is it a control, which must lie outside its bound?
@@ -202,6 +215,7 @@ impl Gate {
             evidence,
             because: because.into(),
             reason: None,
+            fitted: false,
             cause: None,
             control: false,
             may_end_early: false,
@@ -217,6 +231,11 @@ impl Gate {
     pub fn with_limitation(self, bound: Bound, reason: impl Into<String>, cause: &Cause) -> Self {
         let (known, reason, cause) = (Some(bound), Some(reason.into()), Some(cause.clone()));
         Gate { known, reason, cause, ..self }.sound()
+    }
+
+    /// The same with a limitation whose bound is fitted to runs of this program.
+    pub fn fitted(self) -> Self {
+        Gate { fitted: true, ..self }.sound()
     }
 
     /// A control: a finite number outside the bound is what must come out.
@@ -263,6 +282,9 @@ impl Gate {
                  limitation if it is a control"
             ));
         }
+        if self.fitted && !is_limited {
+            return Err(format!("gate {id} has no limitation that could be fitted to runs"));
+        }
         if !bound.is_sound() {
             return Err(format!(
                 "the bound of gate {id} is {bound}, but its ends must be finite and in ascending order"
@@ -284,7 +306,8 @@ impl Gate {
 
     /// Where the metric must lie, in words, with how far its limitation reaches.
     pub fn bounds(&self) -> String {
-        let known = self.known.map(|known| format!("; limitation: {known}"));
+        let fitted = if self.fitted { ", fitted to own runs" } else { "" };
+        let known = self.known.map(|known| format!("; limitation{fitted}: {known}"));
         self.bound.to_string() + &known.unwrap_or_default()
     }
 

@@ -1,4 +1,4 @@
-//! What lies outside of its bound for a known reason, grouped by cause.
+//! The known limitations, grouped by cause.
 
 use base::spec::Task;
 use harness::{
@@ -12,8 +12,9 @@ use report::{Block, Section, sig};
 pub fn section(suite: &Suite) -> Section {
     let causes = by_cause(suite.judged(), |found| found.judged);
     let section = Section::new("limitations", "Limitations by cause").prose(
-        "Each gate below is outside of its bound, and inside the wider bound that its cause explains; \
-         beyond that it would fail.",
+        "Each gate below is outside of its bound, and inside a wider one; beyond that it would fail. The \
+         wider bound follows from the cause, unless it is said to be fitted to own runs. Causes that are \
+         unexplained state where numbers are off, and not why.",
     );
     causes.iter().fold(section, |section, (cause, found)| {
         let mut cases: Vec<&str> = found.iter().map(|found| found.case.name()).collect();

@@ -11,13 +11,12 @@ use harness::{
     case::{self, Case},
     columns::Columns,
     notes::Notes,
-    runs::{Judged, JudgedRun},
+    runs::{Judged, JudgedRun, counts},
     study::Study,
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use report::{
-    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, code, counted,
-    plain,
+    Block, Card, Cell, Column, Explorer, Page, Section, Table, VERDICTS, code, counted, plain,
 };
 
 use crate::{cases, limitations, stiffness, time};
@@ -38,10 +37,11 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     let notes = vec![
         format!("**Supporting cases:** {}.", others.join("; ")),
         "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
-         limitation if it lies outside for a known reason and not farther than this reason explains, and \
-         fails otherwise; controls must lie outside. [All verdicts](#verdicts) can be searched, and \
-         [limitations](#limitations) are grouped by cause. Results of other codes and [reference \
-         data](#references) are stored; all else comes from the runs of this report."
+         known limitation if it lies outside and inside of a second bound, which follows from the cause, or \
+         is fitted to own runs and says so, and fails otherwise; controls must lie outside. \
+         [All verdicts](#verdicts) can be searched, and [limitations](#limitations) are grouped by cause. \
+         Results of other codes and [reference data](#references) are stored; all else comes from the \
+         runs of this report."
             .to_string(),
     ];
     let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
@@ -200,8 +200,7 @@ fn anchor(study: &Study) -> String {
 }
 
 fn study_section(study: &Study) -> Section {
-    let counts = Counts::of(study.judged.iter().map(|judged| judged.judgement.verdict));
-    let section = Section::new(anchor(study), &study.title).counts(counts);
+    let section = Section::new(anchor(study), &study.title).counts(counts(&study.judged));
     study.blocks.iter().cloned().fold(section, Section::block)
 }
 

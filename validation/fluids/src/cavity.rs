@@ -67,7 +67,8 @@ pub static CASE: Composed<Cavity> = Composed {
     problem: "A closed box whose lid moves",
     recommended: Recommended {
         variant: RECOMMENDED,
-        because: "its velocity is the nearest at every spacing, although its densities rise",
+        because: "its velocity is the nearest at every spacing, although its densities rise and its return \
+                  flow is off by -19 %<!-- cavity.consistent; n=16; return --> with 16 spacings a side",
         papers: Some("seed"),
     },
     about: "The lid of a closed box drives a vortex, steady at Re 100 and 1000. The fluid starts at rest and \
@@ -225,9 +226,8 @@ static RAMP: Cause = Cause::new(
 );
 
 /// Why the vortex is too weak.
-static LAYERS: Cause = Cause::new(
-    "The vortex of the cavity, above all its return flow, is too weak by an error of first order or less, \
-     for unknown reasons.",
+static LAYERS: Cause = Cause::unexplained(
+    "The vortex of the cavity, above all its return flow, is too weak by an error of first order or less.",
     "Finer spacing at the walls, and the error of each term in such a layer, measured alone.",
 );
 
@@ -255,11 +255,11 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
         gate.clone().with_limitation(Bound::Within(low, mach2), why, cause)
     };
     let ramp = limited(&volume, -0.004 * s.end, rises, &RAMP);
-    let weaker = |low| limited(&strength, low, weak, &LAYERS);
+    let weaker = |low| limited(&strength, low, weak, &LAYERS).fitted();
     // The error left in the limit, and that in proportion to dx/L, of runs with 14 to 64 spacings.
     let slow = |[left, of_dx]: [f64; 2]| {
         let why = "It falls short by an error of first order (`consistent` at Re 100), or of less.";
-        limited(&back, -left - of_dx / s.n as f64, why, &LAYERS)
+        limited(&back, -left - of_dx / s.n as f64, why, &LAYERS).fitted()
     };
     match (*variant, *re == 100.0) {
         ("seed", _) => vec![control.expected_to_fail().may_end_early()],

@@ -88,21 +88,65 @@ pub struct Curve {
 pub struct Card {
     /// Name of the problem.
     pub title: &'static str,
-    /// A figure of the case and the place of the panel in it that is the picture.
-    pub picture: (&'static str, usize),
-    /// Name of the error, without unit.
-    pub error: String,
-    /// The error, which has the unit 1 and may have a sign.
+    /// The figure from which the picture is taken: its first panel that shows the first of the runs, at
+    /// whatever resolution ([`Declaration::pictured`]).
+    pub picture: &'static str,
+    /// The error.
     pub metric: MetricName,
+    /// The words for the error of a run with these settings.
+    pub stated: fn(&Value) -> Stated,
+    /// Further numbers of a run in a sentence, if it has them.
+    pub beside: Option<fn(&Record) -> Option<String>>,
     /// The run of the recommended variant and that of the paper's.
     pub runs: Vec<RunSpec>,
-    /// What it is compared with.
+    /// Where runs of these variants break.
+    pub breaks: Breaks,
+}
+
+/// The words for an error, which depend on the settings of the run.
+pub struct Stated {
+    /// Its name, with the conditions of the run.
+    pub name: String,
+    /// The reference.
     pub against: &'static str,
-    /// Standard uncertainty of what it is compared with, in the unit of the error; none if it is exact.
+    /// Standard uncertainty of the reference, in the unit of the error; none if it is exact.
     pub uncertainty: Option<f64>,
-    /// The setting that is varied the farthest, such as the Reynolds number, with what stands before and
-    /// after its values.
-    pub reach: (&'static str, &'static str, &'static str),
+    /// Unit of the error; empty for a share, which is shown in per cent.
+    pub unit: &'static str,
+}
+
+impl Stated {
+    /// A setting as it is written in the words.
+    pub fn setting(settings: &Value, name: &str) -> String {
+        settings[name].as_f64().map_or_else(|| settings[name].to_string(), report::exact)
+    }
+
+    /// A number in the unit of the error.
+    pub fn number(&self, value: f64) -> String {
+        if self.unit.is_empty() {
+            return report::percent(value, 2);
+        }
+        format!("{}\u{a0}{}", report::sig(value, 2), self.unit)
+    }
+
+    /// The name and the reference.
+    pub fn in_words(&self) -> String {
+        let uncertainty = self.uncertainty.map(|u| format!(" (± {})", self.number(u)));
+        format!("{}, against {}{}", self.name, self.against, uncertainty.unwrap_or_default())
+    }
+}
+
+/// The setting over which a case looks for the value at which runs break.
+pub struct Breaks {
+    /// The setting.
+    pub setting: &'static str,
+    /// The words before and after its values.
+    pub words: [&'static str; 2],
+    /// Whether the result of a run is broken although it may have reached its end; none if the run does not
+    /// answer the question, such as a control.
+    pub has_broken: fn(&Record) -> Option<bool>,
+    /// The sign of that in words.
+    pub sign: &'static str,
 }
 
 /// A comparison with a reference: exact, or with an uncertainty by ASME V&V 20.
@@ -600,6 +644,36 @@ impl CurvePanel {
 }
 
 impl Declaration {
+    /// The panel of the figure on the card: the first that shows the first run of the card, at whatever
+    /// resolution the ladders of the case have.
+    pub fn pictured(&self, card: &Card) -> Option<usize> {
+        let wanted = card.runs.first()?;
+        let levels = self.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);
+        let levels: Vec<&RunSpec> =
+            levels.flat_map(|ladder| &ladder.levels).map(|level| &level.run.spec).collect();
+        let is_resolution = |name: &str| {
+            let values = levels.iter().filter(|spec| spec.variant == wanted.variant);
+            let mut values = values.map(|spec| &spec.settings[name]);
+            values.next().is_some_and(|first| values.any(|value| value != first))
+        };
+        let is_shown = |spec: &RunSpec| {
+            let (Some(a), Some(b)) = (spec.settings.as_object(), wanted.settings.as_object())
+            else {
+                return false;
+            };
+            let differ = a.iter().filter(|(name, value)| b.get(*name) != Some(*value));
+            spec.variant == wanted.variant
+                && differ.into_iter().all(|(name, _)| is_resolution(name))
+        };
+        let curves = self.curves.iter().find(|curves| curves.id == card.picture).map(|curves| {
+            let shows = |panel: &CurvePanel| panel.lines.iter().any(|line| is_shown(&line.spec));
+            curves.panels.iter().position(shows)
+        });
+        let pictures = self.pictures.iter().find(|picture| picture.texts[0] == card.picture);
+        let place = |of: &Picture| of.panels.iter().position(|panel| is_shown(&panel.spec));
+        curves.unwrap_or_else(|| pictures.and_then(place))
+    }
+
     /// How much must be measured of a run with these gates.
     pub fn measure_for(&self, gates: &[Gate]) -> Measure {
         let mut costly = self.costly.iter().map(|metric| String::from(*metric));

@@ -9,6 +9,7 @@ use base::{
     record::{MetricName, Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
+use report::Counts;
 
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -92,6 +93,17 @@ impl JudgedRun {
             planned.gates.iter().map(|gate| Judged::of_record(gate.clone(), &record)).collect();
         Self { planned, record, judged }
     }
+}
+
+/// How many of these gates ended how.
+pub fn counts<'a>(judged: impl IntoIterator<Item = &'a Judged>) -> Counts {
+    let (mut verdicts, mut unexplained) = (Vec::new(), 0);
+    for one in judged {
+        let cause = one.gate.cause.as_ref().filter(|_| one.limitation().is_some());
+        unexplained += usize::from(cause.is_some_and(|cause| cause.unexplained));
+        verdicts.push(one.judgement.verdict);
+    }
+    Counts { unexplained, ..Counts::of(verdicts) }
 }
 
 /// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.

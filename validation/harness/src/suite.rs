@@ -14,7 +14,7 @@ use crate::{
     declare::{self, Declaration},
     make::{self, Made, Making},
     plan,
-    runs::{Judged, JudgedRun, Runs},
+    runs::{Judged, JudgedRun, Runs, counts},
     sealed, studies,
     study::Study,
 };
@@ -36,7 +36,7 @@ pub struct CaseResults {
 impl CaseResults {
     /// How its gates ended.
     pub fn counts(&self) -> Counts {
-        Counts::of(self.judged().map(|of| of.judged.judgement.verdict))
+        counts(self.judged().map(|of| of.judged))
     }
 
     /// Every judgement on runs of other codes that the store has.
@@ -116,10 +116,7 @@ impl Suite {
     pub fn counts(&self) -> Counts {
         let records = self.cases.iter().flat_map(|case| case.runs.simulations());
         let diverged = records.filter(|record| matches!(record.status, Status::Diverged { .. }));
-        Counts {
-            diverged: diverged.count(),
-            ..Counts::of(self.judged().map(|of| of.judged.judgement.verdict))
-        }
+        Counts { diverged: diverged.count(), ..counts(self.judged().map(|of| of.judged)) }
     }
 }
 

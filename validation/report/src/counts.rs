@@ -10,6 +10,8 @@ use maud::{Markup, html};
 pub struct Counts {
     /// Gates, in the order of [`Verdict::ALL`].
     pub gates: [usize; Verdict::ALL.len()],
+    /// Limitations whose cause is not known.
+    pub unexplained: usize,
     /// Runs that diverged.
     pub diverged: usize,
 }
@@ -32,14 +34,15 @@ impl Counts {
         let of =
             |count: usize, one: &str, many: &str| (count > 0).then(|| counted(count, one, many));
         let [pass, control, limitation, fail] = self.gates;
+        let unexplained = match self.unexplained {
+            0 => String::new(),
+            count => format!(" ({count} of them unexplained)"),
+        };
+        let limited = of(limitation, "known limitation", "known limitations");
         let parts = [
             of(fail, "gate fails", "gates fail"),
             of(pass, "gate passes", "gates pass"),
-            of(
-                limitation,
-                "gate is outside its bound for a known reason",
-                "gates are outside their bounds for known reasons",
-            ),
+            limited.map(|text| text + &unexplained),
             of(control, "control fails as it must", "controls fail as they must"),
             of(self.diverged, "run diverged", "runs diverged"),
         ];
@@ -96,9 +99,9 @@ mod tests {
         let counts = Counts::of([Verdict::Pass, Verdict::Pass, Verdict::ExpectedFailure]);
         assert_eq!(Verdict::ALL.map(|verdict| counts.count(verdict)), [2, 1, 0, 0]);
         assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
-        let all = Counts { gates: [2, 1, 2, 1], diverged: 3 };
-        let headline = "1 gate fails, 2 gates pass, 2 gates are outside their bounds for known reasons, 1 \
-                        control fails as it must, 3 runs diverged";
+        let all = Counts { gates: [2, 1, 2, 1], unexplained: 1, diverged: 3 };
+        let headline = "1 gate fails, 2 gates pass, 2 known limitations (1 of them unexplained), 1 control \
+                        fails as it must, 3 runs diverged";
         assert_eq!(
             (all.worst(), counts.worst()),
             (Some(Verdict::Fail), Some(Verdict::ExpectedFailure))
@@ -106,9 +109,9 @@ mod tests {
         assert_eq!(all.headline(), headline);
         assert!(all.html().into_string().contains(headline));
         assert_eq!(Counts::default().headline(), "Nothing was judged");
-        let one = Counts { gates: [1; 4], diverged: 1 };
-        let headline = "1 gate fails, 1 gate passes, 1 gate is outside its bound for a known reason, 1 \
-                        control fails as it must, 1 run diverged";
+        let one = Counts { gates: [1; 4], unexplained: 0, diverged: 1 };
+        let headline = "1 gate fails, 1 gate passes, 1 known limitation, 1 control fails as it must, 1 run \
+                        diverged";
         assert_eq!(one.headline(), headline);
     }
 }

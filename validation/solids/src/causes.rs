@@ -57,9 +57,9 @@ pub static TEARING: Cause = Cause::new(
 );
 
 /// Known in part alone.
-pub static SHARED_IMPULSE: Cause = Cause::new(
+pub static SHARED_IMPULSE: Cause = Cause::unexplained(
     "The two phases of contact share the impulse differently from finite elements; artificial viscosity \
-     explains a part, and the rest is unexplained.",
+     explains a part alone.",
     "This is not known: XSPH, softness in bending and softness of the contact do not explain it.",
 );
 

@@ -38,7 +38,11 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
     problem: "A pulse in an elastic bar; two bars collide",
     recommended: Recommended {
         variant: LAGRANGIAN,
-        because: "with 40 spacings its pulse is wrong by 0.01 % in time, the paper's by 7 %",
+        because: "with 40 spacings its pulse differs from the exact one by \
+                  20 %<!-- elastic_bar.lagrangian; n=40; pulse_rms -->, rms over that, the paper's by \
+                  44 %<!-- elastic_bar.seed; n=40; pulse_rms -->, and comes in time to \
+                  -0.010 %<!-- elastic_bar.lagrangian; n=40; travel_error -->, the paper's to \
+                  -7.0 %<!-- elastic_bar.seed; n=40; travel_error -->",
         papers: Some("seed"),
     },
     about: "Elastic bars along x are periodic in y, so they strain along x only and every wave runs at c_p \
@@ -55,6 +59,9 @@ base::metrics! {
         "t c_p/(0.4 L) - 1, t the time of sum m v x/sum m v from 0.3 L to 0.7 L";
     TRAVEL_LATTICE_ERROR = "travel_lattice_error" ["-"]
         "the same with the speed G1 c_p of long waves on the lattice, G1 = sum V F x^2";
+    PULSE_RMS = "pulse_rms" ["-"]
+        "(sum m (v - v_exact)^2/sum m v_exact^2)^(1/2) at the end, v_exact the pulse that ran at c_p, with \
+         what the free end has sent back";
     STRESS_ERROR = "stress_error" ["-"]
         "mean -sigma_xx of the particles within L/2 of the contact, when the left bar has come to rest, \
          over that of the jump conditions, less 1";
@@ -223,6 +230,18 @@ impl Motion {
         record.put_or(TRAVEL_LATTICE_ERROR, time.map(|time| time * factor - 1.0), lacks);
     }
 
+    /// How far the pulse is from the exact one, from masses, places and velocities along x at a time.
+    fn pulse_rms(&self, time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> f64 {
+        let s = &self.settings;
+        let run = s.wave() * time;
+        let exact = |x: f64| s.pulse(x - run) + s.pulse(2.0 * s.length - x - run);
+        let (wrong, all) = particles.fold((0.0, 0.0), |(wrong, all), (m, x, v)| {
+            let exact = exact(x);
+            (wrong + m * (v - exact).powi(2), all + m * exact * exact)
+        });
+        (wrong / all).sqrt()
+    }
+
     fn impact_metrics(&self, record: &mut Record) {
         let (s, speed) = (&self.settings, self.settings.speed());
         let Material { density, bulk, shear } = s.material();
@@ -254,7 +273,11 @@ impl Watch for Motion {
     fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
         match self.settings.collide {
             true => self.impact_metrics(record),
-            false => self.pulse_metrics(record),
+            false => {
+                self.pulse_metrics(record);
+                let all = simulation.fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
+                record.put(PULSE_RMS, self.pulse_rms(simulation.time(), all));
+            }
         }
         let after = Energy::of(simulation, &self.settings.material());
         let momentum = simulate::momentum(&simulation.particles()) - self.momentum;
@@ -347,7 +370,14 @@ fn pulse(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
                   waves of the pulse, for which omega dt is about 0.3, at most 1 %.";
     let (most, theory) = (if row.variant == LAGRANGIAN { 0.005 } else { 0.01 }, Evidence::Theory);
     let travel = gate(TRAVEL_ERROR, [-most, most], Evidence::Analytic, group);
+    let shape = "What this program computed before, with 5 % either way. Waves of some spacings are slow, so \
+                 that the pulse is followed by a wake, whose share falls from 52 over 20 to 5 % with 20, 40 \
+                 and 80 spacings.";
+    let before = gate(PULSE_RMS, [0.19, 0.21], Evidence::Regression, shape);
     match row.variant {
+        LAGRANGIAN if row.settings.n == 40 => {
+            vec![travel, before, gate(ENERGY_CHANGE, [-0.01, 0.01], theory, energy)]
+        }
         LAGRANGIAN => vec![travel, gate(ENERGY_CHANGE, [-0.01, 0.01], theory, energy)],
         "bare" => vec![travel, gate(TRAVEL_LATTICE_ERROR, [-1e-3, 1e-3], theory, lattice)],
         _ => vec![travel.with_limitation(Bound::Within(-0.0968, 0.01), ahead, &VISCOSITY)],
@@ -372,18 +402,24 @@ fn meeting(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
     let whole = |metric| {
         let gate = gate(metric, [1.0 - LATTICE, most], exact, jump);
         let (least, why, cause) = match (variant, s.gap > 0.0) {
-            (LAGRANGIAN, _) if s.speed > 0.05 => (0.95, steep, &DISPERSION),
+            (LAGRANGIAN, _) if s.speed > 0.05 => {
+                return gate.with_limitation(Bound::Within(0.95, most), steep, &DISPERSION);
+            }
             (LAGRANGIAN, _) => return gate,
             ("bare", true) => (0.79, SOFT, &SOFT_CONTACT),
             ("bare", false) => (0.92, welded, &ONE_LATTICE),
             (_, true) => (0.28, SOFT, &SOFT_CONTACT),
             (_, false) => (0.85, welded, &ONE_LATTICE),
         };
-        gate.with_limitation(Bound::Within(least, most), why, cause)
+        gate.with_limitation(Bound::Within(least, most), why, cause).fitted()
     };
     let mut gates = vec![match (is_soft, variant) {
-        (true, _) => stress.with_limitation(Bound::Within(-0.42, 0.13), SOFT, &SOFT_CONTACT),
-        (_, LAGRANGIAN) => stress.with_limitation(Bound::Within(-0.06, 0.06), swings, &DISPERSION),
+        (true, _) => {
+            stress.with_limitation(Bound::Within(-0.42, 0.13), SOFT, &SOFT_CONTACT).fitted()
+        }
+        (_, LAGRANGIAN) => {
+            stress.with_limitation(Bound::Within(-0.06, 0.06), swings, &DISPERSION).fitted()
+        }
         _ => stress,
     }];
     if !is_soft {
@@ -401,13 +437,14 @@ fn declaration(tier: Tier) -> Declaration {
     let level = |s: &BarSettings| (1.0 / s.n as f64, format!("n = {}", s.n));
     let ladder = |variant| table.ladder(&[For::Pulse, For::Order], variant, level);
     let accuracy = Accuracy {
-        about: "A pulse of a standard deviation of L/16 runs through a bar. Its time from 0.3 L to 0.7 L is \
-                compared with that of long waves on the lattice."
-            .into(),
+        about:
+            "A pulse of a standard deviation of L/16 runs through a bar by 0.6 L. The error is its \
+                distance from the exact pulse; that of its time of travel changes its sign."
+                .into(),
         spacing: "dx/L [-]",
         slope: Some(1.0),
         ladders: ["seed", "bare"].map(ladder).into(),
-        ..Accuracy::new("elastic-bar", TRAVEL_LATTICE_ERROR, "error of the time of travel [-]")
+        ..Accuracy::new("elastic-bar", PULSE_RMS, "rms distance from the exact pulse [-]")
     };
     Declaration { accuracy: vec![accuracy], stepwise: STEPWISE, ..Declaration::default() }
 }
@@ -468,6 +505,30 @@ mod tests {
         motion(&s, (0..100).map(row).collect(), None).pulse_metrics(&mut record);
         close(&record, TRAVEL_ERROR, 1.0 / 0.97 - 1.0);
         close(&record, TRAVEL_LATTICE_ERROR, 1.006_724_5 / 0.97 - 1.0);
+    }
+
+    /// Velocities of the exact pulse but for 3 % of them, and of a bar at rest.
+    #[test]
+    fn the_distance_from_the_exact_pulse_is_that_of_made_up_velocities() {
+        let s = BarSettings::default();
+        let motion = motion(&s, Vec::new(), None);
+        let time = 0.5 * s.length / s.wave();
+        let of = |factor: f64| {
+            let place = move |k: i32| (0.01 * f64::from(k) + 0.005) * 0.1;
+            // The peak has run from 0.25 to 0.75 L; what has come back is below 1e-6 of it.
+            let v = move |x: f64| {
+                let z = (x / 0.1 - 0.75) / 0.0625;
+                let back = (1.25 - x / 0.1) / 0.0625;
+                1e-4 * (exp(-0.5 * z * z) + exp(-0.5 * back * back))
+            };
+            (0..100).map(move |k| (2.0, place(k), factor * v(place(k))))
+        };
+        let scaled = |factor: f64| {
+            let all = of(factor).map(|(m, x, v)| (m, x, v * s.wave()));
+            motion.pulse_rms(time, all.collect::<Vec<_>>().into_iter())
+        };
+        assert_relative_eq!(scaled(1.03), 0.03, max_relative = 1e-9);
+        assert_relative_eq!(scaled(0.0), 1.0, max_relative = 1e-9);
     }
 
     /// Velocities that are exchanged linearly in 1.05 times 2 L/U, but for 4 %.

@@ -276,7 +276,7 @@ fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
     if is_braked {
         let first = -if variant == "bare" { 0.08 } else { 0.53 } / s.n as f64;
         gates.extend([
-            tenth.with_limitation(Bound::Within(first, 0.001), BRAKED, &FREE_FACES),
+            tenth.with_limitation(Bound::Within(first, 0.001), BRAKED, &FREE_FACES).fitted(),
             drift.with_limitation(Bound::Below(2.1), REVERSED, &FREE_FACES),
             stress.with_limitation(Bound::Below(9.6), ALL_SHEAR, &FREE_FACES),
         ]);

@@ -461,7 +461,11 @@ pub struct Explain {
 const VERDICTS: [Named<Verdict>; 4] = [
     ("pass", Verdict::Pass, "Inside its bound"),
     ("fail", Verdict::Fail, "Outside its bounds, no number, or of a run that ended early"),
-    ("limitation", Verdict::Limitation, "Outside its bound for a known reason"),
+    (
+        "limitation",
+        Verdict::Limitation,
+        "Outside its bound, inside the wider one of a known limitation",
+    ),
     ("expected-failure", Verdict::ExpectedFailure, "A control outside its bound, as it must be"),
 ];
 

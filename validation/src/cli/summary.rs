@@ -9,8 +9,8 @@ use base::{
 };
 use harness::{
     case::{self, Case, Tier},
-    declare::Declaration,
-    runs::Judged,
+    declare::{Breaks, Declaration},
+    runs::{Judged, counts},
     studies::{cost_in_words, headline},
     suite::{CaseResults, JudgedOf, Suite},
 };
@@ -43,7 +43,8 @@ pub fn summary(suite: &Suite) -> String {
     let counts = suite.counts();
     let limited = counts.count(Verdict::Limitation);
     if limited > 0 {
-        let limited = Counts::of(std::iter::repeat_n(Verdict::Limitation, limited));
+        let of_all = Counts::of(std::iter::repeat_n(Verdict::Limitation, limited));
+        let limited = Counts { unexplained: counts.unexplained, ..of_all };
         text += &format!(
             "\n{}; `touchstone explain --status limitation` lists what limits them, by cause.\n",
             limited.headline()
@@ -105,10 +106,14 @@ fn failures(suite: &Suite) -> String {
 /// The lines after the tables of a run.
 pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Judged]) -> String {
     let declared = case.declaration(Tier::Quick);
-    let (error, metric) = error_of(&declared, record, verdicts);
-    let counts = Counts::of(verdicts.iter().map(|judged| judged.judgement.verdict));
+    let (error, metric) = error_of(&declared, record);
+    let counts = counts(verdicts);
+    let card = declared.card.as_ref();
+    let beside = card.and_then(|card| card.beside).and_then(|beside| beside(record));
     let lines = [
         ("error", error),
+        ("also", beside.unwrap_or_default()),
+        ("breaks", broken(&declared, record).unwrap_or_default()),
         ("bound", bound(verdicts, &metric)),
         ("gates", counts.headline()),
         ("cost", cost_in_words(record)),
@@ -118,29 +123,50 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
     told.map(|(head, words)| output::hanging(head, 7, words)).collect()
 }
 
-/// The error that the card of the case shows, if the run has it, and otherwise the first number that is
-/// judged; and the name of its metric.
-fn error_of(declared: &Declaration, record: &Record, verdicts: &[Judged]) -> (String, String) {
-    if let Some(card) = &declared.card
-        && let Ok(error) = headline(card, record)
-    {
-        let words = format!("{error}, {}, against {}", card.error, card.against);
-        return (words, card.metric.name.clone());
-    }
-    let first = verdicts.iter().find(|judged| judged.judgement.value.is_some());
-    let found = first.and_then(|judged| record.metrics.get_key_value(&judged.gate.metric));
-    found.map_or_else(Default::default, |(name, metric)| {
-        let value = report::sig(metric.value, 4);
-        (format!("{name} = {value} [{}], {}", metric.unit, metric.formula), name.clone())
-    })
+/// The error of the case, which is that of its card or of its first ladder, in words; and the name of its
+/// metric.
+fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
+    let ladder = declared.accuracy.first().map(|accuracy| &accuracy.error);
+    let Some(metric) = declared.card.as_ref().map(|card| &card.metric).or(ladder) else {
+        return Default::default();
+    };
+    let measured = record.metrics.get(&metric.name);
+    let words = match (&declared.card, measured) {
+        (_, None) => {
+            let reason = record.absent.get(&metric.name).map(String::as_str);
+            let reason =
+                reason.unwrap_or("no reference has these settings, or the run ended early");
+            format!("{} was not measured: {reason}", metric.name)
+        }
+        (Some(card), Some(found)) => {
+            let stated = (card.stated)(&record.settings);
+            format!("{}, {}", stated.number(found.value), stated.in_words())
+        }
+        (None, Some(found)) => {
+            let value = report::sig(found.value, 4);
+            format!("{} = {value} [{}], {}", metric.name, found.unit, found.formula)
+        }
+    };
+    (words, metric.name.clone())
 }
 
-/// The bound of that metric, with the verdict.
+/// The setting at which the run broke, if it did.
+fn broken(declared: &Declaration, record: &Record) -> Option<String> {
+    let breaks = &declared.card.as_ref()?.breaks;
+    let Breaks { setting, words: [before, after], has_broken, sign } = breaks;
+    has_broken(record).filter(|broken| *broken)?;
+    let value = report::exact(record.settings[*setting].as_f64()?);
+    Some(format!("at {before}{value}{after}: {sign}"))
+}
+
+/// The bound of that metric, with the verdict; of another one if this one has none.
 fn bound(verdicts: &[Judged], metric: &str) -> String {
     let of_metric = verdicts.iter().filter(|judged| judged.gate.metric == metric);
     let Some(Judged { gate, judgement, .. }) = worst(of_metric) else {
-        return "none: no plan has a gate on this number for this variant with these settings"
-            .into();
+        let none = "none: no plan has a gate on this number for this variant with these settings";
+        let other =
+            worst(verdicts.iter()).map(|of| format!("; nearest to its bound is {}", of.gate.id));
+        return format!("{none}{}", other.unwrap_or_default());
     };
     let margin = judgement.margin.map(|m| format!(", {} of it left", report::percent(m, 2)));
     let (verdict, margin) = (judgement.verdict, margin.unwrap_or_default());

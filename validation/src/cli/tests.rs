@@ -19,7 +19,7 @@ use clap::Parser;
 use harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
-    declare::{Card, Declaration},
+    declare::{Breaks, Card, Declaration, Stated},
     make::{self, Made, Making},
     runs::{Judged, Runs},
     store::Store,
@@ -117,13 +117,22 @@ impl Case for Staged {
         let run = || case::spec(self, "right", &["re=1".to_string()]).expect("staged settings");
         let card = || Card {
             title: "Main",
-            picture: ("none", 0),
-            error: "made up".into(),
+            picture: "none",
             metric: ERROR.into(),
+            stated: |_| Stated {
+                name: "made up".into(),
+                against: "nothing",
+                uncertainty: None,
+                unit: "",
+            },
+            beside: None,
             runs: vec![run()],
-            against: "nothing",
-            uncertainty: None,
-            reach: ("re", "", ""),
+            breaks: Breaks {
+                setting: "re",
+                words: ["", ""],
+                has_broken: |_| Some(false),
+                sign: "",
+            },
         };
         let (name, card) = (self.name, (self.name == "main").then(card));
         let studies = move |runs: &Runs| {
@@ -651,6 +660,69 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
     has(&end(vec![of(metric, 0.0246)]), &["error  1.2 %", "at most 0.0246: pass, 50", finer]);
     has(&end(vec![of(metric, 0.01)]), &["fail", "next   touchstone explain couette.staged"]);
     has(&end(Vec::new()), &["bound  none", "next   touchstone verify couette"]);
+}
+
+/// `run periodic_hill`, at Re 50, ended with "at Re 10", and a dam break in the tank of Lobovsky et al. with
+/// "Martin & Moyce": both were the words of the runs on the card.
+#[test]
+fn a_run_states_the_error_by_its_own_settings() {
+    let tank = ["width=0.6", "height=0.3", "tank=1.61", "rim=2", "end=6"];
+    let runs: [(&str, &[&str], &[&str], &[&str]); 5] = [
+        ("periodic_hill", &["re=50"], &["Re 50"], &["Re 10"]),
+        ("poiseuille", &["re=5", "rows=10"], &["Re 5,", "10 rows"], &["Re 0.5"]),
+        ("rubber_rings", &["speed=0.03"], &["0.03 c0"], &["0.059"]),
+        ("dam_break", &tank, &["Lobovsky", "0.012\u{a0}H"], &["Martin"]),
+        ("dam_break", &["n=10"], &["Martin", "a/dx = 10", "0.012\u{a0}a"], &["Lobovsky"]),
+    ];
+    for (name, set, says, not) in runs {
+        let case = cases::find(name).expect("a case");
+        let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
+        let spec = case::spec(case, case.recommended().variant, &set).expect("settings");
+        let card = case.declaration(Tier::Quick).card.expect("a card");
+        let mut record = Record::new(name, &spec.variant, spec.settings.clone(), 1);
+        record.put(card.metric, 0.0123);
+        let text = super::summary::outcome(case, &spec, &record, &[]);
+        let text = text.split("next ").next().unwrap_or_default().replace('\n', " ");
+        let text = text.split_whitespace().collect::<Vec<_>>().join(" ").replace(" H", "\u{a0}H");
+        says.iter().for_each(|words| {
+            let words = words.replace('\u{a0}', " ");
+            assert!(text.replace('\u{a0}', " ").contains(&words), "{name}: {words}: {text}");
+        });
+        not.iter().for_each(|words| assert!(!text.contains(words), "{name}: {words}: {text}"));
+    }
+}
+
+/// The headline of the dam break was the distance after a fitted shift of the clock, which hardly depends on
+/// the method: both distances are told, with the uncertainty of the experiment.
+#[test]
+fn a_dam_break_states_both_distances_from_its_experiment() {
+    let case = cases::find("dam_break").expect("a case");
+    let spec = case::spec(case, "modern", &[]).expect("settings");
+    let mut record = Record::new("dam_break", "modern", spec.settings.clone(), 1);
+    let put = [("front_away@2", -0.0576), ("front_rms", 0.2815), ("front_rms_shifted", 0.037)];
+    for (name, value) in put.into_iter().chain([("front_shift", 0.2225)]) {
+        record.put(MetricKey::new(name, "-", "made up"), value);
+    }
+    let text = super::summary::outcome(case, &spec, &record, &[]).replace(['\u{a0}', '\n'], " ");
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for words in
+        ["error −0.058 a, front at T = 2", "(± 0.10 a)", "0.28 a as released", "0.037 a after"]
+    {
+        assert!(text.contains(words), "{words}: {text}");
+    }
+    assert!(!text.contains("3.7 %"), "{text}");
+}
+
+/// Pictures on cards were of another variant, Reynolds number or tank than the number below them.
+#[test]
+fn the_picture_of_a_card_is_of_the_run_that_it_states() {
+    for (case, tier) in
+        cases::CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)])
+    {
+        let declared = case.declaration(tier);
+        let Some(card) = &declared.card else { continue };
+        assert!(declared.pictured(card).is_some(), "{} in {tier:?}: {}", case.name(), card.picture);
+    }
 }
 
 /// Every case with a ladder of resolutions has a finer run, whichever setting is its resolution.

@@ -57,7 +57,8 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
     problem: "Water at rest over a wedge in a tank",
     recommended: Recommended {
         variant: "modern",
-        because: "it has the smallest error of the pressure at both corners",
+        because: "it has the smallest error of the pressure at both corners, and with 14 spacings its \
+                  pressure is wrong by 0.60 %<!-- still_wedge.modern; n=14; p_l2 --> of that at the depth H",
         papers: Some("seed"),
     },
     about: "Water rests in a tank over a wedge of 45 degrees, whose apex is half way to the surface. Its \
@@ -274,7 +275,7 @@ fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
     }
     let why = "The pressure is too low, by a share that does not fall with the spacing: the bound is one and \
                a half times the largest of five spacings.";
-    vec![base.with_limitation(Bound::Within(-0.53, 0.5 * dx), why, &UNWEIGHED), outside]
+    vec![base.with_limitation(Bound::Within(-0.53, 0.5 * dx), why, &UNWEIGHED).fitted(), outside]
 }
 
 /// Water at rest is exact at any spacing.
@@ -297,7 +298,7 @@ fn declaration(tier: Tier) -> Declaration {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders: ["seed", "modern"].map(ladder).into(),
-        ..Accuracy::new("still-wedge", P_BASE, "error of the pressure at the base [ρ g H]")
+        ..Accuracy::new("still-wedge", P_L2, "error of the pressure, rms [ρ g H]")
     };
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});

@@ -77,20 +77,34 @@ fn comparisons(flow: Flow, accuracy: &Accuracy) -> Vec<Comparison> {
 
 /// What the report says first of the flow.
 fn card(flow: Flow, accuracy: &Accuracy) -> Card {
-    let tau = flow.compared_at();
     let (title, picture) = match flow {
-        Flow::Couette => ("Couette flow, Re 0.5", "couette-profiles"),
-        Flow::Poiseuille => ("Poiseuille flow, Re 0.5", "poiseuille-profiles"),
+        Flow::Couette => ("Couette flow", "couette-profiles"),
+        Flow::Poiseuille => ("Poiseuille flow", "poiseuille-profiles"),
     };
     Card {
         title,
-        picture: (picture, 0),
-        error: format!("velocity at νt/L² = {tau}, relative L2 norm"),
-        metric: L2.at(tau),
+        picture,
+        metric: L2_WORST.into(),
+        stated: |settings| Stated {
+            name: {
+                let [re, rows, end] =
+                    ["re", "rows", "end"].map(|name| Stated::setting(settings, name));
+                format!(
+                    "velocity at Re {re}, {rows} rows, largest relative rms from νt/L² = 0.1 to {end}"
+                )
+            },
+            against: "the exact series",
+            uncertainty: None,
+            unit: "",
+        },
+        beside: None,
         runs: accuracy.finest(&[flow.case().recommended.variant, "seed"]),
-        against: "the exact series",
-        uncertainty: None,
-        reach: ("re", "Re", ""),
+        breaks: Breaks {
+            setting: "re",
+            words: ["Re ", ""],
+            has_broken: maps::has_broken,
+            sign: "the velocity is wrong by more than 5 %",
+        },
     }
 }
 

@@ -147,6 +147,12 @@ fn failed(ends: &[f64]) -> usize {
     ends.iter().filter(|end| **end > 0.05).count()
 }
 
+/// Whether a run at the resolution of the map failed.
+pub fn has_broken(record: &Record) -> Option<bool> {
+    let is_coarse = record.settings["rows"].as_u64().is_some_and(|rows| rows < 20);
+    (!is_coarse).then(|| failed(&ends(&[record])) > 0)
+}
+
 /// Whether more than half failed; a setting that is refused from every start fails too.
 fn mostly_fails(ends: &[f64]) -> bool {
     ends.is_empty() || 2 * failed(ends) > ends.len()

@@ -70,8 +70,9 @@ pub static CASE: Composed<VortexSettings> = Composed {
     problem: "Periodic vortices decay by viscosity",
     recommended: Recommended {
         variant: RECOMMENDED,
-        because: "with 50 x 50 particles its velocity is wrong by 0.2 %, that of `modern` by 71 %: its \
-                  sums are exact for linear fields",
+        because: "from a lattice of 32 x 32 particles its velocity is wrong by \
+                  0.68 %<!-- taylor_green.consistent; n=32 perturb=0; l2 -->, that of `modern` by \
+                  74 %<!-- taylor_green.modern; n=32 perturb=0; l2 -->: its sums are exact for linear fields",
         papers: None,
     },
     about: "A periodic array of vortices decays by viscosity without changing its shape: an exact solution \
@@ -118,6 +119,7 @@ fn table(tier: Tier) -> Table {
     table.over(For::Ladder, &LADDER[..2], [&[12, 17, 24], &[25, 35, 50]], disturbed);
     table.over(For::Ladder, &[RECOMMENDED], [&[12, 17, 24, 50], &[25, 50, 100]], disturbed);
     table.over(For::Lattice, &[RECOMMENDED], [&[32], &[25, 50, 100]], start(0.0));
+    table.over(For::Lattice, &["modern"], [&[32]; 2], start(0.0));
     table.over(For::Control, &["plain"], [&[32], &[50]], disturbed);
     table.keep_particles(|row| match row.group {
         For::Control => true,
@@ -141,10 +143,25 @@ fn gates(row: &Row) -> Vec<Gate> {
             vec![conserved, control.expected_to_fail()]
         }
         _ if variant == RECOMMENDED => of_best(&run, n),
+        For::Lattice if variant == "modern" => {
+            let because = "The goal of the recommended variant from the same start.";
+            let error =
+                CASE.gate(&run, L2, Bound::Below(most_error(n)), Evidence::Analytic, because);
+            vec![conserved, error.with_limitation(Bound::Below(1.0), MUFFLED, &NOISE)]
+        }
         _ if variant == "modern" => vec![conserved],
         _ => Vec::new(),
     }
 }
+
+/// Why the vortices of `modern` die too soon.
+static NOISE: Cause = Cause::new(
+    "Sums over pairs of particles that the vortices have mixed are noisy, and the noise takes the energy of \
+     the flow as viscosity does.",
+    "Sums that are exact for linear fields, as in `consistent`.",
+);
+const MUFFLED: &str = "Noise takes energy and gives none. The bound: 1 is the error of a fluid that has come \
+    to rest.";
 
 /// The gates of the recommended variant.
 fn of_best(run: &str, n: usize) -> Vec<Gate> {
@@ -266,8 +283,8 @@ fn error(record: &Record) -> Vec<(f64, f64)> {
 /// Particles at the end, by their error.
 fn picture(table: &Table) -> Picture {
     let caption = "Particles of Taylor-Green vortices at t = 2 L/U, Re 100, from the disturbed lattice, for \
-                   variant `plain`, without stabilisers, and the recommended one, coloured by the logarithm of \
-                   the error of the velocity over the largest exact speed, where −2 is 1 %.";
+                   variant `plain`, without stabilisers, and the recommended one, coloured by the logarithm \
+                   of the error of the velocity over the largest exact speed, where −2 is 1 %.";
     let texts = ["taylor-green-pictures", "Pictures", caption];
     let colours = ("log₁₀(error/largest exact speed)", ColourMap::Sequential);
     let picture = table.picture(texts, colours, [300.0, 270.0], |row| {

@@ -4,12 +4,15 @@ use base::{
     record::{Record, Status},
     spec::RunSpec,
 };
-use report::{Block, Card, Counts, Figure, exact, percent, plain, sci, seconds, sig};
+use report::{Block, Card, Figure, exact, plain, sci, seconds, sig};
 
-use super::{limit, validation};
+use super::{
+    limit,
+    validation::{self, Found},
+};
 use crate::{
-    declare::{self, Declaration},
-    runs::{Judged, Runs, by_cause},
+    declare::{self, Breaks, Comparison, Declaration},
+    runs::{Judged, Runs, by_cause, counts},
     study::Study,
 };
 
@@ -18,49 +21,59 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     let card = declared.card.as_ref()?;
     let of_runs = runs.all.iter().flat_map(|run| &run.judged);
     let judged: Vec<&Judged> = of_runs.chain(studies.iter().flat_map(|s| &s.judged)).collect();
-    let mut facts = vec![("Error:".to_string(), error(card))];
-    for (name, spec) in ["Best, ", "Paper's, "].into_iter().zip(&card.runs) {
-        facts.push((format!("{name}`{}`:", spec.variant), result(card, runs.record(spec))));
+    let stated = |spec: &RunSpec| (card.stated)(&spec.settings).in_words();
+    let mut facts: Vec<(String, String)> =
+        card.runs.first().map(|spec| ("Error:".to_string(), stated(spec))).into_iter().collect();
+    for (name, spec) in ["Recommended, ", "Paper's, "].into_iter().zip(&card.runs) {
+        facts.push((format!("{name}`{}`:", spec.variant), result(card, declared, spec, runs)));
+    }
+    for record in card.runs.iter().filter_map(|spec| runs.record(spec)) {
+        let words = card.beside.and_then(|beside| beside(record));
+        facts.extend(words.map(|words| (format!("`{}`:", record.variant), words)));
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
     let compared = validation::line(&declared.comparisons, runs);
     facts.extend(compared.map(|text| ("Comparisons with references:".into(), text)));
-    facts.extend(reach(card, runs).map(|text| ("Completed for".into(), text)));
+    facts.extend(breaks(card, runs).map(|text| ("Breaks".into(), text)));
     // The two causes that most gates share.
     let causes = by_cause(judged.iter().copied(), |judged| judged).into_iter().take(2);
     Some(Card {
         id: case.into(),
         title: card.title.into(),
-        picture: picture(card.picture, studies),
+        picture: picture(card, declared, studies),
         facts,
-        counts: Counts::of(judged.iter().map(|judged| judged.judgement.verdict)),
+        counts: counts(judged.iter().copied()),
         limitations: causes.map(|(cause, _)| cause.what.to_string()).collect(),
     })
 }
 
-/// The name of the error, and what it is compared with.
-fn error(card: &declare::Card) -> String {
-    let uncertainty = card.uncertainty.map(|u| format!(" (± {})", percent(u, 2)));
-    format!("{}, against {}{}", card.error, card.against, uncertainty.unwrap_or_default())
+/// The error of a run, with its uncertainty if the case declares the comparison, and what it cost.
+fn result(card: &declare::Card, declared: &Declaration, spec: &RunSpec, runs: &Runs) -> String {
+    let Some(record) = runs.record(spec) else { return "not run".into() };
+    let error = match headline(card, record) {
+        Ok(error) => error,
+        Err(status) => return plain(&status),
+    };
+    let is_this = |of: &&Comparison| {
+        let finest = of.levels.last().map(|level| level.run.spec.key());
+        of.reference > 0.0 && of.metric == card.metric && finest == Some(spec.key())
+    };
+    let compared = declared.comparisons.iter().find(is_this);
+    let uncertainty = compared.map(|of| Found::of(of, runs).uncertainty());
+    let number = |value| format!(" ± {}", (card.stated)(&record.settings).number(value));
+    let uncertainty = uncertainty.filter(|u| u.is_finite()).map(number).unwrap_or_default();
+    format!("**{error}**{uncertainty} in {}", cost(record))
 }
 
-/// The error of a run and what it cost.
-fn result(card: &declare::Card, record: Option<&Record>) -> String {
-    let Some(record) = record else { return "not run".into() };
-    match headline(card, record) {
-        Ok(error) => format!("**{error}** in {}", cost(record)),
-        Err(status) => plain(&status),
-    }
-}
-
-/// The error of a run in per cent.
+/// The error of a run in its unit.
 ///
 /// # Errors
 /// How the run ended, if the error was not measured.
 pub fn headline(card: &declare::Card, record: &Record) -> Result<String, String> {
     let value = record.value(card.metric.clone());
-    value.map(|value| percent(value, 2)).ok_or_else(|| record.status.to_string())
+    let stated = (card.stated)(&record.settings);
+    value.map(|value| stated.number(value)).ok_or_else(|| record.status.to_string())
 }
 
 /// The cost of a run in words.
@@ -86,18 +99,41 @@ fn stable(declared: &Declaration, specs: &[RunSpec], runs: &Runs) -> Option<Stri
     (!found.is_empty()).then(|| found.join(", "))
 }
 
-/// The smallest and the largest value of a setting with which a run reached its end.
-fn reach(card: &declare::Card, runs: &Runs) -> Option<String> {
-    let (setting, name, unit) = card.reach;
-    let completed = |record: &&Record| record.status == Status::Completed;
-    let of = |record: &Record| record.settings[setting].as_f64();
-    let values: Vec<f64> = runs.simulations().filter(completed).filter_map(of).collect();
-    let [low, high] = [f64::min, f64::max].map(|pick| values.iter().copied().reduce(pick));
-    Some(format!("{name} {} to {}{unit}", exact(low?), exact(high?)))
+/// For the variant of each run of the card the smallest value of a setting at which a run broke, or the range
+/// of values at which none did.
+fn breaks(card: &declare::Card, runs: &Runs) -> Option<String> {
+    let Breaks { setting, words: [before, after], has_broken, sign } = card.breaks;
+    let of = |spec: &RunSpec| {
+        let own = runs.simulations().filter(|record| {
+            record.variant == spec.variant && record.mutation.is_none() && record.disorder.is_none()
+        });
+        let answers = own.filter_map(|record| {
+            let is_refused = matches!(record.status, Status::Refused { .. });
+            let has_broken = has_broken(record).filter(|_| !is_refused)?;
+            let broken = has_broken || record.status != Status::Completed;
+            Some((record.settings[setting].as_f64()?, broken))
+        });
+        let answers: Vec<(f64, bool)> = answers.collect();
+        let broken = answers.iter().filter(|(_, broken)| *broken).map(|(value, _)| *value);
+        let least = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
+        let text = match least(&mut broken.into_iter()) {
+            Some(value) => format!("at {before}{}{after} ({sign}, or it diverges)", exact(value)),
+            None => {
+                let low = least(&mut answers.iter().map(|(value, _)| *value))?;
+                let high = answers.iter().map(|(value, _)| *value).fold(low, f64::max);
+                let [low, high] = [low, high].map(exact);
+                format!("in no run at {before}{low} to {high}{after}")
+            }
+        };
+        Some(format!("`{}` {text}", spec.variant))
+    };
+    let found: Vec<String> = card.runs.iter().filter_map(of).collect();
+    (!found.is_empty()).then(|| found.join("; "))
 }
 
-/// One panel of a figure of the studies, as small as a card is.
-fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
+/// The panel that shows the run of the card, as small as a card is.
+fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> Option<Figure> {
+    let (id, panel) = (card.picture, declared.pictured(card)?);
     let figures = studies.iter().flat_map(|study| &study.blocks).filter_map(|block| match block {
         Block::Figure(figure) => Some(figure),
         _ => None,
@@ -106,4 +142,63 @@ fn picture((id, panel): (&str, usize), studies: &[Study]) -> Option<Figure> {
     let plot = figure.panels.get(panel)?.clone().without_legend();
     let small = Figure::new(format!("{id}-small"), figure.caption.clone()).panel(plot);
     Some(small.panel_size(150.0, 90.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        declare::Stated,
+        studies::tests::{ERROR, run, spec},
+    };
+
+    fn made_up() -> declare::Card {
+        declare::Card {
+            title: "Made up",
+            picture: "none",
+            metric: ERROR.into(),
+            stated: |settings| Stated {
+                name: format!("distance at n = {}", settings["n"]),
+                against: "nothing",
+                uncertainty: Some(0.5),
+                unit: "a",
+            },
+            beside: None,
+            runs: vec![spec("good", 1), spec("bad", 1)],
+            breaks: Breaks {
+                setting: "n",
+                words: ["n = ", ""],
+                has_broken: |record| Some(record.value(ERROR)? > 1.0),
+                sign: "it is torn",
+            },
+        }
+    }
+
+    /// The card said "completed for" the value of a torn run, and of a variant that diverged in another run.
+    #[test]
+    fn a_variant_breaks_at_its_least_value_that_is_torn_or_diverges() {
+        let of = |variant: &str, n, error: f64| run(spec(variant, n), |r| r.put(ERROR, error));
+        let mut diverged = of("bad", 4, 0.1);
+        let (field, value_text) = ("density".into(), "NaN".into());
+        diverged.record.status =
+            Status::Diverged { step: 1, time: 0.1, particle: 0, field, value_text };
+        let good = [of("good", 2, 0.5), of("good", 7, 0.9)];
+        let all = |more: Vec<_>| Runs::new(good.iter().cloned().chain(more).collect());
+        let whole = "`good` in no run at n = 2 to 7";
+        let torn = all(vec![of("bad", 1, 0.5), of("bad", 5, 2.0), of("bad", 6, 0.5)]);
+        let at = |n: usize| format!("{whole}; `bad` at n = {n} (it is torn, or it diverges)");
+        assert_eq!(breaks(&made_up(), &torn), Some(at(5)));
+        let both = all(vec![of("bad", 5, 2.0), diverged]);
+        assert_eq!(breaks(&made_up(), &both), Some(at(4)));
+        assert_eq!(breaks(&made_up(), &all(Vec::new())), Some(whole.into()));
+    }
+
+    /// An error has the unit and the words of the run that has it.
+    #[test]
+    fn an_error_is_stated_with_the_settings_of_its_run() {
+        let judged = run(spec("good", 3), |r| r.put(ERROR, -0.0576));
+        assert_eq!(headline(&made_up(), &judged.record), Ok("−0.058\u{a0}a".into()));
+        let stated = (made_up().stated)(&judged.record.settings).in_words();
+        assert_eq!(stated, "distance at n = 3, against nothing (± 0.50\u{a0}a)");
+    }
 }

@@ -101,7 +101,7 @@ fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
     let least = (1.0 - 0.053 * (row.settings.material().sound_speed() / usual)).max(0.0);
     let known = "The rubber swings 5.3 % less far. Artificial viscosity is in proportion to c0, so that it \
                  may lose as many times more as sound is faster, at most all.";
-    gate.with_limitation(Bound::Within(least, 1.02), known, &VISCOSITY)
+    gate.with_limitation(Bound::Within(least, 1.02), known, &VISCOSITY).fitted()
 }
 
 /// Of a swing by the equations of the paper.
@@ -118,7 +118,7 @@ fn energy(row: &Row<PlateSettings, For>) -> Gate {
         (_, 20..) => {
             gate.with_limitation(Bound::Within(-0.01, 0.5 * 0.3 / 0.7), gains, &STRESS_ADDS_ENERGY)
         }
-        _ => gate.with_limitation(Bound::Within(-0.086, 0.01), loses, &VISCOSITY),
+        _ => gate.with_limitation(Bound::Within(-0.086, 0.01), loses, &VISCOSITY).fitted(),
     }
 }
 

@@ -113,8 +113,9 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     problem: "Two rubber rings collide and bounce",
     recommended: Recommended {
         variant: LAGRANGIAN,
-        because: "with ten layers its centre, width and height over time are 0.6 % of the diameter away \
-                  from finite elements, those of `leapfrog` 8.8 %; with twenty 0.14 %, those of `seed` 5.9 %",
+        because: "with five layers its centre, width and height over time are \
+                  1.0 %<!-- rubber_rings.lagrangian; spacing=0.2; histories --> of the diameter away from \
+                  finite elements, those of `seed` 14 %<!-- rubber_rings.seed; spacing=0.2; histories -->",
         papers: Some("seed"),
     },
     about: "Two rubber rings, inner radius 3, outer radius 4, fly at each other at 0.059 of the bulk sound \

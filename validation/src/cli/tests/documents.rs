@@ -2,16 +2,23 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+use std::sync::{LazyLock, atomic::AtomicBool};
 
+use base::{record::Status, spec::RunSpec};
 use clap::{Parser, error::ErrorKind};
 use harness::{
-    case::{self, Case, Tier},
+    case::{self, Case, Planned, Tier},
+    make::{self, Job, Making},
     plan,
+    runner::Context,
 };
+use rayon::prelude::*;
 use validation::cases;
 
-use super::super::arguments::{Arguments, Command};
+use super::super::{
+    World,
+    arguments::{Arguments, Command},
+};
 
 /// What stands for `touchstone` before it is installed.
 const FROM_SOURCES: &str = "cargo run --release -- ";
@@ -27,19 +34,27 @@ fn documents() -> Vec<PathBuf> {
 
 /// Lines of blocks of code, and what is in backquotes, that call the program: without comment and pipe.
 fn commands(text: &str) -> Vec<String> {
+    commented(text).into_iter().map(|(line, _)| line).collect()
+}
+
+/// The same, each with its comment.
+fn commented(text: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (index, part) in text.split("```").enumerate() {
         let pieces: Vec<&str> = match index % 2 {
             0 => part.split('`').skip(1).step_by(2).collect(),
             _ => part.lines().collect(),
         };
-        let lines = pieces.iter().map(|piece| piece.split(['#', '>', '|']).next().unwrap_or(""));
-        let called = lines.filter_map(|line| {
+        let lines = pieces.iter().map(|piece| {
+            let comment = piece.split_once('#').map_or("", |(_, comment)| comment);
+            (piece.split(['#', '>', '|']).next().unwrap_or(""), comment.to_string())
+        });
+        let called = lines.filter_map(|(line, comment)| {
             let line = line
                 .strip_prefix(FROM_SOURCES)
                 .map(|rest| format!("touchstone {rest}"))
                 .unwrap_or_else(|| line.to_string());
-            line.starts_with("touchstone ").then(|| line.trim().to_string())
+            line.starts_with("touchstone ").then(|| (line.trim().to_string(), comment))
         });
         found.extend(called);
     }
@@ -123,10 +138,99 @@ fn commands_in_documents_are_valid() {
     assert!(wrong.is_empty(), "a command in a document is valid:\n  {}", wrong.join("\n  "));
 }
 
+/// Processor time of a run that a test of documents can make \[s\].
+const SHORT: f64 = 2.0;
+
+/// The run of a case that a command makes, if it makes one.
+fn run_of(line: &str) -> Option<RunSpec> {
+    let arguments = Arguments::try_parse_from(line.split_whitespace()).ok()?;
+    let Command::Run(run) = arguments.command else { return None };
+    let case = cases::find(&run.case.filter(|name| !is_placeholder(name))?).ok()?;
+    let variant = run.variant.unwrap_or_else(|| case.recommended().variant.to_string());
+    let set: Vec<String> =
+        run.set.into_iter().chain(run.rows.map(|rows| format!("rows={rows}"))).collect();
+    let spec = case::spec(case, &variant, &set).ok()?;
+    Some(if run.allow_unstable { spec.allow_unstable() } else { spec })
+}
+
+/// `limits.md` said that a run diverges which completed. A comment says so of those that diverge, and all
+/// others complete; long ones are left out.
+#[test]
+fn short_runs_in_documents_end_as_documents_say() {
+    let texts = documents().into_iter().map(|path| fs::read_to_string(path).expect("a text"));
+    let mut jobs: Vec<(Job, bool, String)> = Vec::new();
+    for (line, comment) in texts.flat_map(|text| commented(&text)) {
+        let Some(spec) = run_of(&line) else { continue };
+        let case = cases::find(&spec.case).expect("a case");
+        let job = Job { case, planned: Planned::new(spec) };
+        jobs.push((job, comment.contains("diverges"), line));
+    }
+    let mut timed: Vec<Job> = jobs.iter().map(|(job, ..)| job.clone()).collect();
+    make::estimate(&mut timed, &Making::new(Tier::Quick, &|_| String::new()));
+    let short = jobs.into_iter().zip(timed).filter(|(_, timed)| timed.planned.seconds <= SHORT);
+    let short: Vec<(Job, bool, String)> = short.map(|(job, _)| job).collect();
+    let wrong = short.par_iter().filter_map(|(job, diverges, line)| {
+        let record = case::record_of(job.case, &job.planned.spec, &Context::default());
+        let ended = record.map(|record| record.status).expect(line);
+        let is_right = match diverges {
+            true => matches!(ended, Status::Diverged { .. }),
+            false => ended == Status::Completed,
+        };
+        (!is_right).then(|| format!("{line}: {ended}"))
+    });
+    let wrong: Vec<String> = wrong.collect();
+    assert!(short.len() >= 15, "{} short runs", short.len());
+    assert!(wrong.is_empty(), "a run ends as its document says:\n  {}", wrong.join("\n  "));
+}
+
+/// The first command of `your-method.md` was refused: PySPH has no mirrors.
+#[test]
+fn problems_in_documents_can_be_exported() {
+    let texts = documents().into_iter().map(|path| fs::read_to_string(path).expect("a text"));
+    let (mut count, folder) = (0, tempfile::tempdir().expect("a folder"));
+    static NEVER: AtomicBool = AtomicBool::new(false);
+    let sources = |_: &str| String::from("staged");
+    let world = World { cases: cases::CASES, sources, references: |_| vec![], interrupt: &NEVER };
+    for line in texts.flat_map(|text| commands(&text)) {
+        let Ok(arguments) = Arguments::try_parse_from(line.split_whitespace()) else { continue };
+        let Command::Export(mut export) = arguments.command else { continue };
+        count += 1;
+        export.of.out = folder.path().join(count.to_string());
+        assert!(super::super::exchange::export(&export, &world).is_ok(), "{line}");
+    }
+    assert!(count >= 5, "{count} exports");
+}
+
+/// After `run couette`, which is of `modern`, documents explained the gates of `plain`.
+#[test]
+fn gates_that_documents_explain_are_of_variants_that_they_run() {
+    let mut wrong = Vec::new();
+    for path in documents() {
+        let text = fs::read_to_string(&path).expect("a text");
+        let mut run: Vec<(String, String)> = Vec::new();
+        for line in commands(&text) {
+            run.extend(run_of(&line).map(|spec| (spec.case, spec.variant)));
+            let gate = line.strip_prefix("touchstone explain ").unwrap_or_default();
+            let Some((name, rest)) = gate.split_once('.') else { continue };
+            let Ok(case) = cases::find(name) else { continue };
+            let variant = rest.split('.').next().unwrap_or_default();
+            let is_variant = case.variants().iter().any(|of| of.name == variant);
+            let mut of_case = run.iter().filter(|(of, _)| of == name).peekable();
+            if is_variant && of_case.peek().is_some() && !of_case.any(|(_, of)| of == variant) {
+                wrong.push(format!("{}: {line}", path.display()));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "a document explains what it runs:\n  {}", wrong.join("\n  "));
+}
+
 #[test]
 fn a_command_that_is_wrong_is_seen() {
     let text = "Say `touchstone run couette`:\n```sh\ncargo run --release -- verify  # all\n```\n";
     assert_eq!(commands(text), ["touchstone run couette", "touchstone verify"]);
+    assert_eq!(commented(text)[1].1, " all");
+    let spec = run_of("touchstone run couette --rows 30").expect("a run");
+    assert_eq!((&*spec.variant, spec.settings["rows"].as_u64()), ("modern", Some(30)));
     for wrong in [
         "touchstone frobnicate",
         "touchstone run couette --set row=3",

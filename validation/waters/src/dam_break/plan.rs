@@ -88,7 +88,10 @@ fn gates(row: &Row) -> Vec<Gate> {
     let limited = |gate: Gate| match known.iter().find(|known| known.0.name == gate.metric) {
         Some((_, to, (cause, reason))) => {
             let bound = widened(gate.bound, *to);
-            gate.with_limitation(bound, *reason, cause)
+            let gate = gate.with_limitation(bound, *reason, cause);
+            // These two follow from the reference by volume of fluid, the others from runs.
+            let is_of_reference = [AHEAD.1, FAST.1].contains(reason);
+            if is_of_reference { gate } else { gate.fitted() }
         }
         None => gate,
     };

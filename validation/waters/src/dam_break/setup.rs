@@ -68,18 +68,14 @@ impl Dam {
         self.settings.rho * self.settings.gravity * self.settings.height
     }
 
-    /// Whether the scene is that of Martin & Moyce: a column twice as high as wide, on a floor whose end
-    /// not even a front of shallow water, at twice (g H)^(1/2), would reach.
+    /// Whether the scene is that of Martin & Moyce.
     pub fn is_martin_moyce(&self) -> bool {
-        let s = &self.settings;
-        (s.height / s.width - 2.0).abs() < 1e-9 && s.tank >= s.width + 2.0 * s.end * s.height
+        self.settings.scene() == Some(Scene::MartinMoyce)
     }
 
-    /// Whether the scene is that of Lobovsky et al., at any scale.
+    /// Whether the scene is that of Lobovsky et al.
     pub fn is_lobovsky(&self) -> bool {
-        let s = &self.settings;
-        let is = |ratio: f64, expected: f64| (ratio / expected - 1.0).abs() < 1e-9;
-        is(s.width / s.height, 2.0) && is(s.tank / s.height, 1.61 / 0.3)
+        self.settings.scene() == Some(Scene::Lobovsky)
     }
 
     /// Water in hydrostatic equilibrium with the gate that is about to vanish.
