@@ -3,7 +3,7 @@
 //!
 //! Particles are stored in tiles 64 spacings wide, so that what a group sees is in the nearest caches, and
 //! in a tile along strips two spacings high, every other strip backwards, so that a group is compact: four by
-//! two on a square lattice, where 55 columns are nearer than three spacings to one of the eight, 28 to each.
+//! two on a square lattice, where 60 columns are within three spacings of one of the eight, 28 others of each.
 //!
 //! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel,
 //! which stands for the particles that a group lacks. Two particles farther apart than support + skin when
@@ -739,6 +739,39 @@ mod tests {
     #[test]
     fn lists_kept_for_ten_times_too_long_lose_pairs() {
         assert!(lost(5.0, &mut 0) > 0);
+    }
+
+    /// A lattice of a tile and a half: groups of four by two, each beside the one before it.
+    #[test]
+    fn groups_of_a_lattice_are_four_by_two_and_side_by_side() {
+        let (columns, rows, size) = (96, 12, GROUP);
+        let place = |k: usize| Vector2::new((k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5);
+        let points: Vec<_> = (0..columns * rows).map(place).collect();
+        let mut neighbours = Neighbours::new([3.1, 0.0, 1.0], Domain::open(), &[]);
+        neighbours.place(&mut points.iter().copied());
+        let mut order = Vec::new();
+        neighbours.order(&mut order);
+        let points: Vec<_> = order.iter().map(|&k| points[k as usize]).collect();
+        let mut middles = Vec::new();
+        for group in points.chunks(size) {
+            let low = group.iter().fold(group[0], |a, p| a.inf(p));
+            let high = group.iter().fold(group[0], |a, p| a.sup(p));
+            assert_eq!(high - low, Vector2::new(3.0, 1.0), "{group:?}");
+            middles.push(0.5 * (low + high));
+        }
+        let steps = middles.windows(2).map(|ends| (ends[1] - ends[0]).norm());
+        let far: Vec<f64> = steps.filter(|step| *step > 4.0).collect();
+        assert!(far.len() <= 1, "from the end of the first tile to the second one alone: {far:?}");
+        // What the groups far from the edges see.
+        neighbours.place(&mut points.iter().copied());
+        neighbours.build([points.len(), 0], false, false);
+        for (k, middle) in middles.iter().enumerate() {
+            let inside = [(middle.x, 96.0), (middle.y, 12.0)];
+            if inside.iter().all(|(at, end)| at.min(end - at) > 4.9) {
+                let seen = neighbours.lists.blocks[k * size / BLOCK].list(k % (BLOCK / size));
+                assert_eq!(seen.len(), 60);
+            }
+        }
     }
 
     #[test]
