@@ -162,6 +162,16 @@ impl History {
     }
 }
 
+/// Times of samples \[s\]. A step that the settings give is not shortened to reach them: they are whole numbers
+/// of such steps apart.
+fn samples(end: f64, dt: Option<f64>) -> Vec<f64> {
+    let time = |k: usize| end * k as f64 / SAMPLES as f64;
+    let Some(dt) = dt else { return (0..=SAMPLES).map(time).collect() };
+    let every = (end / SAMPLES as f64 / dt).round().max(1.0) * dt;
+    let before = (end / every - 1e-9).ceil().max(1.0) as usize;
+    (0..before).map(|k| k as f64 * every).chain([end]).collect()
+}
+
 fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Record, RunError> {
     let drop = Drop::new(s, method);
     let (medium, end) = (&drop.medium, drop.rules.end);
@@ -173,7 +183,7 @@ fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Reco
     let mut record = simulate::begin(method, &numbers, context);
     let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
-    let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
+    let times = samples(end, s.dt);
     let (mut seen, all) = ((&mut history, &mut ledger), context.measures_all());
     Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
         .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
@@ -319,6 +329,19 @@ mod tests {
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {
         ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set).measure_all(), &Context::default())
+    }
+
+    /// A step that was given was cut to 0.37 of it, to reach each of 80 samples.
+    #[test]
+    fn a_given_step_is_the_one_that_is_taken() {
+        for (n, dt) in [(20, 2.7e-4), (20, 6.1e-5), (8, 6e-4)] {
+            let record = run("modern", |s| (s.n, s.dt) = (n, Some(dt))).expect("a run");
+            let taken = record.cost.largest_dt_s;
+            assert!((taken / dt - 1.0).abs() < 1e-9, "{taken} s of {dt} s");
+        }
+        assert_eq!(samples(1.0, None).len(), 81);
+        assert_eq!(samples(1.0, Some(0.3)), [0.0, 0.3, 0.6, 0.3 * 3.0, 1.0]);
+        assert_eq!(samples(1.0, Some(2.0)), [0.0, 1.0]);
     }
 
     #[test]

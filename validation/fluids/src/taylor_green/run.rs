@@ -116,6 +116,8 @@ pub fn run(method: &Method, s: &VortexSettings, context: &Context) -> Result<Rec
             pictures::keep(&mut record, pictures::END, "L", ("error", "U exp(bt)"), all);
         }
     }
+    // The exact flow may have decayed to 0.
+    series.retain(|[_, error]| error.is_finite());
     let columns = [("t", "L/U"), ("error", "-")];
     record.profiles.insert("series".into(), Profile::of_rows(&columns, &series));
     Ok(record)
