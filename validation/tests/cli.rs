@@ -925,6 +925,31 @@ fn small_but(case: &dyn Case, variant: &str, set: &str) -> Vec<String> {
     others.chain([set.to_string()]).collect()
 }
 
+/// A step that was given was cut to 0.4 of it, so that runs reached each of their samples.
+#[test]
+fn a_given_step_is_taken_in_every_case() {
+    let of_case = |case: &&'static dyn Case| {
+        let (case, variant) = (*case, case.recommended().variant);
+        let set = small(case, variant);
+        let has_step = case.fields().iter().any(|field| field.name == "dt");
+        // The number of the samples of the rings is a setting.
+        if !has_step || case.name() == "rubber_rings" {
+            return None;
+        }
+        let rules = spec(case, variant, &set).and_then(|spec| case.rules(&spec)).ok()?;
+        let set = [set, vec![format!("dt={:?}", 0.97 * rules.dt_limit())]].concat();
+        let spec = spec(case, variant, &set).unwrap();
+        let record = case.run(&spec, &Context::default()).unwrap();
+        let number = |name: &str| record.numerics[name].as_f64().unwrap();
+        Some((case.name(), number("dt [s]") / number("dt [s] planned")))
+    };
+    let found: Vec<(&str, f64)> =
+        cases::CASES.par_iter().filter_map(|case| of_case(&case)).collect();
+    assert!(found.len() > 8, "{found:?}");
+    let cut: Vec<_> = found.iter().filter(|(_, share)| *share < 0.9).collect();
+    assert!(cut.is_empty(), "{cut:?}");
+}
+
 /// The ends of the range of each setting of each case, in each case's first variant and its last: refused in
 /// words that name a setting, or begun after its size was told.
 #[test]

@@ -3,7 +3,7 @@
 
 use base::{gate::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, rules, runner::Drive,
     simulate, table,
 };
 use maths::exact::EllipticDrop as Exact;
@@ -162,16 +162,6 @@ impl History {
     }
 }
 
-/// Times of samples \[s\]. A step that the settings give is not shortened to reach them: they are whole numbers
-/// of such steps apart.
-fn samples(end: f64, dt: Option<f64>) -> Vec<f64> {
-    let time = |k: usize| end * k as f64 / SAMPLES as f64;
-    let Some(dt) = dt else { return (0..=SAMPLES).map(time).collect() };
-    let every = (end / SAMPLES as f64 / dt).round().max(1.0) * dt;
-    let before = (end / every - 1e-9).ceil().max(1.0) as usize;
-    (0..before).map(|k| k as f64 * every).chain([end]).collect()
-}
-
 fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Record, RunError> {
     let drop = Drop::new(s, method);
     let (medium, end) = (&drop.medium, drop.rules.end);
@@ -183,7 +173,7 @@ fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Reco
     let mut record = simulate::begin(method, &numbers, context);
     let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
-    let times = samples(end, s.dt);
+    let times: Vec<f64> = [0.0].into_iter().chain(rules::samples(end, SAMPLES, s.dt)).collect();
     let (mut seen, all) = ((&mut history, &mut ledger), context.measures_all());
     Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
         .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
@@ -339,9 +329,6 @@ mod tests {
             let taken = record.cost.largest_dt_s;
             assert!((taken / dt - 1.0).abs() < 1e-9, "{taken} s of {dt} s");
         }
-        assert_eq!(samples(1.0, None).len(), 81);
-        assert_eq!(samples(1.0, Some(0.3)), [0.0, 0.3, 0.6, 0.3 * 3.0, 1.0]);
-        assert_eq!(samples(1.0, Some(2.0)), [0.0, 1.0]);
     }
 
     #[test]
