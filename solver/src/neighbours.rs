@@ -3,7 +3,7 @@
 //!
 //! Particles are stored in tiles 64 spacings wide, so that what a group sees is in the nearest caches, and
 //! in a tile along strips two spacings high, every other strip backwards, so that a group is compact: four by
-//! two on a square lattice, where 55 columns are nearer than three spacings to one of the eight, 28 to each.
+//! two on a square lattice, where 60 columns are within three spacings of one of the eight, 28 others of each.
 //!
 //! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel,
 //! which stands for the particles that a group lacks. Two particles farther apart than support + skin when
@@ -739,6 +739,57 @@ mod tests {
     #[test]
     fn lists_kept_for_ten_times_too_long_lose_pairs() {
         assert!(lost(5.0, &mut 0) > 0);
+    }
+
+    /// The particles of a lattice of this spacing in order, each group of eight at a time; cells are 2 wide.
+    fn groups(columns: usize, rows: usize, dx: f64) -> Vec<Vec<Vector2<f64>>> {
+        let at = |n: usize| (n as f64 + 0.5) * dx;
+        let place = |k: usize| Vector2::new(at(k % columns), at(k / columns));
+        let points: Vec<_> = (0..columns * rows).map(place).collect();
+        let mut neighbours = Neighbours::new([3.1, 0.0, 1.0], Domain::open(), &[]);
+        neighbours.place(&mut points.iter().copied());
+        let mut order = Vec::new();
+        neighbours.order(&mut order);
+        let points: Vec<_> = order.iter().map(|&k| points[k as usize]).collect();
+        points.chunks(GROUP).map(<[_]>::to_vec).collect()
+    }
+
+    /// Size and middle of a group.
+    fn extent(group: &[Vector2<f64>]) -> [Vector2<f64>; 2] {
+        let low = group.iter().fold(group[0], |a, p| a.inf(p));
+        let high = group.iter().fold(group[0], |a, p| a.sup(p));
+        [high - low, 0.5 * (low + high)]
+    }
+
+    /// A lattice of a tile and a half: groups of four by two, each beside the one before it, which list 60
+    /// particles within three spacings.
+    #[test]
+    fn groups_of_a_lattice_are_four_by_two_and_side_by_side() {
+        let groups = groups(96, 12, 1.0);
+        assert!(groups.iter().all(|group| extent(group)[0] == Vector2::new(3.0, 1.0)));
+        let middles: Vec<_> = groups.iter().map(|group| extent(group)[1]).collect();
+        let steps = middles.windows(2).map(|ends| (ends[1] - ends[0]).norm());
+        let far: Vec<f64> = steps.filter(|step| *step > 4.0).collect();
+        assert!(far.len() <= 1, "from the end of the first tile to the second one alone: {far:?}");
+        let mut neighbours = Neighbours::new([3.1, 0.0, 1.0], Domain::open(), &[]);
+        neighbours.place(&mut groups.iter().flatten().copied());
+        neighbours.build([96 * 12, 0], false, false);
+        for (k, middle) in middles.iter().enumerate() {
+            let inside = [(middle.x, 96.0), (middle.y, 12.0)];
+            if inside.iter().all(|(at, end)| at.min(end - at) > 4.9) {
+                let seen = neighbours.lists.blocks[k * GROUP / BLOCK].list(k % (BLOCK / GROUP));
+                assert_eq!(seen.len(), 60);
+            }
+        }
+    }
+
+    /// Cells with four, six or nine particles: groups begin and end inside of cells.
+    #[test]
+    fn groups_that_begin_inside_of_a_cell_are_as_compact() {
+        for group in groups(50, 14, 0.8) {
+            let [size, _] = extent(&group);
+            assert!(size.x < 3.0 * 0.8 + 1e-9, "{group:?}");
+        }
     }
 
     #[test]

@@ -114,6 +114,10 @@ const FIRST: char = '1';
 const ORIGIN: char = 'o';
 /// A periodic box that is too long.
 const BORDER: char = 'b';
+/// Diverges if particles are far from the origin.
+const FAR: char = 'f';
+/// Diverges.
+const GONE: char = 'g';
 
 impl FromMedium for Wrong {
     fn new(m: &Medium) -> Self {
@@ -150,6 +154,11 @@ fn flawed<const KIND: char>() -> Method {
         let (h, wrong) = (scene.setting.h, &mut scene.forces.2);
         wrong.kind = KIND;
         wrong.size *= if KIND == ABSOLUTE { h * h } else { 1.0 };
+        let farthest =
+            scene.setting.particles.iter().map(|p| p.position.norm()).fold(0.0, f64::max);
+        if KIND == GONE || KIND == FAR && farthest > 16.0 * h {
+            wrong.size = f64::NAN;
+        }
         for (k, p) in scene.setting.particles.iter_mut().enumerate() {
             match KIND {
                 DRAG => p.velocity *= 0.999_999,
@@ -192,6 +201,8 @@ const FLAWED: Composed<Decay> = Composed {
             .with("first", "", flawed::<FIRST>(), |_| {})
             .with("origin", "", flawed::<ORIGIN>(), |_| {})
             .with("border", "", flawed::<BORDER>(), |_| {})
+            .with("far", "", flawed::<FAR>(), |_| {})
+            .with("gone", "", flawed::<GONE>(), |_| {})
             .all
     },
     declaration: |_| Declaration::default(),
@@ -210,6 +221,9 @@ fn each_relation_finds_the_error_that_it_is_about_and_no_other() {
         ("origin", &[Shifted]),
         // Particles that move all together cross the border too.
         ("border", &[Boosted, Shifted]),
+        // One observer has no particles, or both have none: nothing says that they agree.
+        ("far", &[Shifted]),
+        ("gone", &[Turned, Mirrored, Boosted, BinaryUnits, OtherUnits, Renumbered, Shifted]),
     ] {
         let [broken, none] = found(&FLAWED, &FLAWED.spec(variant, |_| {})).unwrap();
         assert_eq!(broken, expected, "{variant}");

@@ -33,6 +33,8 @@ pub struct Composition {
     setup: Box<dyn Setup>,
     /// Settings that none of its terms and walls reads: the variant refuses them.
     lacks: Vec<&'static str>,
+    /// Settings of a run that are not those of the variant, as `key=value`.
+    changed: String,
 }
 
 /// The variants of a case with these settings.
@@ -100,7 +102,8 @@ impl<T: Settings, M: 'static> Variants<T, M> {
         let (run, rules) = (Rc::clone(&self.run), Rc::clone(&self.rules));
         let mut setup = Box::new(Alike { method, settings: T::default(), run, rules });
         adjust(&mut setup.settings);
-        self.all.all.push(Composition { variant: Variant { name, about }, setup, lacks });
+        let (variant, changed) = (Variant { name, about }, String::new());
+        self.all.all.push(Composition { variant, setup, lacks, changed });
         self
     }
 }
@@ -145,6 +148,10 @@ impl Composition {
         settings::read(settings, &spec.settings).map_err(refused)?;
         settings::validate(settings)?;
         let now = settings.values();
+        let changed =
+            fields.iter().zip(now.iter().zip(&before)).filter(|(_, (now, was))| now != was);
+        let changed = changed.map(|(field, (now, _))| format!("{}={now}", field.name));
+        chosen.changed = changed.collect::<Vec<_>>().join(" ");
         let is_changed = |key: &&&str| {
             let place = fields.iter().position(|field| field.name == **key);
             place.is_some_and(|k| now[k] != before[k])
@@ -176,11 +183,24 @@ impl Composition {
         // All settings in their usual form, those that the spec leaves out included.
         let settings = settings::to_json(self.setup.settings());
         let spec = RunSpec { settings, ..spec.clone() };
-        let mut record = self.setup.run(&Context { spec, ..context.clone() })?;
+        let made = self.setup.run(&Context { spec, ..context.clone() });
+        let mut record = made.map_err(|error| match error {
+            RunError::Scene(scene) if !self.changed.is_empty() => {
+                RunError::SceneOf { set: self.changed, scene }
+            }
+            other => other,
+        })?;
         state_steps(&mut record);
+        if context.playback.is_none() {
+            record.take_out(&|_, metric| !metric.value.is_finite(), NO_NUMBER);
+        }
         Ok(record)
     }
 }
+
+/// Why a metric of a run is absent whose value is not finite: the gates on it fail.
+const NO_NUMBER: &str =
+    "with these settings its formula has no finite value, as a mean over nothing";
 
 /// A table of compositions as a [`Case`].
 pub struct Composed<T> {

@@ -11,6 +11,7 @@ use report::sig;
 use thiserror::Error;
 
 use crate::{
+    limits::ADVISED_SHARE,
     relation::{NoSymmetry, Relation},
     size::{MOST_BYTES, MOST_SECONDS, Size},
 };
@@ -68,8 +69,10 @@ pub enum RunError {
     NoRules(String),
     /// A time step beyond the theoretical limit.
     #[error(
-        "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} \
-         for this run (--allow-unstable permits more)"
+        "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} for this \
+         run on a lattice at rest; where particles move, at most {:.4e} s is advised; change dt, courant or \
+         what else sets the step (--allow-unstable permits more)",
+        ADVISED_SHARE * limit
     )]
     TimeStep {
         /// The step \[s\].
@@ -117,8 +120,16 @@ pub enum RunError {
         settings: &'static str,
     },
     /// The solver refuses the scene.
-    #[error("the settings make an impossible scene: {0}")]
+    #[error("the scene is impossible: {0}")]
     Scene(#[from] solver::SceneError),
+    /// The same, with the settings that are not those of the variant, as `key=value`.
+    #[error("with {set} the scene is impossible: {scene}")]
+    SceneOf {
+        /// The settings.
+        set: String,
+        /// What is wrong with the scene.
+        scene: solver::SceneError,
+    },
     /// A reference that the case needs could not be loaded.
     #[error("a reference that the case needs cannot be loaded: {0}")]
     Reference(String),

@@ -3,6 +3,12 @@
 
 use maths::theory::time_step::{self, Integrator, Mode};
 
+/// The share of the theoretical limit up to which a step is advised. The limit is that of a lattice at rest,
+/// and particles that move come nearer to each other and faster: over all variants with the coarsest settings
+/// of their plans, steps of 0.85 of it went through, and the first divergence was at 0.9, of the flow over
+/// hills.
+pub const ADVISED_SHARE: f64 = 0.8;
+
 /// What limits a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mechanism {
@@ -53,7 +59,8 @@ impl Mechanism {
 /// are the times that the rules of the cases multiply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Of all waves of the lattice together: a step beyond it is refused.
+    /// Of all waves of the lattice at rest together: a step beyond it is refused, and at most
+    /// [`ADVISED_SHARE`] of it is advised.
     pub together: f64,
     alone: [f64; Mechanism::ALL.len()],
     explicit: f64,

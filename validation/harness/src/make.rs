@@ -527,6 +527,7 @@ mod tests {
     use super::*;
     use crate::{
         case::{Recommended, Variant, spec},
+        declare::{Card, Declaration},
         suite,
     };
 
@@ -583,6 +584,81 @@ mod tests {
             let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
             vec![planned(1), planned(2), planned(3).timed()]
         }
+    }
+
+    /// A case of this name, with a card if it is a main one.
+    struct Named(&'static str, bool);
+
+    impl Case for Named {
+        fn family(&self) -> &'static str {
+            Quick.family()
+        }
+        fn recommended(&self) -> Recommended {
+            Quick.recommended()
+        }
+        fn name(&self) -> &'static str {
+            self.0
+        }
+        fn problem(&self) -> &'static str {
+            Quick.problem()
+        }
+        fn about(&self) -> &'static str {
+            Quick.about()
+        }
+        fn variants(&self) -> Vec<Variant> {
+            Quick.variants()
+        }
+        fn fields(&self) -> &'static [Field] {
+            Quick.fields()
+        }
+        fn settings(&self, variant: &str, set: &[String]) -> Result<Value, RunError> {
+            Quick.settings(variant, set)
+        }
+        fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+            Quick.run(spec, context)
+        }
+        fn plan(&self, _: Tier) -> Vec<Planned> {
+            Vec::new()
+        }
+        fn declaration(&self, _: Tier) -> Declaration {
+            let card = || Card {
+                title: "Main",
+                picture: ("none", 0),
+                error: "made up".into(),
+                metric: ERROR.into(),
+                runs: Vec::new(),
+                against: "nothing",
+                uncertainty: None,
+                reach: ("k", "", ""),
+            };
+            Declaration { card: self.1.then(card), ..Declaration::default() }
+        }
+    }
+
+    static DEAR: Named = Named("dear", true);
+    static CHEAP: Named = Named("cheap", true);
+    static SIDE: Named = Named("side", false);
+
+    /// Who waits for a page sees the cheapest of the main cases first, that of the least sum of times, and not
+    /// one without a card, whatever it takes.
+    #[test]
+    fn the_cheapest_of_the_main_cases_is_made_first() {
+        let of = |case: &'static Named, k: &str, seconds: f64| {
+            let spec = RunSpec::new(case.0, "v", json!({ "set": [format!("k={k}")] }));
+            Job { case, planned: Planned { seconds, ..Planned::new(spec) } }
+        };
+        let all =
+            [of(&DEAR, "1", 2.0), of(&SIDE, "1", 0.1), of(&CHEAP, "1", 2.5), of(&DEAR, "2", 2.0)];
+        let last = Mutex::new(Vec::new());
+        let progress = |done: Done| last.lock().unwrap().push(done.last.to_string());
+        let sources = |_: &str| "one".to_string();
+        let making = Making { progress: Some(&progress), ..Making::new(Tier::Quick, &sources) };
+        let finished = |_: Made| ();
+        made(&all, &Making { finished: Some(&finished), ..making });
+        let order: Vec<String> = last.into_inner().unwrap();
+        let first = order.iter().find(|name| !name.is_empty()).expect("a run");
+        assert!(first.contains("cheap"), "{order:?}");
+        assert_eq!(super::first(&all[1..2], Tier::Quick), None);
     }
 
     fn job(k: &str) -> Job {

@@ -63,11 +63,16 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 mod tests {
     use base::{
         gate::{Bound, Evidence, Gate},
+        mutation::Disorder,
+        record::Record,
+        settings::Field,
         spec::{Measure, RunSpec},
     };
-    use serde_json::json;
+    use serde_json::{Value, json};
 
     use super::*;
+    use crate::case::{Recommended, RunError, Variant};
+    use crate::context::Context;
 
     #[test]
     fn a_run_that_is_planned_twice_is_made_once_and_judged_by_all_gates() {
@@ -85,5 +90,65 @@ mod tests {
         assert_eq!((first.gates.len(), first.timed), (2, true));
         assert!(!merged[1].timed);
         assert_eq!([0, 1].map(|k| merged[k].spec.measure), [Measure::Headline, Measure::All]);
+    }
+
+    /// One run, and the same from a start that is a little disordered, with a gate each.
+    struct Starts;
+
+    impl Case for Starts {
+        fn family(&self) -> &'static str {
+            ""
+        }
+        fn recommended(&self) -> Recommended {
+            Recommended { variant: "v", because: "it is staged", papers: None }
+        }
+        fn name(&self) -> &'static str {
+            "starts"
+        }
+        fn problem(&self) -> &'static str {
+            "Staged starts"
+        }
+        fn about(&self) -> &'static str {
+            "Staged starts."
+        }
+        fn variants(&self) -> Vec<Variant> {
+            vec![Variant { name: "v", about: "as it is" }]
+        }
+        fn fields(&self) -> &'static [Field] {
+            &[]
+        }
+        fn settings(&self, _: &str, _: &[String]) -> Result<Value, RunError> {
+            Ok(json!({}))
+        }
+        fn run(&self, _: &RunSpec, _: &Context) -> Result<Record, RunError> {
+            Err(RunError::Told)
+        }
+        fn plan(&self, tier: Tier) -> Vec<Planned> {
+            let gate = |id: &str| Gate::new(id, "l2", Bound::Below(1.0), Evidence::Theory, "why");
+            let run = |disorder| Planned::new(RunSpec { disorder, ..spec() });
+            let disorder = Some(Disorder { most: 1e-6, seed: 1 });
+            let full = if tier == Tier::Full { vec![gate("c.full")] } else { Vec::new() };
+            let ordered = [vec![gate("c.ordered")], full].concat();
+            vec![run(None).judged(ordered), run(disorder).judged(vec![gate("c.disordered")])]
+        }
+    }
+
+    fn spec() -> RunSpec {
+        RunSpec::new("starts", "v", json!({}))
+    }
+
+    /// The command `run` would have judged a run by the gates of starts that it does not have.
+    #[test]
+    fn a_run_has_the_gates_of_its_own_start_in_all_tiers() {
+        let gates = |spec: &RunSpec| -> Vec<String> {
+            gates_of(&Starts, spec).into_iter().map(|gate| gate.id).collect()
+        };
+        assert_eq!(gates(&spec()), ["c.ordered", "c.full"]);
+        let disorder = Some(Disorder { most: 1e-6, seed: 1 });
+        assert_eq!(gates(&RunSpec { disorder, ..spec() }), ["c.disordered"]);
+        let disorder = Some(Disorder { most: 1e-6, seed: 2 });
+        assert_eq!(gates(&RunSpec { disorder, ..spec() }), [""; 0]);
+        assert_eq!(gates(&RunSpec { variant: "w".into(), ..spec() }), [""; 0]);
+        assert_eq!(gates(&RunSpec { settings: json!({"n": 1}), ..spec() }), [""; 0]);
     }
 }

@@ -263,3 +263,38 @@ fn direction(
         _ => Ok(Vector2::new(normal.y, -normal.x)),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use solver::Symmetric;
+
+    use super::*;
+
+    /// The force on a cut of a stressed body turns with the body and the cut: S' Q n = Q S n, with the unit of
+    /// a pressure, and stays as large as it was. No scene starts with a stress.
+    #[test]
+    fn the_stress_of_a_particle_is_turned_with_it() {
+        let (c, s) = (0.8, 0.6);
+        for (turn, units) in [
+            (Matrix2::new(c, -s, s, c), [1.0; 3]),
+            (Matrix2::new(-1.0, 0.0, 0.0, 1.0), [1.0; 3]),
+            (Matrix2::identity(), [8.0, 32.0, 0.25]),
+            (Matrix2::new(c, s, -s, c), [2.0, 0.5, 3.0]),
+        ] {
+            let view = View { turn, units, ..View::default() };
+            let [xx, yy, xy] = [1.0, -2.0, 0.5];
+            let at_rest: Particle = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 1.0, 1.0);
+            let Particle { role, position, velocity, density, mass, .. } = at_rest;
+            let extra = Symmetric { xx, yy, xy };
+            let seen = view.particle(&Particle { role, position, velocity, density, mass, extra });
+            let matrix = |s: Symmetric| Matrix2::new(s.xx, s.xy, s.xy, s.yy);
+            // N/m² is kg/m in a plane by m and s².
+            let unit = units[2] / (units[1] * units[1]);
+            for normal in [Vector2::x(), Vector2::y(), Vector2::new(0.28, 0.96)] {
+                let force = matrix(seen.extra) * (turn * normal);
+                let expected = turn * matrix(extra) * normal * unit;
+                assert!((force - expected).norm() < 1e-12 * unit, "{force} instead of {expected}");
+            }
+        }
+    }
+}

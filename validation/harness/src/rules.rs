@@ -107,6 +107,17 @@ impl Rules {
     }
 }
 
+/// Times of samples, of about this number of equal intervals, without the start: a step that the settings give
+/// is not shortened to reach them, for they are whole numbers of such steps apart.
+pub fn samples(end: f64, count: usize, given: Option<f64>) -> Vec<f64> {
+    let Some(dt) = given else {
+        return (1..=count).map(|k| end * k as f64 / count as f64).collect();
+    };
+    let every = (end / count as f64 / dt).round().max(1.0) * dt;
+    let before = (end / every - 1e-9).ceil().max(1.0) as usize;
+    (1..before).map(|k| k as f64 * every).chain([end]).collect()
+}
+
 /// Name of the time step \[s\] that a run chose, among what it chose.
 pub const PLANNED_DT: &str = "dt [s] planned";
 /// Name of that step over its theoretical limit.
@@ -130,6 +141,15 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+
+    #[test]
+    fn samples_are_equal_parts_of_a_run_or_whole_numbers_of_given_steps_apart() {
+        assert_eq!(samples(1.0, 4, None), [0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(samples(1.0, 4, Some(0.25)), [0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(samples(1.0, 4, Some(0.12)), [0.24, 0.48, 0.72, 0.96, 1.0]);
+        assert_eq!(samples(1.0, 4, Some(0.4)), [0.4, 0.8, 1.0]);
+        assert_eq!(samples(1.0, 4, Some(2.0)), [1.0]);
+    }
 
     /// A run of one step of 1e-4 s stated the 275 s that were planned, and 451,608 times the limit.
     #[test]

@@ -3,7 +3,7 @@
 use harness::{
     case::Case,
     declare::StepLimit,
-    limits::Mechanism,
+    limits::{ADVISED_SHARE, Mechanism},
     make::Job,
     runs::{JudgedRun, Planned, Runs},
     studies::limit_of_theory,
@@ -119,8 +119,9 @@ fn table(declared: &[Declared], runs: &Runs) -> String {
     let heads =
         ["variant", "scene", "theory [s]", "measured [s]", "measured/theory", "default/theory"];
     format!(
-        "{}\nTheory: linear stability on a lattice at rest. Measured: by bisection, with the criterion that \
-         the report states for each case.\n",
+        "{}\nTheory: linear stability on a lattice at rest; for particles that move a step of at most \
+         {ADVISED_SHARE} of it is advised. Measured: by bisection, with the criterion that the report states \
+         for each case.\n",
         output::table(&heads, declared.iter().map(row))
     )
 }

@@ -430,8 +430,35 @@ fn records_are_reused_judged_rendered_and_compared() {
     let partial = "touchstone report --store OUT/a/records --out OUT/d --partial";
     assert_eq!(on(&SOUND, partial), Exit::Pass);
     assert!(read("d/index.html").contains("Of the runs of this case are without a record"));
+    // What a study would say of some of its runs is said of none.
+    let verdicts = read("d/verdicts.json");
+    let is_judged = |gate: &str| verdicts.contains(&format!("\"{gate}\""));
+    let gates = ["staged.right.count", "staged.wrong.count", "staged.wrong.wrong.error"];
+    assert_eq!(gates.map(is_judged), [true, false, false], "{verdicts}");
     assert_eq!(good(partial), Exit::Pass);
     assert!(!read("d/index.html").contains("without a record"));
+}
+
+/// A count that is exact has no margin, and was named as the gate that is the closest to failing.
+#[test]
+fn the_gate_closest_to_failing_is_one_with_a_margin() {
+    let judged = |id: &str, bound, value, control: bool| {
+        let gate = Gate::new(id, "l2", bound, Evidence::Theory, "made up");
+        Judged::new(if control { gate.expected_to_fail() } else { gate }, Some(value))
+    };
+    let count = judged("count", Bound::Equals(0.0), 0.0, false);
+    let control = judged("control", Bound::Below(1.0), 2.0, true);
+    let near = judged("near", Bound::Below(1.0), 0.9, false);
+    let far = judged("far", Bound::Below(1.0), 0.1, false);
+    let failed = judged("failed", Bound::Below(1.0), 7.0, false);
+    let worst = |all: &[&Judged]| {
+        let id = |judged: &Judged| judged.gate.id.clone();
+        super::summary::worst(all.iter().copied()).map(id).unwrap_or_default()
+    };
+    assert_eq!(worst(&[&count, &control, &far, &near]), "near");
+    assert_eq!(worst(&[&far, &count, &control]), "far");
+    assert_eq!(worst(&[&near, &failed, &far, &count]), "failed");
+    assert_eq!(worst(&[]), "");
 }
 
 #[test]

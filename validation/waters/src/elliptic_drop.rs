@@ -3,7 +3,7 @@
 
 use base::{gate::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
+    case::*, composed::*, context::Context, declare::*, method::*, pictures, rules, runner::Drive,
     simulate, table,
 };
 use maths::exact::EllipticDrop as Exact;
@@ -179,7 +179,7 @@ fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Reco
     let mut record = simulate::begin(method, &numbers, context);
     let mut ledger = Ledger::new(medium);
     let mut history = History { rows: Vec::new(), free_fall: [0.0; 2] };
-    let times: Vec<f64> = (0..=SAMPLES).map(|k| end * k as f64 / SAMPLES as f64).collect();
+    let times: Vec<f64> = [0.0].into_iter().chain(rules::samples(end, SAMPLES, s.dt)).collect();
     let (mut seen, all) = ((&mut history, &mut ledger), context.measures_all());
     Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
         .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
@@ -349,6 +349,16 @@ mod tests {
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {
         ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set).measure_all(), &Context::default())
+    }
+
+    /// A step that was given was cut to 0.37 of it, to reach each of 80 samples.
+    #[test]
+    fn a_given_step_is_the_one_that_is_taken() {
+        for (n, dt) in [(20, 2.7e-4), (20, 6.1e-5), (8, 6e-4)] {
+            let record = run("modern", |s| (s.n, s.dt) = (n, Some(dt))).expect("a run");
+            let taken = record.cost.largest_dt_s;
+            assert!((taken / dt - 1.0).abs() < 1e-9, "{taken} s of {dt} s");
+        }
     }
 
     #[test]

@@ -186,19 +186,24 @@ impl Column {
     /// The scene. Particles of walls have the density of the water that would be in their place: that of the
     /// interface is frozen, and what others push with is their mass by p/ρ², so that with the mass of the
     /// surface a compressed column would sink into the bottom.
-    fn parts(&self, m: &WaterMethod, context: &Context) -> Parts {
+    fn parts(&self, m: &WaterMethod, context: &Context) -> Result<Parts, RunError> {
         let walls = water::wall_particles(m.first_row, &self.tank, m.support * self.medium.h);
         let walls = walls.into_iter().map(|(place, role)| self.at_rest(place).with_role(role));
-        let particles = self.water(m.first_row).chain(walls).collect();
+        let particles: Vec<Particle> = self.water(m.first_row).chain(walls).collect();
+        water::check_above(&particles, self.level, |above| {
+            let HydrostaticSettings { compressibility, gamma, depth, .. } = self.settings;
+            let most = depth / ((gamma as f64 - 1.0) * above);
+            ("compressibility", compressibility, format!("less than {most:.4}"))
+        })?;
         let parts = Parts::new(self.medium, Domain::open(), particles, context);
-        Parts { mirrors: self.tank.mirrors(), ..parts }
+        Ok(Parts { mirrors: self.tank.mirrors(), ..parts })
     }
 }
 
 fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Record, RunError> {
     let column = Column::new(s, m, context)?;
     let Column { medium, rules, period, .. } = &column;
-    let mut simulation = (m.build)(column.parts(m, context))?;
+    let mut simulation = (m.build)(column.parts(m, context)?)?;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
     let mut record = simulate::begin(m, &numbers, context);
     let mut history = History::new(&column, &*simulation);
@@ -432,7 +437,7 @@ mod tests {
         let (dx, g) = (column.medium.dx, settings.g);
         let water = || -> Vec<Particle> { column.water(method.first_row).collect() };
         let simulation = |particles: Vec<Particle>| {
-            let parts = Parts { particles, ..column.parts(&method, &context) };
+            let parts = Parts { particles, ..column.parts(&method, &context).expect("a scene") };
             let mut simulation = (method.build)(parts).expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
             simulation

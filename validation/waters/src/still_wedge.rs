@@ -117,7 +117,7 @@ fn row(s: &Wedge, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
 }
 
 /// Water in columns that fill the tank up to y = H, with the exact density of their places, and its walls.
-fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Vec<Particle> {
+fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Particle>, RunError> {
     let (dx, exact) = (medium.dx, water::at_rest(medium));
     let (first, behind) = (method.first_row.fluid(), method.first_row.depth());
     let at_rest = |place: Vector2<f64>, volume: f64| {
@@ -141,7 +141,11 @@ fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Vec<Particle> 
         let wall = row(s, depth, dx).into_iter();
         particles.extend(wall.map(|(place, spacing)| at_rest(place, spacing * dx).with_role(role)));
     }
-    particles
+    water::check_above(&particles, 1.0, |above| {
+        let least = ((medium.eos.gamma - 1) as f64 * above).sqrt();
+        ("c0", s.c0, format!("more than {least:.4}"))
+    })?;
+    Ok(particles)
 }
 
 /// What is measured over the last quarter of the run. The start is not quite at rest, and what sound is left
@@ -218,7 +222,7 @@ impl Moments<'_> {
 
 fn run(m: &WaterMethod, s: &Wedge, context: &Context) -> Result<Record, RunError> {
     let (medium, rules) = scene(s, m, context)?;
-    let parts = Parts::new(medium, Domain::open(), particles(s, m, &medium), context);
+    let parts = Parts::new(medium, Domain::open(), particles(s, m, &medium)?, context);
     let mut simulation = (m.build)(parts)?;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
     let mut record = simulate::begin(m, &numbers, context);

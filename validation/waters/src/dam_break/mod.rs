@@ -39,8 +39,9 @@ pub use setup::Dam;
 crate::water_settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
     pub struct DamSettings {
-        /// spacings along the shorter side of the column
-        n: usize ["-"] in 1..=2000 = 20,
+        /// spacings along the shorter side of the column; with fewer than 5 no particle is below a quarter of
+        /// its height, where the front is read
+        n: usize ["-"] in 5..=2000 = 20,
         /// width of the column
         width: f64 ["m"] in 1e-6..=1e3 = 0.05715,
         /// height H of the column

@@ -109,8 +109,11 @@ impl Dam {
         // length.
         // A step far beyond the limit must not make everything a neighbour of everything.
         let skin = (SKIN_STEPS * self.rules.dt() * speed).clamp(LEAST_SKIN * medium.h, medium.h);
-        // Water that is twice as dense, or as fast as sound, is no water any more.
-        let limits = solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: c0.max(2.0 * speed) };
+        // Water that is twice as dense, or as fast as sound, is no water any more, unless it has left over
+        // the rim: nothing stops its fall.
+        let falling = speed + self.settings.gravity * self.rules.end;
+        let fastest = c0.max(2.0 * speed).max(falling);
+        let limits = solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: fastest };
         let parts = Parts::new(*medium, Domain::open(), particles, context);
         Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }
@@ -190,6 +193,20 @@ mod tests {
         let (method, context) = (water::modern(), Context::of_rules());
         let dam = Dam::new(&settings, &method, &context).unwrap();
         assert_eq!(dam.parts(&method, &context).skin, Some(dam.medium.h));
+    }
+
+    /// A front of shallow water runs at 2 (g H)^(1/2), and water that has left the tank falls by g t.
+    #[test]
+    fn a_speed_is_a_divergence_beyond_that_of_sound_and_of_a_fall() {
+        let most = |end: f64| {
+            let (method, context) = (water::modern(), Context::of_rules());
+            let dam = Dam::changed(|s| (s.c0, s.end) = (10.0, end)).unwrap();
+            let fall = (9.81 * 0.1143_f64).sqrt();
+            dam.parts(&method, &context).limits.speed / fall
+        };
+        for (end, expected) in [(1.8, 10.0), (7.9, 10.0), (20.0, 22.0)] {
+            assert!((most(end) / expected - 1.0).abs() < 1e-12, "{end}: {}", most(end));
+        }
     }
 
     #[test]

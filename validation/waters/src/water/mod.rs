@@ -3,13 +3,15 @@
 
 pub mod ledger;
 
+use base::settings::SettingError;
 use harness::{
+    case::RunError,
     limits::Limits,
     method::{FirstRow, Medium, Properties},
 };
 use maths::{exact, geometry::Tank};
 use nalgebra::Vector2;
-use solver::Role;
+use solver::{Particle, Role};
 
 pub use ledger::Ledger;
 
@@ -26,6 +28,28 @@ pub fn limits(method: &Properties, medium: &Medium, [h_over_dx, c0]: [f64; 2], n
 /// Water of a medium at rest under its gravity.
 pub fn at_rest(medium: &Medium) -> exact::Hydrostatic {
     exact::Hydrostatic { eos: medium.eos, gravity: -medium.acceleration.y }
+}
+
+/// Refuses a scene whose wall particles, which have the density of water at their height, have none far above
+/// the surface: (γ − 1) g y/c₀² must be less than 1 at each height y above it. `setting` states the setting
+/// to change, its value and what is allowed, from the largest of these heights \[m\].
+///
+/// # Errors
+/// What `setting` states.
+pub fn check_above(
+    particles: &[Particle],
+    surface: f64,
+    setting: impl FnOnce(f64) -> (&'static str, f64, String),
+) -> Result<(), RunError> {
+    if particles.iter().all(|p| p.density > 0.0) {
+        return Ok(());
+    }
+    let highest = particles.iter().map(|p| p.position.y).fold(surface, f64::max);
+    let (name, value, allowed) = setting(highest - surface);
+    let why = "for particles of the walls above the surface have the density of water there";
+    let words =
+        format!("setting {name} is {value:?}; allowed with these settings is {allowed}, {why}");
+    Err(SettingError(words).into())
 }
 
 /// Places and roles of the particles of a tank's walls, out to the support \[m\].
