@@ -130,14 +130,28 @@ fn document<T: DeserializeOwned>(
     Ok((read, text))
 }
 
+/// Reads the document of a method, and its text.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn method(path: &Path) -> Result<(Method, String), Vec<Flaw>> {
+    let what = "code, version, scheme, division (closed or open), settings (an object) and changed";
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (method, text) = document::<Method>(folder, &name, what).map_err(|flaw| vec![flaw])?;
+    let fields = [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
+    let unnamed = |(field, text): (&str, &String)| unnamed(&name, field, text);
+    let flaws: Vec<Flaw> = fields.into_iter().filter_map(unnamed).collect();
+    if flaws.is_empty() { Ok((method, text)) } else { Err(flaws) }
+}
+
 /// Reads a folder.
 ///
 /// # Errors
 /// Everything that is missing or wrong.
 pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     let mut flaws = Vec::new();
-    let what = "code, version, scheme, division (closed or open), settings (an object) and changed";
-    let method = document::<Method>(folder, METHOD, what);
+    let method = method(&folder.join(METHOD));
     let what = "machine, threads, seconds, steps and interactions, each a number or \"unknown\"";
     let system = document::<System>(folder, SYSTEM, what);
     let asked = asked(folder);
@@ -154,15 +168,10 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         Some(Ok(text)) => (Ok(Results::default()), Some((text, renamed.clone()))),
         None => (read::read(folder, renamed), None),
     };
-    let method = method.map_err(|flaw| flaws.push(flaw));
+    let method = method.map_err(|all| flaws.extend(all));
     let system = system.map_err(|flaw| flaws.push(flaw));
     let asked = asked.map_err(|flaw| flaws.push(flaw));
     let results = results.map_err(|all| flaws.extend(all));
-    if let Ok((method, _)) = &method {
-        let fields =
-            [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
-        flaws.extend(fields.into_iter().filter_map(|(name, text)| unnamed(METHOD, name, text)));
-    }
     if let Ok((system, _)) = &system {
         let System { machine, threads, seconds, steps, interactions } = system;
         flaws.extend(unnamed(SYSTEM, "machine", machine));
@@ -473,6 +482,7 @@ impl Entry {
         problem: &Problem,
     ) -> Result<Record, RunError> {
         let playback = self.playback();
+        // Its size is that of the problem, which was made before.
         let context = Context { playback: Some(&playback), allow_long: true, ..Context::default() };
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
         let mut record = case.run(&ours, &context)?;
