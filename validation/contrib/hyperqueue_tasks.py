@@ -15,11 +15,26 @@ from pathlib import Path
 from hyperqueue import Job, LocalCluster
 from hyperqueue.cluster import WorkerConfig
 
+
+
+def refused(why):
+    print(f"hyperqueue_tasks.py: {why}", file=sys.stderr)
+    sys.exit(2)
+
+
+if len(sys.argv) not in (3, 4):
+    refused("expected PLAN STORE [LINES]")
 specs, store = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-lines = int(sys.argv[3]) if len(sys.argv) > 3 else 20
+lines = sys.argv[3] if len(sys.argv) > 3 else "20"
+if not (lines.isascii() and lines.isdigit() and int(lines) > 0):
+    refused(f"LINES is {lines!r}; expected a whole number above 0")
+lines = int(lines)
 program = os.environ.get("TOUCHSTONE", "touchstone")
-count = sum(1 for line in specs.read_text().splitlines() if line.strip())
-# A run that diverges (3) is a result: it has a record.
+with open(specs, encoding="utf-8") as file:
+    count = sum(1 for line in file if line.strip())
+if count == 0:
+    refused(f"the plan {str(specs)!r} describes no run")
+# A run that diverges (3) is a result: it has a record. A line that is refused ends with 2 all the same.
 script = '"$@" || [ $? -eq 3 ]'
 
 job = Job(max_fails=None)

@@ -145,6 +145,70 @@ fn slurm() {
     });
 }
 
+/// A mock of `sbatch`, which runs the tasks of an array one after the other.
+const SBATCH: &str = "#!/bin/sh
+cat >job; last=${1#--array=0-}; k=0; exit=0
+while [ $k -le $last ]; do SLURM_ARRAY_TASK_ID=$k sh job || exit=1; k=$((k + 1)); done
+exit $exit
+";
+
+/// `slurm.sh` in a folder with that mock.
+fn mocked(folder: &Path, arguments: &[&str]) -> Option<i32> {
+    let path = format!("{}:{}", folder.display(), std::env::var("PATH").unwrap_or_default());
+    let script = contrib("slurm.sh");
+    let mut command = command("sh", folder, &[&[&*script], arguments].concat());
+    command.env("PATH", path).output().unwrap().status.code()
+}
+
+/// Tasks executed `$(…)` in the path of the plan; blank lines made a task too many; an empty plan said nothing.
+#[test]
+fn a_path_is_no_command_and_a_plan_without_runs_is_told() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    fs::write(at.join("sbatch"), SBATCH).unwrap();
+    fs::set_permissions(at.join("sbatch"), fs::Permissions::from_mode(0o755)).unwrap();
+    let line = r#"{"case":"couette","variant":"seed","settings":{"rows":8,"end":0.01}}"#;
+    let odd = [
+        "plain",
+        "g$(touch pwned)",
+        "h`touch pwned`",
+        "a $HOME b",
+        "it's \"quoted\"; touch pwned",
+        "-x",
+    ];
+    for name in odd {
+        fs::create_dir(at.join(name)).unwrap();
+        let other = line.replace("0.01", "0.02");
+        let longer = line.replace("0.01", "0.03");
+        fs::write(at.join(name).join("p"), format!("{line}\n \n\n{other}\n\t\n{longer}\n"))
+            .unwrap();
+        let [specs, store] = ["p", "st"].map(|of| format!("./{name}/{of}"));
+        assert_eq!(mocked(at, &[&specs, &store, "2"]), Some(0), "{name}");
+        assert_eq!(records(&at.join(name).join("st")).len(), 3, "{name}");
+        assert!(fs::read_to_string(at.join("job")).unwrap().contains("--index"));
+        assert!(!at.join("pwned").exists(), "{name}");
+    }
+    for lines in ["0", "-1", "x", "", "1.5", "08", "99999999999999999999"] {
+        fs::remove_file(at.join("job")).unwrap_or_default();
+        assert_eq!(mocked(at, &["plain/p", "st", lines]), Some(2), "{lines:?} lines");
+        assert!(!at.join("job").exists(), "{lines}");
+    }
+    fs::write(at.join("empty"), "\n \n").unwrap();
+    for specs in ["empty", "missing", "plain"] {
+        assert_eq!(mocked(at, &[specs, "st"]), Some(2), "{specs}");
+    }
+    assert_eq!(mocked(at, &["plain/p"]), Some(2));
+    // A line that is refused fails its task, whatever diverges beside it.
+    let specs = plan(at, "0.01");
+    let whole = fs::read_to_string(&specs).unwrap();
+    assert_eq!(mocked(at, &["plan.jsonl", "there"]), Some(0), "one diverges");
+    fs::write(&specs, whole + "{}\n").unwrap();
+    assert_eq!(mocked(at, &["plan.jsonl", "there"]), Some(1));
+    let here = command(PROGRAM, at, &["run", "--specs", "plan.jsonl", "--store", "here"]).output();
+    assert_eq!(here.unwrap().status.code(), Some(2), "one diverges, and one is refused");
+}
+
 /// What was done before is kept, what was under way is told, and the same command makes it: the same record.
 #[test]
 fn a_worker_that_is_killed_costs_its_run_alone() {

@@ -94,8 +94,12 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// Those of the system; or if it is no regular file, or longer.
 pub fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     check_regular(path, most)?;
+    bytes_of(File::open(path)?, most)
+}
+
+fn bytes_of(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    from.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
         let why = format!("it has more than {most} bytes");
         return Err(io::Error::new(io::ErrorKind::InvalidData, why));
@@ -103,8 +107,7 @@ pub fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a text of at most so many bytes from a regular file. Some files of the system state no length, and
-/// others grow, so that the bytes read are counted as well.
+/// Reads a text of at most so many bytes from a regular file.
 ///
 /// # Errors
 /// Those of the system; or if it is no regular file, larger, or no UTF-8.
@@ -118,12 +121,8 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
 /// # Errors
 /// Those of the system; or if there are more bytes, or they are no UTF-8.
 pub fn text_of(from: impl Read, most: u64) -> io::Result<String> {
-    let mut text = String::new();
-    if from.take(most + 1).read_to_string(&mut text)? as u64 > most {
-        let words = format!("it has more than {most} bytes");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, words));
-    }
-    Ok(text)
+    let text = String::from_utf8(bytes_of(from, most)?);
+    text.map_err(|reason| io::Error::new(io::ErrorKind::InvalidData, reason.utf8_error()))
 }
 
 /// Refuses what is no regular file, or has more than so many bytes.
@@ -232,16 +231,17 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
         Err(_) if path.is_symlink() => Err(io::Error::other("it is a link that leads nowhere")),
         Err(_) => replace(path, bytes),
         Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
-        Ok(found) if found.is_file() && !is_opened(path) => {
-            replace(&fs::canonicalize(path)?, bytes)
+        Ok(found) if found.is_file() && is_opened(path) => {
+            Err(io::Error::other("it leads to a file that is open already; name that file"))
         }
+        Ok(found) if found.is_file() => replace(&fs::canonicalize(path)?, bytes),
         Ok(found) => write_into(path, &found, bytes),
     };
     write().map_err(|reason| FileError::File { path: path.into(), reason })
 }
 
-/// Does the path lead to what a process has opened, as `/dev/stdout` does? A file behind it is the business of
-/// whoever opened it.
+/// Does the path lead to what a process has opened, as `/dev/stdout` does? Two would write into a file behind
+/// it, one over the other.
 fn is_opened(path: &Path) -> bool {
     let mut path = path.to_path_buf();
     while let Ok(target) = fs::read_link(&path) {
@@ -483,6 +483,11 @@ mod tests {
             let pipe = pipe.clone();
             move || fs::read(pipe).unwrap()
         });
+        let opened = File::open(&target).unwrap();
+        let number = std::os::fd::AsRawFd::as_raw_fd(&opened);
+        let error =
+            write_atomically(format!("/dev/fd/{number}").as_ref(), b"x").unwrap_err().to_string();
+        assert!(error.contains("open already") || cfg!(not(target_os = "linux")), "{error}");
         let many = vec![b'x'; 1 << 20]; // more than a pipe holds
         while write_atomically(&pipe, &many).is_err() {
             std::thread::yield_now(); // until the reader has opened it

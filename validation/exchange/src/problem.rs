@@ -157,23 +157,23 @@ impl Problem {
     /// The problem of a run.
     ///
     /// # Errors
-    /// If the run is refused, or is none of a scene.
+    /// If the run is refused, or is none of a scene, or its particles take more memory than a run may.
     pub fn of(case: &dyn Case, spec: RunSpec) -> Result<Self, RunError> {
-        Self::seen(case, spec, None)
+        Self::seen(case, spec, None, false)
     }
 
     /// The problem at a few early times as another observer sees it, if there is a relation.
     ///
     /// # Errors
-    /// As [`Problem::of`], or if the relation is no symmetry of the problem.
+    /// As [`Problem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the problem.
     pub fn seen(
         case: &dyn Case,
         spec: RunSpec,
         relation: Option<Relation>,
+        allow_long: bool,
     ) -> Result<Self, RunError> {
         let sink = Sink::of(relation, false);
-        let context =
-            Context { outline: Some(sink.clone()), allow_long: true, ..Context::default() };
+        let context = Context { outline: Some(sink.clone()), allow_long, ..Context::default() };
         let (outline, method) = sink.of_run(case.run(&spec, &context), case.name())?;
         let gates = if relation.is_none() { plan::gates_of(case, &spec) } else { Vec::new() };
         Ok(Self { spec, about: case.about(), outline, method, gates, sealed: None, relation })

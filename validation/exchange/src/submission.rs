@@ -115,32 +115,6 @@ pub struct Entry {
     pub curve: Option<(String, Renamed)>,
 }
 
-/// Reads the document of a method alone.
-///
-/// # Errors
-/// If it is none that a submission could have.
-pub fn method(path: &Path) -> Result<(Method, String), Flaw> {
-    let folder = path.parent().unwrap_or_else(|| Path::new("."));
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let (method, text) = document::<Method>(folder, &name, WHAT)?;
-    match method.unnamed(&name) {
-        Some(flaw) => Err(flaw),
-        None => Ok((method, text)),
-    }
-}
-
-/// What is in the document of a method.
-const WHAT: &str =
-    "code, version, scheme, division (closed or open), settings (an object) and changed";
-
-impl Method {
-    /// What is wrong with its texts.
-    fn unnamed(&self, file: &str) -> Option<Flaw> {
-        let fields = [("code", &self.code), ("version", &self.version), ("scheme", &self.scheme)];
-        fields.into_iter().find_map(|(name, text)| unnamed(file, name, text))
-    }
-}
-
 /// Reads a document.
 fn document<T: DeserializeOwned>(
     folder: &Path,
@@ -156,13 +130,28 @@ fn document<T: DeserializeOwned>(
     Ok((read, text))
 }
 
+/// Reads the document of a method, and its text.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn method(path: &Path) -> Result<(Method, String), Vec<Flaw>> {
+    let what = "code, version, scheme, division (closed or open), settings (an object) and changed";
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let (method, text) = document::<Method>(folder, &name, what).map_err(|flaw| vec![flaw])?;
+    let fields = [("code", &method.code), ("version", &method.version), ("scheme", &method.scheme)];
+    let unnamed = |(field, text): (&str, &String)| unnamed(&name, field, text);
+    let flaws: Vec<Flaw> = fields.into_iter().filter_map(unnamed).collect();
+    if flaws.is_empty() { Ok((method, text)) } else { Err(flaws) }
+}
+
 /// Reads a folder.
 ///
 /// # Errors
 /// Everything that is missing or wrong.
 pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     let mut flaws = Vec::new();
-    let method = document::<Method>(folder, METHOD, WHAT);
+    let method = method(&folder.join(METHOD));
     let what = "machine, threads, seconds, steps and interactions, each a number or \"unknown\"";
     let system = document::<System>(folder, SYSTEM, what);
     let asked = asked(folder);
@@ -179,13 +168,10 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         Some(Ok(text)) => (Ok(Results::default()), Some((text, renamed.clone()))),
         None => (read::read(folder, renamed), None),
     };
-    let method = method.map_err(|flaw| flaws.push(flaw));
+    let method = method.map_err(|all| flaws.extend(all));
     let system = system.map_err(|flaw| flaws.push(flaw));
     let asked = asked.map_err(|flaw| flaws.push(flaw));
     let results = results.map_err(|all| flaws.extend(all));
-    if let Ok((method, _)) = &method {
-        flaws.extend(method.unnamed(METHOD));
-    }
     if let Ok((system, _)) = &system {
         let System { machine, threads, seconds, steps, interactions } = system;
         flaws.extend(unnamed(SYSTEM, "machine", machine));
@@ -508,6 +494,7 @@ impl Entry {
         problem: &Problem,
     ) -> Result<Record, RunError> {
         let playback = self.playback();
+        // Its size is that of the problem, which was made before.
         let context = Context { playback: Some(&playback), allow_long: true, ..Context::default() };
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
         let mut record = case.run(&ours, &context)?;

@@ -527,7 +527,7 @@ mod tests {
     use super::*;
     use crate::{
         case::{Recommended, Variant, spec},
-        declare::{Card, Declaration},
+        declare::{Breaks, Card, Declaration, Stated},
         suite,
     };
 
@@ -623,13 +623,17 @@ mod tests {
         fn declaration(&self, _: Tier) -> Declaration {
             let card = || Card {
                 title: "Main",
-                picture: ("none", 0),
-                error: "made up".into(),
+                picture: "none",
                 metric: ERROR.into(),
+                stated: |_| Stated {
+                    name: "made up".into(),
+                    against: "nothing",
+                    uncertainty: None,
+                    unit: "",
+                },
+                beside: None,
                 runs: Vec::new(),
-                against: "nothing",
-                uncertainty: None,
-                reach: ("k", "", ""),
+                breaks: Breaks { setting: "k", words: ["", ""], has_broken: |_| None, sign: "" },
             };
             Declaration { card: self.1.then(card), ..Declaration::default() }
         }

@@ -67,6 +67,11 @@ impl Sink {
         Self { relation, steps: stepped, inside: Arc::default() }
     }
 
+    /// The most steps that are made.
+    pub(crate) fn most_steps(&self) -> f64 {
+        if self.steps { COMPARED[COMPARED.len() - 1] as f64 } else { 0.0 }
+    }
+
     /// How the scene is seen.
     pub fn view(&self) -> View {
         lock(&self.inside).outline.as_ref().map_or_else(View::default, |outline| outline.view)

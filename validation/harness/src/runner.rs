@@ -96,7 +96,10 @@ impl Course<'_> {
         let end = self.times.last().copied().unwrap_or_default();
         let fewest = least.max(1.0) * self.times.len() as f64;
         let steps = ((end - simulation.time()) / dt).max(fewest);
-        let size = Size { sweeps: self.sweeps, ..Size::of(simulation, steps) };
+        let size = Size::of(simulation, steps);
+        // Whoever is told of the particles keeps them, as text in the end.
+        let told = context.at_times.map_or(0.0, |_| size.particles * self.times.len() as f64);
+        let size = Size { sweeps: self.sweeps, samples: told, ..size };
         check_size(size, "the end, the time step or the spacing", context)?;
         if let Some(tell) = context.estimate {
             tell(&size);
@@ -390,11 +393,13 @@ const MOST_STEPS: f64 = 1e10;
 /// # Errors
 /// What it would take, and the settings on which this depends.
 pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Result<(), RunError> {
+    let all = size.steps;
+    let size = due(size, context);
     if size.is_too_much() && !context.allow_long {
         return Err(RunError::TooLong { size, settings });
     }
-    if size.steps.is_nan() || size.steps > MOST_STEPS {
-        let (what, value, most) = ("the number of time steps", size.steps, MOST_STEPS);
+    if all.is_nan() || all > MOST_STEPS {
+        let (what, value, most) = ("the number of time steps", all, MOST_STEPS);
         return Err(RunError::TooMuch { what, value, most, setting: settings });
     }
     if let (true, Some(tell)) = (context.only_estimate, context.estimate) {
@@ -402,6 +407,17 @@ pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Resu
         return Err(RunError::Told);
     }
     Ok(())
+}
+
+/// What of a run is done: no step if its problem alone is asked for or frames stand for its steps, and few if
+/// an observer sees it.
+fn due(size: Size, context: &Context) -> Size {
+    let steps = match &context.outline {
+        Some(outline) => outline.most_steps(),
+        None if context.playback.is_some() => 0.0,
+        None => return size,
+    };
+    Size { steps: size.steps.min(steps), samples: size.samples.min(steps), ..size }
 }
 
 /// Puts the outline of a run, and makes the few steps that another observer sees if there is one. Nothing of

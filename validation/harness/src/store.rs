@@ -59,11 +59,15 @@ pub struct Begun<'a> {
 impl Begun<'_> {
     /// Makes the file anew: through a link one would empty what that leads to, and wait at a pipe.
     fn sign(&self) {
+        self.remove();
+        let _ = File::create_new(self.folder.path().join(&self.name));
+    }
+
+    fn remove(&self) {
         let path = self.folder.path().join(&self.name);
         if path.symlink_metadata().is_ok_and(|found| found.is_file()) {
-            let _ = fs::remove_file(&path);
+            let _ = fs::remove_file(path);
         }
-        let _ = File::create_new(path);
     }
 
     /// A sign of life, if the last one was long ago.
@@ -77,10 +81,10 @@ impl Begun<'_> {
 
     /// It has ended, without a record if there is a reason for that.
     pub fn end(self, failed: Option<&str>) {
-        let _ = match failed {
-            Some(why) => self.folder.write(&self.name, why.as_bytes()).map(drop).ok(),
-            None => fs::remove_file(self.folder.path().join(&self.name)).ok(), // of a link, the link
-        };
+        match failed {
+            Some(why) => drop(self.folder.write(&self.name, why.as_bytes())),
+            None => self.remove(),
+        }
     }
 }
 
@@ -326,6 +330,8 @@ mod tests {
             let begun = store.begin(&spec);
             assert_eq!(store.pending(&spec), Pending::Missing, "{k}: nobody signed");
             begun.end(Some("a reason"));
+            store.begin(&spec).end(None);
+            assert!(sign.symlink_metadata().is_ok_and(|found| !found.is_file()), "{k}");
             assert_eq!(fs::read_to_string(&victim).unwrap_or_default(), ["", "precious"][k.min(1)]);
             fs::remove_file(&sign).unwrap();
         }

@@ -12,6 +12,7 @@ use crate::{
     outline::{Outline, Sink},
     playback::{Frame, Placed},
     relation::{DENSITY, Relation, TIME},
+    size::Size,
 };
 
 /// The largest difference between the particles of two observers, against what round-off explains.
@@ -82,6 +83,46 @@ fn rounding(outline: &Outline) -> f64 {
     f64::EPSILON * sizes.fold(1.0, f64::max)
 }
 
+/// What round-off explains after so many steps.
+pub fn floor(base: &Outline, other: &Outline, steps: f64) -> f64 {
+    rounding(base).max(rounding(other)) * steps * steps
+}
+
+/// A difference below which a relation must find errors: with a larger floor it is no test.
+const TELLING: f64 = 1e-6;
+
+/// The most steps after which round-off explains no difference that a relation must find.
+pub fn most_steps(base: &Outline, other: &Outline) -> f64 {
+    (TELLING / floor(base, other, 1.0)).sqrt().floor()
+}
+
+/// Periods beyond which a place has too few digits left within its period to be compared.
+const MOST_PERIODS: f64 = (1_u64 << 20) as f64;
+
+/// The first place that is too far away, in words, with the number of its frame and of its particle there.
+pub fn far_away((outline, frames): Seen) -> Option<(usize, usize, String)> {
+    let places = frames.iter().enumerate().flat_map(|(k, frame)| {
+        frame.particles.iter().enumerate().map(move |(row, placed)| (k, row, frame.time, placed))
+    });
+    places.into_iter().find_map(|(k, row, time, placed)| {
+        let is_far = |axis: &usize| {
+            outline.domain.period[*axis].is_some_and(|period| {
+                let apart = placed.position[*axis] - outline.domain.low[*axis];
+                !apart.is_finite() || apart.abs() > MOST_PERIODS * period
+            })
+        };
+        let axis = [0, 1].into_iter().find(is_far)?;
+        let what = format!(
+            "particle {} is at {} = {:e} m at t = {time} s; at most {MOST_PERIODS} periods from its box, a place \
+             has the digits to be compared",
+            placed.id,
+            ["x", "y"][axis],
+            placed.position[axis]
+        );
+        Some((k, row, what))
+    })
+}
+
 /// Compares what two observers of one problem have, of which the first sees it as it is. `steps` are those to
 /// the last time.
 pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
@@ -94,7 +135,7 @@ pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
         }
         apart.amax() / medium.h
     };
-    let size = rounding(base.0).max(rounding(other.0));
+    let size = floor(base.0, other.0, 1.0);
     let (quantity, particle) = ("place", 0);
     let mut worst = Difference { time: 0.0, value: 0.0, floor: size, quantity, particle };
     for (k, &time) in times.iter().enumerate() {
@@ -140,6 +181,32 @@ fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<F
         Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
     let (outline, _) = sink.of_run(case.run(spec, &context), case.name())?;
     Ok((outline, frames.into_inner().unwrap_or_else(PoisonError::into_inner)))
+}
+
+/// What the particles that two observers have at three times take of memory, over what is kept of a step of a
+/// particle.
+const KEPT: f64 = 3.0;
+
+/// What the batteries of runs take together, those that are refused left out: all relations, one after the
+/// other, and the particles of all specs at the same time.
+pub fn size(specs: &[(&dyn Case, RunSpec)]) -> Size {
+    let found = Mutex::new(Size::new([0.0, 0.0], 0.0));
+    let tell = |size: &Size| {
+        let (mut all, relations) = (lock(&found), Relation::ALL.len() as f64);
+        all.steps = all.steps.max(relations * size.steps);
+        all.particles += size.particles;
+        all.neighbours = all.neighbours.max(size.neighbours);
+        all.sweeps = all.sweeps.max(size.sweeps);
+        all.samples += KEPT * size.particles;
+    };
+    for (case, spec) in specs {
+        let outline = Some(Sink::of(Some(Relation::Same), true));
+        let (allow_long, only_estimate, estimate) = (true, true, Some(&tell as _));
+        let context =
+            Context { outline, allow_long, only_estimate, estimate, ..Context::default() };
+        let _ = case.run(&spec.clone().allow_unstable(), &context);
+    }
+    found.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// What of a state is below this when squared \[-\] is lost, in one unit and not in another.

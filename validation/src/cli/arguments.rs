@@ -246,6 +246,10 @@ pub struct Written {
     /// The folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+    /// Write into the folder even if it holds another problem, whose files and results then go, or other files
+    /// of the names that are written
+    #[arg(long)]
+    pub overwrite: bool,
 }
 
 #[derive(Debug, Args)]
@@ -262,6 +266,9 @@ pub struct Export {
     /// binary-units, other-units, renumbered, shifted
     #[arg(long, value_name = "NAME", value_parser = Relation::named)]
     pub relation: Option<Relation>,
+    /// Do it even if it is estimated to take more than 4 GB of memory or, with --solve, 24 hours on one core
+    #[arg(long)]
+    pub allow_long: bool,
 }
 
 #[derive(Debug, Args)]
@@ -271,6 +278,9 @@ pub struct Symmetry {
     /// Change a setting (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Do it even if it is estimated to take more than 24 hours on one core or 4 GB of memory
+    #[arg(long)]
+    pub allow_long: bool,
 }
 
 #[derive(Debug, Args)]
@@ -281,6 +291,9 @@ pub struct Relate {
     pub same: PathBuf,
     /// Results for the problem that `export` wrote with another relation
     pub other: PathBuf,
+    /// Do it even if it is estimated to take more than 4 GB of memory
+    #[arg(long)]
+    pub allow_long: bool,
     /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
     pub map: Vec<(String, String)>,
@@ -322,6 +335,9 @@ pub struct Submit {
     /// Say everything that is missing or wrong, and record nothing
     #[arg(long)]
     pub check: bool,
+    /// Do it even if it is estimated to take more than 4 GB of memory
+    #[arg(long)]
+    pub allow_long: bool,
     /// Print every gate, not only those that did not pass
     #[arg(long)]
     pub all: bool,

@@ -7,12 +7,13 @@ use std::sync::{Mutex, PoisonError};
 use ::exchange::{
     challenge,
     flaw::{Flaw, lines},
-    problem::{Asked, Problem, Sealed},
+    problem::{Asked, PROBLEM, Problem, Sealed},
     read::{COLUMNS, Head, RESULTS, Renamed, curve::CURVE},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
 };
 use base::{
+    files,
     files::OutputFolder,
     record::{Profile, Record},
     spec::RunSpec,
@@ -25,6 +26,7 @@ use harness::{
     outline::Sink,
     relation::Relation,
     runs::Judged,
+    size::Size,
     store::Store,
     suite, symmetry,
 };
@@ -38,14 +40,100 @@ pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failur
     let case = cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
-    let problem = Problem::seen(case, spec, arguments.relation)?;
-    let folder = OutputFolder::create(&of.out)?;
-    let mut names = write::write(&problem, of.format, &folder)?;
     if arguments.solve {
-        names.extend(solve(case, &problem, &folder, world)?);
+        estimate(case, &spec, arguments)?;
+    }
+    let problem = Problem::seen(case, spec, arguments.relation, arguments.allow_long)?;
+    let mut files = write::files(&problem, of.format)?;
+    let method = solved_by(&problem);
+    let own = arguments.solve.then_some((METHOD, method.as_bytes()));
+    files.extend(own.map(|(name, bytes)| (name, bytes.to_vec())));
+    let folder = prepare(of, &files, if arguments.solve { &RESULTING } else { &[] })?;
+    let mut names = put(&files, &folder)?;
+    if arguments.solve {
+        names.extend(solve(case, &problem, &folder, arguments.allow_long, world)?);
     }
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
     Ok(())
+}
+
+/// Says what the run takes that solves a problem.
+///
+/// # Errors
+/// If it is refused, or takes more than is allowed.
+fn estimate(case: &dyn Case, spec: &RunSpec, of: &arguments::Export) -> Result<(), Failure> {
+    let tell = |size: &Size| output::say(&format!("estimate: {size}"));
+    let context = Context {
+        allow_long: of.allow_long,
+        outline: of.relation.map(|by| Sink::of(Some(by), true)),
+        only_estimate: true,
+        estimate: Some(&tell),
+        ..Context::default()
+    };
+    match case.run(spec, &context) {
+        Ok(_) | Err(RunError::Told) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// What a run adds to its problem and to the description of its method.
+const RESULTING: [&str; 3] = [RESULTS, CURVE, SYSTEM];
+
+/// The folder of a problem, if nothing of another one is in it and no file of somebody else would be replaced.
+/// Results beside the same description of the method are those of an earlier export.
+fn prepare(
+    of: &arguments::Written,
+    files: &[write::File],
+    resulting: &[&str],
+) -> Result<OutputFolder, Failure> {
+    let path = |name: &str| of.out.join(name);
+    let differs = |(name, bytes): &&write::File| match path(name).metadata() {
+        Ok(old) if old.len() == bytes.len() as u64 => {
+            files::read(&path(name)).map_or(true, |old| old != *bytes)
+        }
+        found => found.is_ok(),
+    };
+    let is_other = |name: &str| files.iter().filter(|(own, _)| *own == name).any(|f| differs(&f));
+    let has_method = path(METHOD).exists() && !is_other(METHOD);
+    let lost = resulting.iter().find(|name| !has_method && path(name).exists());
+    let other = files.iter().find(differs).map(|(name, _)| name).or(lost);
+    if let (Some(name), false) = (other, of.overwrite) {
+        let holds = match is_other(PROBLEM) {
+            true => format!("another problem in {PROBLEM}, and files of the two would mix"),
+            false => format!("another {name}, which would be replaced"),
+        };
+        return Err(Failure::usage(format!(
+            "the folder {:?} holds {holds}; name another folder by --out, or give --overwrite",
+            of.out
+        )));
+    }
+    let folder = OutputFolder::create(&of.out)?;
+    if is_other(PROBLEM) {
+        let all = write::NAMES.iter().chain(&RESULTING).chain(&[METHOD]);
+        all.for_each(|name| drop(std::fs::remove_file(path(name))));
+    }
+    Ok(folder)
+}
+
+/// Writes files into a folder; their names.
+fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Failure> {
+    for (name, bytes) in files {
+        folder.write(name, bytes)?;
+    }
+    Ok(files.iter().map(|(name, _)| name.to_string()).collect())
+}
+
+/// What a submission of this program says of its method.
+fn solved_by(problem: &Problem) -> String {
+    let method = json!({
+        "code": OURS,
+        "version": env!("CARGO_PKG_VERSION"),
+        "scheme": problem.spec.variant,
+        "division": "closed",
+        "settings": problem.spec.settings,
+        "changed": "nothing",
+    });
+    format!("{method:#}\n")
 }
 
 /// Makes the run and writes it as another code would: an example of a submission.
@@ -53,6 +141,7 @@ fn solve(
     case: &dyn Case,
     problem: &Problem,
     folder: &OutputFolder,
+    allow_long: bool,
     world: &World,
 ) -> Result<Vec<String>, Failure> {
     let spec = &problem.spec;
@@ -73,7 +162,7 @@ fn solve(
     };
     let context = Context {
         at_times: Some(&tell),
-        allow_long: true,
+        allow_long,
         interrupt: Some(world.interrupt),
         outline: problem.relation.map(|by| Sink::of(Some(by), true)),
         ..Context::default()
@@ -84,14 +173,6 @@ fn solve(
         made => made?,
     };
     world.go_on("the problem is written, its results are not")?;
-    let method = json!({
-        "code": OURS,
-        "version": env!("CARGO_PKG_VERSION"),
-        "scheme": spec.variant,
-        "division": "closed",
-        "settings": spec.settings,
-        "changed": "nothing",
-    });
     let Record { cost, manifest, .. } = &record;
     let counted = |of: Value| if of.as_f64() > Some(0.0) { of } else { json!("unknown") };
     let system = json!({
@@ -108,9 +189,8 @@ fn solve(
     let told = |what| Failure::usage(format!("{name} is not written: {what}"));
     table.check_finite().map_err(told)?;
     folder.write(name, table.to_csv().as_bytes())?;
-    folder.write(METHOD, format!("{method:#}\n").as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
-    Ok([name, METHOD, SYSTEM].map(String::from).into())
+    Ok([name, SYSTEM].map(String::from).into())
 }
 
 /// The series from which a case measures more than from particles at its few times, if it has one.
@@ -127,16 +207,18 @@ pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), 
     let case = cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     case.settings(variant, &[])?;
-    let (method, text) = submission::method(&arguments.method)
-        .map_err(|flaw| Failure::usage(format!("no submission can have this method: {flaw}")))?;
+    let (method, text) = submission::method(&arguments.method).map_err(|flaws| {
+        let flaws: Vec<String> = flaws.iter().map(Flaw::to_string).collect();
+        Failure::usage(format!("no submission can have this method:\n  {}", flaws.join("\n  ")))
+    })?;
     let set = challenge::draw(case, variant, arguments.seed, &method).map_err(Failure::usage)?;
     let sealed = Sealed { seed: arguments.seed, method: method.digest() };
     let digest = sealed.method.clone();
     let problem = Problem::of(case, case::spec(case, variant, &set)?)?.sealed(case, sealed);
-    let folder = OutputFolder::create(&of.out)?;
-    let mut names = write::write(&problem, of.format, &folder)?;
-    folder.write(METHOD, text.as_bytes())?;
-    names.push(METHOD.into());
+    let mut files = write::files(&problem, of.format)?;
+    files.push((METHOD, text.into_bytes()));
+    let folder = prepare(of, &files, &[])?;
+    let names = put(&files, &folder)?;
     output::print(&format!("{}\n", set.join(" ")))?;
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
     output::say(&format!(
@@ -264,7 +346,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         let asked = entry.asked.as_ref().ok_or_else(none)?;
         let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
         let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
-        let problem = Problem::seen(case, spec_of(case, asked)?, Some(by))?;
+        let problem = Problem::seen(case, spec_of(case, asked)?, Some(by), arguments.allow_long)?;
         asked.agrees(&problem).map_err(|flaw| refused(vec![flaw]))?;
         entry
             .results
@@ -272,6 +354,12 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
             .iter()
             .for_each(|note| output::say(&format!("{}: {note}", folder.display())));
         entry.check(&problem).map_err(refused)?;
+        if let Some((frame, row, what)) =
+            symmetry::far_away((&problem.outline, &entry.results.frames))
+        {
+            let (file, line) = &entry.results.places[frame];
+            return Err(refused(vec![Flaw::of(file, what).at(line + row as u64)]));
+        }
         Ok((entry, problem, by))
     };
     let ((ours, same, first), (theirs, other, by)) =
@@ -286,8 +374,21 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
             by.name()
         )));
     }
-    let end = same.outline.times.last().copied().unwrap_or_default();
-    let steps = ours.system.steps.unwrap_or(end / same.outline.dt);
+    let most = symmetry::most_steps(&same.outline, &other.outline);
+    let mut steps: f64 = 1.0;
+    for (entry, problem, folder) in
+        [(&ours, &same, &arguments.same), (&theirs, &other, &arguments.other)]
+    {
+        let end = problem.outline.times.last().copied().unwrap_or_default();
+        steps = steps.max(entry.system.steps.unwrap_or(end / problem.outline.dt));
+        if steps > most {
+            return Err(Failure::usage(format!(
+                "{}: steps of {SYSTEM} is {steps}, after which round-off would explain any error; a comparison \
+                 is a test after at most {most} steps",
+                folder.display()
+            )));
+        }
+    }
     let (ours, theirs) = (&*ours.results.frames, &*theirs.results.frames);
     let found = symmetry::difference((&same.outline, ours), (&other.outline, theirs), steps);
     super::symmetry::show(vec![super::symmetry::row(case, &same.spec, by, &found)])?;
@@ -321,7 +422,7 @@ fn problem(
     let sealed = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
     let check = |sealed| challenge::check(case, sealed, &entry.method, &spec);
     sealed.map_or(Ok(()), check).map_err(Failure::usage)?;
-    let mut problem = Problem::of(case, spec)?;
+    let mut problem = Problem::seen(case, spec, None, arguments.allow_long)?;
     if let Some(sealed) = sealed {
         problem = problem.sealed(case, sealed.clone());
     }

@@ -160,7 +160,7 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, world: &World
     Ok(exit)
 }
 
-/// How runs ended: in words, and the exit code of the worst of all lines.
+/// How runs ended: in words, and the exit code of all lines.
 fn ended(made: &Made, is_a_line_refused: bool) -> (String, Exit) {
     let count =
         |of: fn(&Status) -> bool| made.records.values().filter(|record| of(&record.status)).count();
@@ -171,14 +171,11 @@ fn ended(made: &Made, is_a_line_refused: bool) -> (String, Exit) {
         "{completed} completed, {diverged} diverged, {refused} refused; {} of them were in the store before",
         made.reused
     );
+    // A run that diverged has a record, so that its code hides no line that was refused.
     let is_refused = is_a_line_refused || refused > 0;
-    let ends = [
-        trouble(made),
-        (diverged > 0).then_some(Exit::Diverged),
-        is_refused.then_some(Exit::Usage),
-    ];
-    let worst = ends.into_iter().flatten().max_by_key(|exit| *exit as u8);
-    (words, worst.unwrap_or(Exit::Pass))
+    let refused = is_refused.then_some(Exit::Usage);
+    let exit = trouble(made).or(refused).or((diverged > 0).then_some(Exit::Diverged));
+    (words, exit.unwrap_or(Exit::Pass))
 }
 
 /// The runs of the lines that were asked for, and what is wrong with the other lines.
@@ -190,6 +187,7 @@ fn planned(
     let text = read(file)
         .map_err(|reason| Failure::usage(format!("cannot read {}: {reason}", file.display())))?;
     let is_empty = |(_, line): &(usize, &str)| line.trim().is_empty();
+    let text = text.trim_start_matches('\u{feff}'); // a byte order mark
     let mut lines: Vec<(usize, &str)> =
         text.lines().enumerate().filter(|line| !is_empty(line)).collect();
     if let Some(index) = &arguments.index {
@@ -232,12 +230,7 @@ fn read(file: &Path) -> io::Result<String> {
         Some("-") => Box::new(io::stdin()),
         _ => Box::new(File::open(file)?),
     };
-    let mut text = String::new();
-    if from.take(MOST_BYTES + 1).read_to_string(&mut text)? as u64 > MOST_BYTES {
-        let words = format!("it has more than {MOST_BYTES} bytes");
-        return Err(io::Error::new(io::ErrorKind::InvalidData, words));
-    }
-    Ok(text)
+    files::text_of(from, MOST_BYTES)
 }
 
 /// The run that a line describes, or what is wrong with the line.

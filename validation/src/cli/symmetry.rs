@@ -34,6 +34,11 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
             specs.push((case, case::spec(case, variant.name, &arguments.set)?));
         }
     }
+    let size = symmetry::size(&specs);
+    if size.is_too_much() && !arguments.allow_long {
+        let settings = "the settings, or name fewer cases";
+        return Err(RunError::TooLong { size, settings }.into());
+    }
     let mut all = Vec::new();
     let battery = |(case, spec): &(&dyn Case, _)| {
         world.go_on("nothing is told").map(|()| symmetry::battery(*case, spec))

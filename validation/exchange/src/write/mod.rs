@@ -2,10 +2,7 @@
 
 mod lammps;
 
-use base::{
-    files::{FileError, OutputFolder},
-    vtk,
-};
+use base::vtk;
 use thiserror::Error;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
@@ -33,9 +30,6 @@ pub enum Format {
 /// Why a problem was not written.
 #[derive(Debug, Error)]
 pub enum WriteError {
-    /// A file.
-    #[error(transparent)]
-    File(#[from] FileError),
     /// Particles that ParaView cannot show.
     #[error(transparent)]
     Grid(#[from] std::io::Error),
@@ -53,15 +47,27 @@ pub enum WriteError {
     },
 }
 
-/// Writes the problem; the names of the files.
+/// A file by its name.
+pub type File = (&'static str, Vec<u8>);
+
+/// The names of all files that a problem may have.
+pub const NAMES: [&str; 8] = [
+    PARTICLES,
+    README,
+    PROBLEM,
+    "particles.vtu",
+    "data.lmp",
+    "in.lmp",
+    "run_lammps.py",
+    "run_pysph.py",
+];
+const README: &str = "README.md";
+
+/// The files of a problem, its document last.
 ///
 /// # Errors
-/// If the code of the format cannot run it, or a file cannot be written.
-pub fn write(
-    problem: &Problem,
-    format: Format,
-    folder: &OutputFolder,
-) -> Result<Vec<String>, WriteError> {
+/// If the code of the format cannot run it.
+pub fn files(problem: &Problem, format: Format) -> Result<Vec<File>, WriteError> {
     let own: Vec<(&str, String)> = match format {
         Format::Csv => Vec::new(),
         Format::Vtu => vec![("particles.vtu", vtk::particles(0.0, &problem.particles())?)],
@@ -72,16 +78,13 @@ pub fn write(
         }
     };
     let document = format!("{:#}\n", problem.to_json());
-    let mut files: Vec<(&str, Vec<u8>)> = vec![
-        (PARTICLES, problem.particles().to_csv().into_bytes()),
-        ("README.md", problem.page().into_bytes()),
-        (PROBLEM, document.into_bytes()),
+    let mut files = vec![
+        (PARTICLES, problem.particles().to_csv()),
+        (README, problem.page()),
+        (PROBLEM, document),
     ];
-    files.extend(own.into_iter().map(|(name, text)| (name, text.into_bytes())));
-    for (name, bytes) in &files {
-        folder.write(name, bytes)?;
-    }
-    Ok(files.into_iter().map(|(name, _)| name.to_string()).collect())
+    files.splice(2..2, own);
+    Ok(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
 }
 
 /// Refuses what a code of weakly compressible fluids with walls of particles cannot do.
