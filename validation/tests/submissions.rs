@@ -347,7 +347,7 @@ const DAMAGES: [(&str, Damage, &[&str]); 45] = [
     (
         "a machine of control characters",
         |f| edit(f, "system.json", "\"machine\": \"", "\"machine\": \"\\u001b[2J"),
-        &["system.json, column machine", "control"],
+        &["system.json, column machine", "U+001B, which nobody sees"],
     ),
     (
         "a time twice but for round-off",
