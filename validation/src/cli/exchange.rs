@@ -272,6 +272,11 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
             .iter()
             .for_each(|note| output::say(&format!("{}: {note}", folder.display())));
         entry.check(&problem).map_err(refused)?;
+        if let Some(few) = entry.few_digits(&problem) {
+            let words =
+                format!("observers are compared to round-off, and these are not given: {few}");
+            return Err(usage(&words));
+        }
         Ok((entry, problem, by))
     };
     let ((ours, same, first), (theirs, other, by)) =
