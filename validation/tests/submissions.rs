@@ -691,7 +691,7 @@ fn rounding_of_a_file_is_no_flaw_of_a_method() {
         let own = folder.path().join("own");
         let whole = read(&own.join("results.csv"));
         let case = line.split(' ').next().unwrap();
-        let mut told = |digits: usize| {
+        let told = |digits: usize| {
             fs::write(own.join("results.csv"), &whole).unwrap();
             round(&own, digits);
             let out =
