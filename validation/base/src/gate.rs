@@ -80,7 +80,7 @@ impl Bound {
     }
 
     /// Smallest and largest number inside.
-    fn ends(self) -> [f64; 2] {
+    pub fn ends(self) -> [f64; 2] {
         match self {
             Bound::Below(high) => [f64::NEG_INFINITY, high],
             Bound::Above(low) => [low, f64::INFINITY],

@@ -9,6 +9,7 @@
 //! runs.
 
 pub mod challenge;
+mod digits;
 pub mod flaw;
 pub mod library;
 pub mod problem;

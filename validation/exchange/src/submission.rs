@@ -5,7 +5,8 @@ use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
 use base::{
     files,
-    record::{self, Cost, NOT_ASKED, Record, Status},
+    gate::Gate,
+    record::{self, Cost, Metric, NOT_ASKED, Record, Status},
     reference::sha256,
     spec::{Measure, RunSpec},
     submission::{Division, MACHINE, Submission},
@@ -27,6 +28,7 @@ use serde_json::{Map, Value};
 use solver::Role;
 
 use crate::{
+    digits::{self, ROUND_OFF},
     flaw::Flaw,
     problem::{Asked, PROBLEM, Problem, SCHEMA},
     read::{
@@ -502,6 +504,7 @@ impl Entry {
         record.run.settings = problem.spec.settings.clone();
         let why = "the particles of the submission do not determine it";
         record.take_out(&|_, metric| !metric.value.is_finite(), why);
+        self.leave_out_rounded(case, problem, &mut record);
         suite::leave_out_ours(case, &mut record);
         for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
             *reason = "it needs the sums of this program's own terms".into();
@@ -517,6 +520,40 @@ impl Entry {
             record.status = Status::Completed;
         }
         Ok(record)
+    }
+
+    /// The digits that were not handed in, in words, if there are few: rounding of a file is no flaw of a method.
+    pub fn few_digits(&self, problem: &Problem) -> Option<String> {
+        let Results { frames, own, .. } = &self.results;
+        let (last, particles) = (frames.last()?, &problem.outline.particles);
+        let own: BTreeMap<u32, [f64; 5]> = match self.particles() {
+            Division::Closed => BTreeMap::new(),
+            Division::Open => {
+                own.iter().map(|own| (own.start.id, digits::of(&own.start))).collect()
+            }
+        };
+        let columns = digits::NAMES.map(|name| particles.column(name));
+        let given = |id: u32| {
+            let row = columns.map(|column| column.get(id as usize).copied());
+            row.iter().all(Option::is_some).then(|| row.map(|of| of.unwrap_or(f64::NAN)))
+        };
+        let start = |id: u32| if own.is_empty() { given(id) } else { own.get(&id).copied() };
+        digits::few(last, &start).filter(|_| self.curve.is_none())
+    }
+
+    /// Leaves out what few digits do not determine: what the case measures over a very short time, and what is
+    /// compared with round-off.
+    fn leave_out_rounded(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
+        let Some(few) = self.few_digits(problem) else { return };
+        let rates = case.declaration(Tier::Quick).of_all_digits;
+        let is_of_round_off =
+            |of: &&Gate| of.bound.ends().iter().any(|end| *end != 0.0 && end.abs() <= ROUND_OFF);
+        let of_round_off = problem.gates.iter().filter(is_of_round_off);
+        let metrics: Vec<&String> = of_round_off.map(|gate| &gate.metric).collect();
+        let is_to_go = |name: &str, _: &Metric| {
+            record::is_of(rates, name) || metrics.iter().any(|metric| *metric == name)
+        };
+        record.take_out(&is_to_go, &format!("not given: {few}"));
     }
 
     fn cost(&self, record: &Record) -> Cost {

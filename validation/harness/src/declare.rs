@@ -52,6 +52,8 @@ pub struct Declaration {
     pub stepwise: &'static [MetricKey],
     /// The metrics that compare with the theory of our own methods, which says nothing of other codes.
     pub of_methods: &'static [MetricKey],
+    /// The metrics that are rates over a very short time, which results with few digits do not determine.
+    pub of_all_digits: &'static [MetricKey],
     /// What can be measured of a profile or a series of another code that hands in no particles.
     pub curve: Option<Curve>,
     /// What sealed problems draw, and by what they are judged; none if no reference holds at drawn settings.

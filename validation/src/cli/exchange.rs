@@ -360,6 +360,11 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
             let (file, line) = &entry.results.places[frame];
             return Err(refused(vec![Flaw::of(file, what).at(line + row as u64)]));
         }
+        if let Some(few) = entry.few_digits(&problem) {
+            let words =
+                format!("observers are compared to round-off, and these are not given: {few}");
+            return Err(usage(&words));
+        }
         Ok((entry, problem, by))
     };
     let ((ours, same, first), (theirs, other, by)) =

@@ -178,6 +178,7 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
     declaration: |tier| Declaration {
         studies: Some(Box::new(move |runs| study::studies(tier, runs))),
         sealed: Some(SEALED),
+        of_all_digits: &[run::ERROR, run::GAIN, run::BIAS, run::NOISE, run::SYMBOL_ERROR],
         ..Declaration::default()
     },
     plan: plan::plan,

@@ -1,0 +1,72 @@
+//! Digits of what was handed in: rates over a short time, and equality to round-off, need all of a double.
+
+use harness::playback::{Frame, Placed};
+
+/// Numbers with at most so many digits are rounded: of numbers with all digits one in 10⁵ is as short.
+const FEW: usize = 11;
+/// As many different numbers tell that it is no coincidence.
+const DIFFERENT: usize = 3;
+/// A bound as small is of round-off.
+pub const ROUND_OFF: f64 = 1e-6;
+
+/// The columns of a particle.
+pub const NAMES: [&str; 5] = ["x", "y", "u", "v", "density"];
+
+/// The numbers of a particle; NaN for what is missing.
+pub fn of(placed: &Placed) -> [f64; 5] {
+    let Placed { position, velocity, density, .. } = placed;
+    [position.x, position.y, velocity.x, velocity.y, density.unwrap_or(f64::NAN)]
+}
+
+/// Digits of a number as the shortest text that reads back equal, or that of a float of 4 bytes.
+fn digits(value: f64) -> usize {
+    let short = value as f32;
+    let text = if f64::from(short) == value { format!("{short:e}") } else { format!("{value:e}") };
+    let mantissa = text.split('e').next().unwrap_or_default();
+    mantissa.bytes().filter(u8::is_ascii_digit).count()
+}
+
+/// The first column of a frame whose numbers all have few digits, in words, if there is one: of the numbers
+/// that are not those of the start, which may be round.
+pub fn few(frame: &Frame, start: &dyn Fn(u32) -> Option<[f64; 5]>) -> Option<String> {
+    (0..NAMES.len()).find_map(|k| {
+        let moved = frame.particles.iter().filter_map(|placed| {
+            let (now, before) = (of(placed)[k], start(placed.id)?[k]);
+            (now != before && now.is_finite() && now != 0.0).then_some(now)
+        });
+        let (mut most, mut different) = (0, Vec::new());
+        for value in moved {
+            most = most.max(digits(value));
+            if most > FEW {
+                return None;
+            }
+            if different.len() < DIFFERENT && !different.contains(&value) {
+                different.push(value);
+            }
+        }
+        let name = NAMES[k];
+        (different.len() == DIFFERENT)
+            .then(|| format!("all digits of {name}, which has at most {most}"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_of_decimals_and_of_short_floats_are_counted() {
+        let third = 1.0 / 3.0;
+        for (value, expected) in [
+            (0.25, 2),
+            (-1500.0, 2),
+            (third, 16),
+            (f64::from(1.0_f32 / 3.0), 8),
+            (0.3333333, 7),
+            (1e300, 1),
+            (-1.000002e-7, 7),
+        ] {
+            assert_eq!(digits(value), expected, "{value}");
+        }
+    }
+}
