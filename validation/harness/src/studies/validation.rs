@@ -345,7 +345,7 @@ mod tests {
         let found = of(&[(10.0, 0.04), (20.0, -0.02), (40.0, 0.01)]);
         near(found.expanded, 3.0 * 0.06);
         // An order below 1/2 is no order: the range of 0.8, 0.9 and 1.
-        let slow = [1.0_f64, 0.9, 0.8].map(|value| (value.powf(-1.0 / 0.2), value));
+        let slow = [1.0_f64, 0.9, 0.8].map(|value| (powf(value, -1.0 / 0.2), value));
         let found = of(&slow);
         near(found.expanded, 3.0 * 0.2);
         assert!(!found.has_order, "{}", found.how);
