@@ -7,7 +7,7 @@
 set -eu
 refused() { echo "slurm.sh: $1" >&2; exit 2; }
 [ $# -ge 2 ] || refused "expected PLAN STORE [LINES [options of sbatch]]"
-lines=${3:-20}
+lines=${3-20}
 case $lines in
 '' | 0* | *[!0-9]* | ??????????*) refused "LINES is '$lines'; expected a whole number from 1 to 999999999" ;;
 esac

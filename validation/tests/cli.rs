@@ -331,7 +331,6 @@ fn watching_does_not_change_a_run() {
     let names: Vec<&str> = SHORT.iter().filter_map(|run| run.split(' ').next()).collect();
     let all: Vec<&str> = cases::CASES.iter().map(|case| case.name()).collect();
     assert!(all.iter().all(|name| names.contains(name)), "{all:?} against {names:?}");
-    let mut profiled = [0.0; 2];
     for run in SHORT {
         let folder = tempfile::tempdir().unwrap();
         let arguments: Vec<&str> = ["run"].into_iter().chain(run.split(' ')).collect();
@@ -346,13 +345,13 @@ fn watching_does_not_change_a_run() {
         assert_eq!(work(&watched.cost), work(&unwatched.cost), "{run}");
         assert_eq!(unwatched.cost.breakdown, None, "{run}");
         let breakdown = watched.cost.breakdown.as_ref().expect("a profile");
-        let [stepping, observing] = breakdown.totals();
-        for (parts, whole) in
-            [(stepping, watched.cost.wall_s), (observing, watched.cost.observing_s)]
-        {
-            assert!(parts < 1.05 * whole + 1e-3, "{run}: {parts} s of {whole} s");
-            profiled = [profiled[0] + parts, profiled[1] + whole];
+        // Another program may take a while between two clocks, so that seconds are not compared.
+        for part in breakdown.stepping.iter().chain(&breakdown.observing) {
+            let is_sound = part.times > 0 && part.seconds >= 0.0 && part.seconds.is_finite();
+            assert!(is_sound, "{run}: {part:?}");
         }
+        let most = breakdown.stepping.iter().map(|part| part.times).max();
+        assert!(most >= Some(breakdown.steps), "{run}: a part of each step was seen");
         assert_eq!(breakdown.steps, watched.cost.steps, "{run}");
         assert!(breakdown.observing.iter().any(|part| part.name == "frames"), "{run}");
         let shown = |of: &Record, name| format!("{:?}", of.metrics.get(name)); // some may be NaN
@@ -382,8 +381,6 @@ fn watching_does_not_change_a_run() {
         }
         assert!(read("profile.csv").lines().count() > 8, "{run}");
     }
-    // Each part is inside the whole; another program may take a while between the two clocks.
-    assert!(profiled[0] > 0.7 * profiled[1], "{} s of {} s", profiled[0], profiled[1]);
 }
 
 /// The last sample of the rings was the one before it once more, as was that of a disk of the leapfrog, and a

@@ -39,9 +39,9 @@ pub(super) fn height(entries: &[Entry], width: f64) -> f64 {
 
 /// Draws the entries side by side within this width, each column from top to bottom.
 pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], (left, top): Point, width: f64) {
-    let rows = rows(entries, width);
+    let (rows, column) = (rows(entries, width), column(entries));
     for (i, Entry { name, look }) in entries.iter().enumerate() {
-        let x = left + PADDING + (i / rows) as f64 * column(entries);
+        let x = left + PADDING + (i / rows) as f64 * column;
         let y = top + PADDING + ((i % rows) as f64 + 0.5) * ROW - 2.5;
         if let Some(dash) = look.line {
             canvas.dashed(&[(x, y), (x + SAMPLE, y)], look.colour, look.width, dash);

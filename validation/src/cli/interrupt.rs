@@ -1,9 +1,10 @@
 //! Signals: the first asks every loop to stop in order, and what does not stop soon is stopped; a second one
 //! stops at once. No file is left half-written.
 
+use std::io;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread::{sleep, spawn};
+use std::thread::{self, sleep};
 use std::time::Duration;
 
 use base::files;
@@ -47,17 +48,29 @@ fn interrupt() {
     if INTERRUPTED.swap(true, Ordering::Relaxed) {
         end();
     }
-    spawn(|| {
+    let patient = spawn(|| {
         sleep(PATIENCE);
         while HELD.load(Ordering::Relaxed) {
             sleep(SHORT);
         }
         // On a thread of its own: nobody may read what is said.
-        spawn(|| output::say("touchstone: interrupted; every file that is there is whole"));
+        let last = "touchstone: interrupted; every file that is there is whole";
+        let _ = spawn(|| output::say(last));
         sleep(SHORT);
         end();
     });
+    if patient.is_err() {
+        end(); // nobody would end what does not stop by itself
+    }
     output::say("interrupting; interrupt once more to end at once");
+}
+
+/// Starts a thread, whatever size of a stack the environment asks for.
+///
+/// # Errors
+/// If the system has no more threads.
+fn spawn(work: impl FnOnce() + Send + 'static) -> io::Result<()> {
+    thread::Builder::new().stack_size(super::STACK).spawn(work).map(drop)
 }
 
 fn end() -> ! {
@@ -71,7 +84,7 @@ fn end() -> ! {
 /// # Errors
 /// If the system refuses.
 #[cfg(unix)]
-pub fn listen() -> std::io::Result<()> {
+pub fn listen() -> io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::iterator::Signals;
 
@@ -81,8 +94,7 @@ pub fn listen() -> std::io::Result<()> {
     if is_ignored(SIGHUP) == Some(false) {
         signals.add_signal(SIGHUP)?;
     }
-    spawn(move || signals.forever().for_each(|_| interrupt()));
-    Ok(())
+    spawn(move || signals.forever().for_each(|_| interrupt()))
 }
 
 /// Does this process ignore a signal? Known on Linux alone.
@@ -99,7 +111,7 @@ fn is_ignored(signal: i32) -> Option<bool> {
 /// # Errors
 /// Always.
 #[cfg(not(unix))]
-pub fn listen() -> std::io::Result<()> {
+pub fn listen() -> io::Result<()> {
     let _: fn() = interrupt;
     Err(std::io::ErrorKind::Unsupported.into())
 }

@@ -35,6 +35,7 @@ mod symmetry;
 mod tests;
 mod verify;
 
+use std::error::Error as _;
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
@@ -282,8 +283,6 @@ pub fn main() -> ExitCode {
         output::say(&format!(
             "note: RAYON_NUM_THREADS is more than {threads}; only {threads} threads are used"
         ));
-        // The only other error is that the pool is there already.
-        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     }
     if let Err(error) = interrupt::listen() {
         output::say(&format!("note: an interrupt will end the program at once ({error})"));
@@ -312,6 +311,10 @@ fn conclude(command: impl FnOnce() -> Outcome) -> Exit {
 
 fn dispatch(command: &Command, world: &World) -> Outcome {
     let done = |()| Exit::Pass;
+    use Command::{Completions, Doctor, Explain, List, Man};
+    if !matches!(command, List(_) | Explain(_) | Doctor(_) | Completions(_) | Man(_)) {
+        start_threads()?;
+    }
     match command {
         Command::List(arguments) => list::list(arguments, world).map(done),
         Command::Run(arguments) => run::run(arguments, world),
@@ -355,12 +358,41 @@ fn threads_of(variable: Option<&str>) -> usize {
     if asked.is_some_and(|asked| asked > most) { most } else { 0 }
 }
 
-/// Does the work on a pool of so many threads, by default one a core.
+/// Size of the stack of each thread \[bytes\], whatever the environment asks for.
+const STACK: usize = 1 << 21;
+
+fn pool(threads: usize) -> rayon::ThreadPoolBuilder {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK)
+}
+
+fn no_threads(threads: usize, error: &rayon::ThreadPoolBuildError) -> Failure {
+    let many = if threads > 0 { threads.to_string() } else { "one a core".into() };
+    Failure::usage(format!(
+        "the threads cannot be started ({many}): {error}; ask for fewer by --threads N or RAYON_NUM_THREADS=N"
+    ))
+}
+
+/// Starts the threads that all commands share.
+///
+/// # Errors
+/// If the system has not so many.
+fn start_threads() -> Result<(), Failure> {
+    let threads = default_threads();
+    match pool(threads).build_global() {
+        Err(error) if error.source().is_some() => Err(no_threads(threads, &error)),
+        _ => Ok(()), // the other error is that they are started
+    }
+}
+
+/// Does the work on a pool of so many threads, by default on those that all commands share.
 fn on_threads<T: Send>(
     threads: Option<u16>,
     work: impl FnOnce() -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
-    let threads = threads.map_or_else(default_threads, usize::from);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool?.install(work)
+    let Some(threads) = threads.map(usize::from) else {
+        start_threads()?;
+        return rayon::scope(|_| work());
+    };
+    let pool = pool(threads).build().map_err(|error| no_threads(threads, &error))?;
+    pool.install(work)
 }

@@ -5,7 +5,7 @@ use base::{
     record::Record,
     submission::{Division, OURS, SESSION, Submission},
 };
-use report::{Axis, Cell, Colour, Figure, Plot, Series, percent, plain, seconds};
+use report::{Axis, Cell, Colour, Figure, Plot, Series, Shape, percent, plain, seconds};
 
 use super::anchor;
 use crate::{
@@ -110,6 +110,24 @@ fn better(marks: &[Mark]) -> Option<String> {
     })
 }
 
+/// More names than these are no legend: a thousand of them took 2 GB to draw. The table has all.
+const MOST_NAMED: usize = 24;
+
+/// Marks by their names: ours and the most accurate of the others, and all others.
+fn named<'m, 'a>(marks: &'m [Mark<'a>]) -> (Vec<&'m [Mark<'a>]>, Vec<&'m [Mark<'a>]>) {
+    let mut all: Vec<&[Mark]> = marks.chunk_by(|a, b| a.name == b.name).collect();
+    let rank = |marks: &&[Mark]| {
+        let least = marks.iter().map(|mark| mark.error).fold(f64::INFINITY, f64::min);
+        if marks[0].is_ours() { -1.0 } else { least }
+    };
+    if all.len() > MOST_NAMED {
+        all.sort_by(|a, b| rank(a).total_cmp(&rank(b)));
+    }
+    let others = all.split_off(all.len().min(MOST_NAMED));
+    all.sort_by(|a, b| a[0].name.cmp(&b[0].name));
+    (all, others)
+}
+
 /// Error against run time, a panel for each division in which other codes are.
 fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     let mut caption =
@@ -139,8 +157,13 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
             let series = Series::line(&all[0].name, points).cycle(k).labels(labels);
             if all[0].is_ours() { series.colour(Colour::BLACK) } else { series }
         };
-        let layers = marks.chunk_by(|a, b| a.name == b.name).enumerate().map(series);
-        has_others.then(|| layers.fold(plot, Plot::layer))
+        let (named, others) = named(marks);
+        let others: Vec<_> = others.into_iter().flatten().filter(is_shown).collect();
+        let points = others.iter().map(|mark| (mark.seconds, mark.error)).collect();
+        let words = format!("others ({})", others.len());
+        let others = Series::line(words, points).open_markers(Shape::Circle);
+        let layers = named.into_iter().enumerate().map(series);
+        has_others.then(|| layers.fold(plot, Plot::layer).layer(others))
     };
     let panels = [Division::Closed, Division::Open].into_iter().filter_map(panel);
     panels.fold(figure, Figure::panel)
@@ -319,6 +342,24 @@ mod tests {
     fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {
         let (name, particles, session) = (of.code.clone(), rows, Some(session));
         Mark { of, name, particles, session, error, seconds: s }
+    }
+
+    /// A page of a thousand submissions took 2 GB, for a legend of a thousand lines.
+    #[test]
+    fn a_figure_names_the_best_of_many_codes_and_counts_the_others() {
+        let all: Vec<Submission> = (0..100).map(|k| of(&format!("code-{k:02}"))).collect();
+        let error = |k: usize| 0.01 * (1.0 + (k as f64 - 50.5).abs());
+        let mut marks: Vec<Mark> =
+            all.iter().enumerate().map(|(k, of)| mark(of, "a", 10, error(k), 1.0)).collect();
+        let ours = of(OURS);
+        marks.push(mark(&ours, "a", 10, 9.0, 1.0));
+        let (shown, others) = named(&marks);
+        let names: Vec<&str> = shown.iter().map(|marks| &*marks[0].name).collect();
+        assert_eq!([names.len(), others.len()], [MOST_NAMED, 101 - MOST_NAMED]);
+        assert!(names.contains(&OURS) && names.contains(&"code-50") && !names.contains(&"code-00"));
+        assert!(names.is_sorted());
+        let (few, none) = named(&marks[..3]);
+        assert!(few.len() == 3 && none.is_empty());
     }
 
     /// At equal resolution errors compare, at no more error times, and nothing across sessions.
