@@ -44,8 +44,8 @@ pub fn section(suite: &Suite) -> Section {
         .table(
             "Where the time goes, in the largest run of the recommended variant of each main case that was \
              timed alone. Stepping and observing: nanoseconds of wall time a fluid particle and time \
-             step. Sweeps, refresh, search and rest: shares of the stepping. Inside the support: the share of \
-             the neighbours visited that are nearer than the support of the kernel. `touchstone run CASE \
+             step. Sweeps, refresh, search and rest: shares of the stepping. Inside the support: the share \
+             of the neighbours visited that are nearer than the support of the kernel. `touchstone run CASE \
              --profile` shows the same of any run.",
             suite.cases.iter().filter_map(largest),
         );

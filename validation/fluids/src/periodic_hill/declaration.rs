@@ -110,7 +110,8 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
         ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));
     let rest = if re == "10" { ", when 0.3 % of U_b is left of the start" } else { "" };
     let about = format!(
-        "Flow over periodic hills at Re {re} after {end} H/U_b{rest}, against finite elements at ten stations."
+        "Flow over periodic hills at Re {re} after {end} H/U_b{rest}, against finite elements at ten \
+         stations."
     );
     if tier == Tier::Full {
         let because = "Walls are of first order on disordered particles, sums of second.";

@@ -197,8 +197,8 @@ fn histories(tier: Tier) -> Curves {
         caption: "Centre of mass of one of two rubber rings that collide at 0.059 c0 each, its velocity, and \
                   the width along and height across the line of flight. Coloured: the recommended variant \
                   and the paper's. Black: finite elements with the law of the recommended variant, from \
-                  which those with the law of the paper differ little; their uncertainty is less than the width \
-                  of the line."
+                  which those with the law of the paper differ little; their uncertainty is less than the \
+                  width of the line."
             .into(),
         panels: labels.into_iter().enumerate().map(panel).collect(),
     }
