@@ -11,7 +11,8 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use base::{
-    record::{Cost, NOT_ASKED, Record, Status},
+    absent::Absent,
+    record::{Cost, Record, Status},
     settings::Field,
     spec::RunSpec,
 };
@@ -358,7 +359,7 @@ fn watching_does_not_change_a_run() {
         for name in unwatched.metrics.keys() {
             assert_eq!(shown(&watched, name), shown(&unwatched, name), "{run}: {name}");
         }
-        let unasked = unwatched.absent.iter().filter(|(_, why)| *why == NOT_ASKED).count();
+        let unasked = unwatched.absent.iter().filter(|(_, why)| **why == Absent::NotAsked).count();
         assert_eq!(unwatched.metrics.len() + unasked, watched.metrics.len(), "{run}");
         let read = |name: &str| fs::read_to_string(folder.path().join("here").join(name)).unwrap();
         let attribute = |line: &str| line.split('"').nth(1).and_then(|text| text.parse().ok());

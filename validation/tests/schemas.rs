@@ -203,8 +203,10 @@ fn rare_records(record: &Record) -> Vec<Value> {
     rare.run.disorder = Some(Disorder { most: 1e-6, seed: 1 });
     let [code, version, scheme, method, results] =
         ["code", "1", "WCSPH", "abc", "def"].map(String::from);
-    let (division, results, seed) = (Division::Closed, Some(results), Some(1));
-    let submission = Submission { code, version, scheme, division, method, results, seed };
+    let (division, results, seed, states_our_method) =
+        (Division::Closed, Some(results), Some(1), true);
+    let submission =
+        Submission { code, version, scheme, division, method, results, seed, states_our_method };
     rare.run.submission = Some(Box::new(submission));
     rare.cost.alone_s = vec![0.1, 0.2];
     rare.cost.resumed = 1;

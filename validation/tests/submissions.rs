@@ -141,7 +141,11 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
         assert!(found.metrics.len() >= least, "{line}: {:?}", found.metrics.keys());
         let lacking = own.metrics.keys().filter(|name| !found.metrics.contains_key(*name));
         lacking.for_each(|name| assert!(found.absent.contains_key(name), "{line}: {name}"));
-        assert!(found.absent[left_out].contains("particles"), "{line}: {:?}", found.absent);
+        assert!(
+            found.absent[left_out].to_string().contains("particles"),
+            "{line}: {:?}",
+            found.absent
+        );
         assert_eq!((found.state, found.cost.particles), (None, own.cost.particles), "{line}");
     }
 }

@@ -193,6 +193,10 @@ pub struct Gate {
     pub control: bool,
     /// is a run that ends early the limitation or the failure that is expected?
     pub may_end_early: bool,
+    /// the bound for a code that does not state our own kernel, support and step, and why, if this bound rests
+    /// on them
+    #[serde(skip)]
+    pub of_others: Option<(Bound, String)>,
 }
 
 impl Gate {
@@ -219,6 +223,7 @@ impl Gate {
             cause: None,
             control: false,
             may_end_early: false,
+            of_others: None,
         };
         gate.sound()
     }
@@ -249,6 +254,32 @@ impl Gate {
     /// If the gate has neither.
     pub fn may_end_early(self) -> Self {
         Gate { may_end_early: true, ..self }.sound()
+    }
+
+    /// A code with another kernel, support or step is judged by this bound: an accuracy that any method of
+    /// this resolution has, for a reason of its own.
+    ///
+    /// # Panics
+    /// If the gate is unsound with it (see [`Gate::check`]).
+    pub fn of_others(self, bound: Bound, because: impl Into<String>) -> Self {
+        let because = because.into();
+        Gate { bound, because: because.clone(), ..self.clone() }.sound();
+        Gate { of_others: Some((bound, because)), ..self }
+    }
+
+    /// The gate by which the run of another code is judged, which `states` our kernel, support and step or
+    /// not; none if the bound rests on these alone, or on what this program computed before. What is known to
+    /// limit our method, or expected of it, is no excuse for another one: there the bound alone counts.
+    pub fn for_submission(self, states: bool) -> Option<Self> {
+        let Gate { id, metric, bound, evidence, because, of_others, .. } = self;
+        match of_others {
+            _ if states => Some(Gate::new(id, metric, bound, evidence, because)),
+            Some((bound, because)) => {
+                Some(Gate::new(id, metric, bound, Evidence::Analytic, because))
+            }
+            None if matches!(evidence, Evidence::Theory | Evidence::Regression) => None,
+            None => Some(Gate::new(id, metric, bound, evidence, because)),
+        }
     }
 
     /// Panics unless it is sound.

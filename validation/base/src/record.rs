@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
+use crate::absent::Absent;
 use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::reference::sha256;
@@ -108,7 +109,7 @@ pub struct Record {
     pub metrics: BTreeMap<String, Metric>,
     /// results that this run gives no meaning, by name, and the reason why
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub absent: BTreeMap<String, String>,
+    pub absent: BTreeMap<String, Absent>,
     /// what the run took
     pub cost: Cost,
     /// what the run chose: `h/dx`, kernel, integrator, c0, dt; see [`number::json`](crate::number::json)
@@ -463,7 +464,7 @@ impl Record {
 
     /// How much was measured of the run: all, unless a metric is absent because it was not asked for.
     pub fn measured(&self) -> Measure {
-        let is_part = self.absent.values().any(|reason| reason == NOT_ASKED);
+        let is_part = self.absent.values().any(|reason| *reason == Absent::NotAsked);
         if is_part { Measure::Headline } else { Measure::All }
     }
 
@@ -509,20 +510,27 @@ impl Record {
         }
     }
 
+    /// Why a metric is absent; of `impulse@phase1` perhaps by the name `impulse`, of all phases.
+    pub fn absent_as(&self, metric: &str) -> Option<&Absent> {
+        let is_there = self.metrics.contains_key(metric);
+        let of_all = metric.split('@').next().filter(|_| !is_there);
+        self.absent.get(metric).or_else(|| self.absent.get(of_all?))
+    }
+
     /// States why a metric is absent: this run gives it no meaning.
-    pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<String>) {
+    pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<Absent>) {
         self.absent.insert(metric.into().name, reason.into());
     }
 
     /// Takes out every metric that is to go, and states why it is absent.
-    pub fn take_out(&mut self, is_to_go: &dyn Fn(&str, &Metric) -> bool, reason: &str) {
+    pub fn take_out(&mut self, is_to_go: &dyn Fn(&str, &Metric) -> bool, reason: &Absent) {
         let taken = self.metrics.extract_if(.., |name, metric| is_to_go(name, metric));
-        self.absent.extend(taken.map(|(name, _)| (name, reason.to_string())));
+        self.absent.extend(taken.map(|(name, _)| (name, reason.clone())));
     }
 
     /// States that metrics are absent because they were not asked for.
     pub fn leave_unasked(&mut self, metrics: &[MetricKey]) {
-        metrics.iter().for_each(|metric| self.leave_out(*metric, NOT_ASKED));
+        metrics.iter().for_each(|metric| self.leave_out(*metric, Absent::NotAsked));
     }
 
     /// A metric's value, `None` if it was not measured.

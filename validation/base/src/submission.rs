@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::spec::is_default;
+
 /// The code of a submission that this program wrote itself, as `export --solve` does.
 pub const OURS: &str = "touchstone";
 /// Key of the numerics of a record: the machine of the other code, as its submission states it.
@@ -12,7 +14,7 @@ pub const MACHINE: &str = "machine";
 pub const SESSION: &str = "session";
 
 /// A run of another code.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Submission {
     /// name of the code
@@ -31,13 +33,18 @@ pub struct Submission {
     /// the seed from which a sealed problem was drawn
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
+    /// Does it state the kernel, the support and the step of our own method? Then gates on the theory of these
+    /// apply.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub states_our_method: bool,
 }
 
 /// What a submission took over of the problem.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Division {
     /// the particles, their spacing and the support of the kernel: compares codes
+    #[default]
     Closed,
     /// the problem alone: compares methods
     Open,

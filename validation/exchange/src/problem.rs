@@ -62,7 +62,10 @@ pub struct Sealed {
 const HAND_IN: &str = "A folder with these files:\n\n\
     - `method.json`: `{\"code\": \"...\", \"version\": \"...\", \"scheme\": \"...\", \"division\": \
     \"closed\", \"settings\": {...}, \"changed\": \"what differs from the problem\"}`. The division is \
-    `closed` if particles, spacing and support of the kernel are those of the problem, else `open`.\n\
+    `closed` if particles, spacing and support of the kernel are those of the problem, else `open`. Bounds \
+    that follow from the theory of our method judge a closed run whose settings state its `kernel`, \
+    `support` [m] and `dt` [s]: `kernel`, `support_radius` and `time_step` of `our_method` in \
+    `problem.json`.\n\
     - `system.json`: `{\"machine\": \"...\", \"threads\": 1, \"seconds\": 1.5, \"steps\": 1000, \
     \"interactions\": \"unknown\"}`. Each may be \"unknown\"; seconds are those of the time loop.\n\
     - `results.csv` with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every \

@@ -4,9 +4,10 @@
 use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
 use base::{
+    absent::Absent,
     files,
     gate::Gate,
-    record::{self, Cost, Metric, NOT_ASKED, Record, Status},
+    record::{self, Cost, Metric, Record, Status},
     reference::sha256,
     spec::{Measure, RunSpec},
     submission::{Division, MACHINE, Submission},
@@ -16,8 +17,8 @@ use harness::{
     case::{Case, RunError, Tier},
     context::Context,
     medium::Medium,
-    outline::role,
-    playback::{self, Frame, Own, Placed, Playback},
+    outline::{Outline, role},
+    playback::{self, Fill, Frame, Own, Placed, Playback},
     suite,
 };
 use serde::{
@@ -45,6 +46,11 @@ const MOST_IN_SUPPORT: usize = 1000;
 const VOLUMES: RangeInclusive<f64> = 1e-6..=1e6;
 /// Flaws of frames that are told.
 const MOST_FLAWS: usize = 20;
+
+/// A particle is lost whose distance from the origin is as many times that of the farthest at the start.
+const FAR: f64 = 1e6;
+/// Share by which numbers of a method may differ that are stated as ours.
+const SAME: f64 = 1e-6;
 
 /// Name of the document that describes the machine and the cost.
 pub const SYSTEM: &str = "system.json";
@@ -240,11 +246,19 @@ fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, Strin
     wrong
 }
 
+/// A particle with a coordinate beyond this is lost \[m\].
+fn reach(problem: &Problem) -> f64 {
+    let Outline { particles, medium, .. } = &problem.outline;
+    let places = ["x", "y"].into_iter().flat_map(|axis| particles.column(axis));
+    FAR * places.fold(problem.method.support * medium.h, |most, x| most.max(x.abs()))
+}
+
 /// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.
-fn crowded(frame: &Frame, support: f64) -> Option<String> {
+fn crowded(frame: &Frame, support: f64, problem: &Problem) -> Option<String> {
+    let (domain, reach) = (&problem.outline.domain, reach(problem));
     let mut cells: BTreeMap<[i64; 2], usize> = BTreeMap::new();
-    for placed in &frame.particles {
-        let cell = placed.position / support;
+    for placed in frame.particles.iter().filter(|placed| placed.position.amax() <= reach) {
+        let cell = domain.wrap(placed.position) / support;
         *cells.entry([cell.x.floor() as i64, cell.y.floor() as i64]).or_default() += 1;
     }
     let most = cells.into_values().max().filter(|most| *most > MOST_IN_SUPPORT)?;
@@ -324,8 +338,13 @@ impl Entry {
         else {
             return;
         };
-        let why = "it follows from particles, and the submission is a profile or a series";
-        record.take_out(&|name, _| !record::is_of(&curve.metrics, name), why);
+        let why = Absent::OfParticles;
+        record.take_out(&|name, _| !record::is_of(&curve.metrics, name), &why);
+        for name in problem.gates.iter().map(|gate| &gate.metric) {
+            if !record::is_of(&curve.metrics, name) {
+                record.absent.entry(name.clone()).or_insert_with(|| why.clone());
+            }
+        }
         let (begins, columns) = curve.shown;
         record.profiles.retain(|name, _| name.starts_with(begins));
         for profile in record.profiles.values_mut() {
@@ -375,7 +394,7 @@ impl Entry {
                 break;
             }
             let flaw = |what: String| Flaw::of(file, what).in_column("id");
-            flaws.extend(crowded(frame, support).map(|what| flaw(what).at(*line)));
+            flaws.extend(crowded(frame, support, problem).map(|what| flaw(what).at(*line)));
             let wrong = misnumbered(frame, &expected, all).into_iter();
             flaws.extend(wrong.map(|(row, what)| flaw(what).at(line + row as u64)));
         }
@@ -446,12 +465,13 @@ impl Entry {
     }
 
     /// Who made the run.
-    pub fn submission(&self) -> Submission {
+    fn submission(&self, problem: &Problem) -> Submission {
         let Method { code, version, scheme, division, .. } = self.method.clone();
         let sealed = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
         let (method, seed) = (self.digest.clone(), sealed.map(|sealed| sealed.seed));
         let results = Some(self.digest_of_results());
-        Submission { code, version, scheme, division, method, results, seed }
+        let states_our_method = self.states_our_method(problem);
+        Submission { code, version, scheme, division, method, results, seed, states_our_method }
     }
 
     /// SHA-256 of the particles in the order of their ids: equal results of two codes are told, in whatever
@@ -475,17 +495,33 @@ impl Entry {
     }
 
     /// The frames, with the particles of the code itself in the open division.
-    fn playback(&self) -> Playback<'_> {
+    fn playback(&self, problem: &Problem, fill: Fill) -> Playback<'_> {
         let mut own = match self.particles() {
             Division::Open => self.results.own.clone(),
             Division::Closed => Vec::new(),
         };
         own.sort_by_key(|own| own.start.id);
-        Playback { frames: &self.results.frames, own }
+        let (domain, reach) = (problem.outline.domain, reach(problem));
+        Playback { frames: &self.results.frames, own, domain, reach, fill }
     }
 
-    /// Measures the particles in a scene as those of a run of the problem. What they do not determine is
-    /// absent.
+    /// What a submission does not state: each by its name, and another number in its place.
+    fn not_given(&self, problem: &Problem, fill: Fill) -> Vec<(&'static str, Fill)> {
+        let Results { frames, own, .. } = &self.results;
+        let starts = own.iter().map(|own| &own.start);
+        let mut all = frames.iter().flat_map(|frame| &frame.particles).chain(starts);
+        let density = all.any(|placed| placed.density.is_none());
+        let stress = problem.is_solid();
+        let density = density.then_some(("density", Fill { spread: 1e-3, ..fill }));
+        density
+            .into_iter()
+            .chain(stress.then_some(("stress", Fill { extra: f64::NAN, ..fill })))
+            .collect()
+    }
+
+    /// Measures the particles in a scene as those of a run of the problem. What rests on a column that was not
+    /// handed in is absent, by the name of the column: it is measured once more with other numbers in place of
+    /// this column, and differs.
     ///
     /// # Errors
     /// If the case refuses the run, or a frame cannot be put in place of its particles.
@@ -495,19 +531,24 @@ impl Entry {
         scene: &RunSpec,
         problem: &Problem,
     ) -> Result<Record, RunError> {
-        let playback = self.playback();
-        // Its size is that of the problem, which was made before.
-        let context = Context { playback: Some(&playback), allow_long: true, ..Context::default() };
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
-        let mut record = case.run(&ours, &context)?;
-        record.run.submission = Some(Box::new(self.submission()));
+        let measured = |fill: Fill| {
+            let playback = self.playback(problem, fill);
+            let context =
+                Context { playback: Some(&playback), allow_long: true, ..Context::default() };
+            case.run(&ours, &context)
+        };
+        let fill = Fill { density: problem.outline.medium.eos.density, ..Fill::default() };
+        let mut record = measured(fill)?;
+        for (column, other) in self.not_given(problem, fill) {
+            playback::leave_out(&mut record, column, &measured(other)?);
+        }
+        record.run.submission = Some(Box::new(self.submission(problem)));
         record.run.settings = problem.spec.settings.clone();
-        let why = "the particles of the submission do not determine it";
-        record.take_out(&|_, metric| !metric.value.is_finite(), why);
         self.leave_out_rounded(case, problem, &mut record);
         suite::leave_out_ours(case, &mut record);
-        for reason in record.absent.values_mut().filter(|reason| *reason == NOT_ASKED) {
-            *reason = "it needs the sums of this program's own terms".into();
+        for reason in record.absent.values_mut().filter(|reason| **reason == Absent::NotAsked) {
+            *reason = Absent::OwnTerms;
         }
         record.numerics.clear();
         record.numerics.insert(MACHINE.into(), self.system.machine.as_str().into());
@@ -553,7 +594,27 @@ impl Entry {
         let is_to_go = |name: &str, _: &Metric| {
             record::is_of(rates, name) || metrics.iter().any(|metric| *metric == name)
         };
-        record.take_out(&is_to_go, &format!("not given: {few}"));
+        record.take_out(&is_to_go, &Absent::NotGiven(few));
+    }
+
+    /// Does the method state the kernel, the support and the step of ours, and did it make as many steps?
+    fn states_our_method(&self, problem: &Problem) -> bool {
+        let Outline { medium, times, dt, .. } = &problem.outline;
+        let is = |name: &str, expected: f64| {
+            let stated = self.method.settings.get(name).and_then(Value::as_f64);
+            stated.is_some_and(|stated| (stated - expected).abs() <= SAME * expected)
+        };
+        let kernel = self.method.settings.get("kernel").and_then(Value::as_str);
+        let end = times.last().copied().unwrap_or_default();
+        // Steps are shortened to reach each of the times.
+        let expected = (end / dt).ceil() + times.len() as f64;
+        let as_many =
+            self.system.steps.is_none_or(|made| made <= expected && made >= (end / dt).floor());
+        self.particles() == Division::Closed
+            && kernel == Some(problem.method.kernel)
+            && is("support", problem.method.support * medium.h)
+            && is("dt", *dt)
+            && as_many
     }
 
     fn cost(&self, record: &Record) -> Cost {

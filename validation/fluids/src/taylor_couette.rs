@@ -197,7 +197,8 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
     let inside = "No particle passes a cylinder.";
     let run = format!("{variant}.{layers}");
     vec![
-        CASE.gate(&run, L2, Bound::Below(most), Evidence::Theory, because),
+        CASE.gate(&run, L2, Bound::Below(most), Evidence::Theory, because)
+            .of_others(Bound::Below(most), because),
         CASE.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside),
     ]
 }

@@ -192,7 +192,7 @@ impl Composition {
         })?;
         state_steps(&mut record);
         if context.playback.is_none() {
-            record.take_out(&|_, metric| !metric.value.is_finite(), NO_NUMBER);
+            record.take_out(&|_, metric| !metric.value.is_finite(), &NO_NUMBER.into());
         }
         Ok(record)
     }

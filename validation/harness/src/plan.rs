@@ -1,6 +1,7 @@
 //! Turns the declarations of cases into a list of runs in which each run occurs once.
 
 use base::{
+    functions::log10,
     gate::Gate,
     spec::{RunSpec, Task},
 };
@@ -36,6 +37,38 @@ pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
         }
     }
     gates
+}
+
+/// The judged simulation whose settings are the nearest to these of a submission, and a gate there that
+/// would judge it and that `is_meant`: of the same variant if there is one, then with the fewest other
+/// settings, then with the least ratios of these.
+pub fn nearest_judged(
+    case: &dyn Case,
+    spec: &RunSpec,
+    is_meant: &dyn Fn(&Gate) -> bool,
+) -> Option<(RunSpec, Gate)> {
+    let states = spec.submission.as_ref().is_some_and(|of| of.states_our_method);
+    let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| of_case(case, tier));
+    let judged = plans.filter(|planned| planned.spec.task == Task::Simulate).filter_map(|of| {
+        let gates = of.gates.into_iter().filter_map(|gate| gate.for_submission(states));
+        gates.into_iter().find(is_meant).map(|gate| (of.spec, gate))
+    });
+    let far = |of: &RunSpec| {
+        let names = case.fields().iter().map(|field| field.name);
+        let both = names.map(|name| (&of.settings[name], &spec.settings[name]));
+        let others: Vec<_> = both.filter(|(a, b)| a != b).collect();
+        let ratio = |(a, b): &(&serde_json::Value, &serde_json::Value)| {
+            let ratio = a.as_f64().zip(b.as_f64()).map(|(a, b)| log10(a / b).abs());
+            ratio.filter(|ratio| ratio.is_finite()).unwrap_or(1.0)
+        };
+        let ratios = others.iter().map(ratio).fold(0.0, |sum, ratio| sum + ratio);
+        (of.variant != spec.variant, others.len(), ratios)
+    };
+    let order = |a: &RunSpec, b: &RunSpec| {
+        let (a, b) = (far(a), far(b));
+        (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
+    };
+    judged.min_by(|(a, _), (b, _)| order(a, b))
 }
 
 /// Each run once, at its first place, with all gates; timed if one of them is, and all of it measured if one

@@ -3,9 +3,12 @@
 
 use std::collections::BTreeSet;
 
-use base::record::Status;
+use base::{
+    absent::Absent,
+    record::{Record, Status},
+};
 use nalgebra::Vector2;
-use solver::{Checkpoint, Divergence, Numbers, Outcome, Particle, Role, Stepper};
+use solver::{Checkpoint, Divergence, Domain, Fault, Numbers, Outcome, Particle, Role, Stepper};
 
 use crate::error::RunError;
 
@@ -18,7 +21,7 @@ pub struct Placed {
     pub position: Vector2<f64>,
     /// \[m/s\].
     pub velocity: Vector2<f64>,
-    /// \[kg/m³\]; that of the start where a frame has none.
+    /// \[kg/m³\], if it was handed in.
     pub density: Option<f64>,
 }
 
@@ -56,6 +59,52 @@ pub struct Playback<'a> {
     pub frames: &'a [Frame],
     /// The particles in place of those of the problem; none of a code that took these over.
     pub own: Vec<Own>,
+    /// Where particles are put inside the period before anything is measured.
+    pub domain: Domain,
+    /// A coordinate beyond this is of a particle that the code has lost \[m\].
+    pub reach: f64,
+    /// What stands in place of numbers that were not handed in.
+    pub fill: Fill,
+}
+
+/// What stands in place of numbers that were not handed in. No choice of it is a result, so whatever differs
+/// between two of them is not measured: see [`leave_out`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Fill {
+    /// Density \[kg/m³\].
+    pub density: f64,
+    /// By which share of it the densities of particles differ at most.
+    pub spread: f64,
+    /// What a method integrates beside position, velocity and density, such as stress.
+    pub extra: f64,
+}
+
+impl Fill {
+    /// The density of a particle that has none.
+    fn density(&self, id: u32) -> f64 {
+        self.density * (1.0 + self.spread * f64::from(id % 7) / 7.0)
+    }
+}
+
+/// Leaves out of a record what rests on a column that was not handed in: what differs from `other`, the same
+/// measured with another [`Fill`] in place of this column.
+pub fn leave_out(record: &mut Record, column: &str, other: &Record) {
+    let bits = |value: f64| value.to_bits();
+    let names: BTreeSet<&String> = record.metrics.keys().chain(other.metrics.keys()).collect();
+    let of = |of: &Record, name: &str| of.metric(name).map(bits);
+    let rests = names.into_iter().filter(|name| of(record, name) != of(other, name));
+    for name in rests.cloned().collect::<Vec<_>>() {
+        record.metrics.remove(&name);
+        record.absent.insert(name, Absent::NotGiven(column.into()));
+    }
+    for (name, profile) in &mut record.profiles {
+        profile.columns.retain(|column| {
+            let other = other.column(name, &column.name).iter().copied().map(bits);
+            column.values.iter().copied().map(bits).eq(other)
+        });
+    }
+    record.profiles.retain(|_, profile| !profile.columns.is_empty());
+    record.state = record.state.take().filter(|state| Some(state) == other.state.as_ref());
 }
 
 /// A frame counts for a time that differs from its own by at most this share of the end of the run.
@@ -67,13 +116,27 @@ impl Playback<'_> {
         if self.own.is_empty() {
             return of_scene;
         }
-        let usual = of_scene.first().map_or(1.0, |particle| particle.density);
         let particle = |own: &Own| {
-            let Own { role, mass, start: Placed { position, velocity, density, .. } } = *own;
-            let density = density.unwrap_or(usual);
+            let Own { role, mass, start: Placed { id, position, velocity, density } } = *own;
+            let density = density.unwrap_or_else(|| self.fill.density(id));
+            let position = self.domain.wrap(position);
             Particle { role, position, velocity, density, mass, extra: X::default() }
         };
         self.own.iter().map(particle).collect()
+    }
+
+    /// The first particle of a frame that no measure can take, before it is put in place.
+    fn lost(&self, frame: &Frame) -> Option<Fault> {
+        frame.particles.iter().find_map(|placed| {
+            let fault = |field, value| Some(Fault { particle: placed.id, field, value });
+            let (far, density) = (placed.position.amax(), placed.density.unwrap_or(1.0));
+            let (is_near, has_density) = (far <= self.reach, density > 0.0);
+            match (is_near, has_density) {
+                (false, _) => fault("position", far),
+                (true, false) => fault("density", density),
+                (true, true) => None,
+            }
+        })
     }
 }
 
@@ -102,10 +165,14 @@ pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str
 
 /// Puts the particles of a frame in place; how the run counts as ended, if they are beyond its limits.
 pub(crate) fn put<X: Numbers>(
+    playback: &Playback,
     frame: &Frame,
     time: f64,
     simulation: &mut dyn Stepper<X>,
 ) -> Result<Option<Status>, RunError> {
+    if let Some(fault) = playback.lost(frame) {
+        return Ok(Some(diverged(Divergence { step: 0, time, fault })));
+    }
     let refused = |reason: String| RunError::Playback(format!("frame at t = {time} s: {reason}"));
     let mut state = simulation.checkpoint();
     let mut places = vec![usize::MAX; state.particles.len()];
@@ -118,10 +185,10 @@ pub(crate) fn put<X: Numbers>(
             let most = places.len();
             return Err(refused(format!("id is {}; the problem has ids below {most}", placed.id)));
         };
-        (particle.position, particle.velocity) = (placed.position, placed.velocity);
-        particle.density = placed.density.unwrap_or(particle.density);
-        // What another code integrates beside these is not known, and so is what is measured of it.
-        particle.extra = particle.extra.advanced(f64::NAN, X::default());
+        particle.position = playback.domain.wrap(placed.position);
+        particle.velocity = placed.velocity;
+        particle.density = placed.density.unwrap_or_else(|| playback.fill.density(placed.id));
+        particle.extra = X::default().advanced(playback.fill.extra, X::default());
     }
     let places = state.particles.iter().map(|(_, particle)| particle.position).collect();
     let reference = std::mem::replace(&mut state.built_at, places);

@@ -324,7 +324,7 @@ impl Watch<'_> {
             let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));
             let (simulation, seen) = run.parts();
             let time = next(self.reached).copied().unwrap_or(frame.time);
-            if let Some(ended) = playback::put(frame, time, simulation)? {
+            if let Some(ended) = playback::put(playback, frame, time, simulation)? {
                 return Ok(self.ended(simulation, ended));
             }
             Watching { watch: self, seen }.after_step(simulation);

@@ -71,27 +71,35 @@ pub struct JudgedRun {
     pub record: Record,
     /// One judgement per gate.
     pub judged: Vec<Judged>,
+    /// Of a run of another code: gates that judge our own method alone.
+    pub not_of_others: Vec<String>,
 }
 
+/// Why a gate does not apply whose bound rests on our own method.
+const NOT_OF_OTHERS: &str = "its bound follows from our own kernel, support and step, which method.json does \
+                             not state (settings kernel, support, dt)";
+
 impl JudgedRun {
-    /// Of a run of another code: the gates that apply, and the names of those whose metric its results do
-    /// not determine, each with the reason.
-    pub fn applicable(&self) -> (Vec<&Judged>, Vec<(&str, &str)>) {
-        let absent = |judged: &Judged| self.record.absent.get(&judged.gate.metric);
-        let applies = |judged: &&Judged| {
-            absent(judged).is_none() && self.record.metrics.contains_key(&judged.gate.metric)
+    /// Of a run of another code: the gates that apply, and the names of the others, each with the reason. All
+    /// apply but those of which it was known before its numbers were read that they cannot: a gate whose metric
+    /// the numbers do not determine fails.
+    pub fn applicable(&self) -> (Vec<&Judged>, Vec<(&str, String)>) {
+        let absent = |judged: &Judged| {
+            let absent = self.record.absent_as(&judged.gate.metric)?;
+            absent.is_known_before().then(|| absent.to_string())
         };
-        let (apply, others): (Vec<&Judged>, Vec<&Judged>) = self.judged.iter().partition(applies);
-        let reason =
-            |judged| absent(judged).map_or("it is not measured of results", String::as_str);
-        (apply, others.into_iter().map(|judged| (&*judged.gate.id, reason(judged))).collect())
+        let (others, apply): (Vec<&Judged>, Vec<&Judged>) =
+            self.judged.iter().partition(|judged| absent(judged).is_some());
+        let absent = others.iter().filter_map(|one| Some((&*one.gate.id, absent(one)?)));
+        let of_ours = self.not_of_others.iter().map(|id| (&**id, NOT_OF_OTHERS.to_string()));
+        (apply, absent.chain(of_ours).collect())
     }
 
     /// Judges a record by the gates of its plan.
     pub fn new(planned: Planned, record: Record) -> Self {
         let judged =
             planned.gates.iter().map(|gate| Judged::of_record(gate.clone(), &record)).collect();
-        Self { planned, record, judged }
+        Self { planned, record, judged, not_of_others: Vec::new() }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Planning, making and judging of all runs, which `verify` and `report` share.
 
 use base::{
+    absent::Absent,
     gate::{Bound, Evidence, Gate},
     record::{self, Record, Status},
     spec::RunSpec,
@@ -172,33 +173,45 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
     Suite { tier, cases, made }
 }
 
-/// The run of another code, judged by the gates that our plans have for the same settings. What is known to
-/// limit our method, or expected of it, is no excuse for another one: there the bound alone counts.
+/// The run of another code, judged by the gates that our plans have for the same settings: see
+/// [`Gate::for_submission`].
 pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     leave_out_ours(case, &mut record);
     let spec = record.spec();
-    let mut gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
-    if record.submission.as_ref().is_some_and(|of| of.seed.is_some()) {
-        gates.extend(sealed::gates(case, &spec));
+    let of = spec.submission.as_deref();
+    let states = of.is_some_and(|of| of.states_our_method);
+    let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
+    let (mut judged, mut not_of_others) = (Vec::new(), Vec::new());
+    for gate in gates {
+        let id = gate.id.clone();
+        match gate.for_submission(states) {
+            Some(gate) => judged.push(gate),
+            None => not_of_others.push(id),
+        }
     }
-    let plain = |Gate { id, metric, bound, evidence, because, .. }: Gate| {
-        Gate::new(id, metric, bound, evidence, because)
-    };
-    JudgedRun::new(Planned::new(spec).judged(gates.into_iter().map(plain).collect()), record)
+    if of.is_some_and(|of| of.seed.is_some()) {
+        // Bounds of any method.
+        judged.extend(
+            sealed::gates(case, &spec).into_iter().filter_map(|gate| gate.for_submission(true)),
+        );
+    }
+    JudgedRun { not_of_others, ..JudgedRun::new(Planned::new(spec).judged(judged), record) }
 }
 
 /// Leaves out of a run of another code what only ours have, such as `impulse` and `impulse@phase1`.
 pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
-    let Declaration { stepwise, of_methods, .. } = case.declaration(Tier::Quick);
-    const STEPWISE: &str = "it is measured after every step";
-    let of_method = "it compares with the theory of this program's own method";
-    for (metrics, why) in [(stepwise, STEPWISE), (of_methods, of_method)] {
+    let Declaration { costly, stepwise, of_methods, .. } = case.declaration(Tier::Quick);
+    for (metrics, why) in
+        [(costly, Absent::OwnTerms), (stepwise, Absent::EveryStep), (of_methods, Absent::OwnTheory)]
+    {
         let is_ours = |name: &str| record::is_of(metrics, name);
-        // An older record names another reason.
-        let named =
-            record.absent.iter_mut().filter(|(name, why)| *why == STEPWISE && is_ours(name));
-        named.for_each(|(_, reason)| *reason = why.into());
-        record.take_out(&|name, _| is_ours(name), why);
+        record.take_out(&|name, _| is_ours(name), &why);
+        // Of a run that diverged the case says something else, or nothing.
+        let named = record.absent.iter_mut().filter(|(name, _)| is_ours(name));
+        named.for_each(|(_, reason)| *reason = why.clone());
+        for name in metrics.iter().map(|metric| String::from(*metric)) {
+            record.absent.entry(name).or_insert_with(|| why.clone());
+        }
     }
 }
 

@@ -15,7 +15,7 @@ use ::exchange::{
 use base::{
     files,
     files::OutputFolder,
-    record::{Profile, Record},
+    record::{Profile, Record, Status},
     spec::RunSpec,
     submission::OURS,
     text::short,
@@ -25,7 +25,6 @@ use harness::{
     context::Context,
     outline::Sink,
     relation::Relation,
-    runs::Judged,
     size::Size,
     store::Store,
     suite, symmetry,
@@ -33,7 +32,7 @@ use harness::{
 use serde_json::{Value, json};
 use validation::cases;
 
-use super::{Exit, Failure, Outcome, World, arguments, judged, output, summary::outcome};
+use super::{Exit, Failure, Outcome, World, arguments, output, submitted};
 
 pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
     let of = &arguments.of;
@@ -125,12 +124,17 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
 
 /// What a submission of this program says of its method.
 fn solved_by(problem: &Problem) -> String {
+    let (mut settings, own) = (problem.spec.settings.clone(), &problem.method);
+    // What makes gates on the theory of our own method apply.
+    settings["kernel"] = json!(own.kernel);
+    settings["support"] = json!(own.support * problem.outline.medium.h);
+    settings["dt"] = json!(problem.outline.dt);
     let method = json!({
         "code": OURS,
         "version": env!("CARGO_PKG_VERSION"),
         "scheme": problem.spec.variant,
         "division": "closed",
-        "settings": problem.spec.settings,
+        "settings": settings,
         "changed": "nothing",
     });
     format!("{method:#}\n")
@@ -241,23 +245,19 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
         refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
     })?;
     record.manifest.sources = (world.sources)(case.name());
-    let Some(store) = arguments.store.as_ref().filter(|_| !arguments.check) else {
+    // To look whether it is complete is no verdict, but one that diverged is not complete.
+    if arguments.check && record.status == Status::Completed {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
         return Ok(Exit::Pass);
-    };
-    let path = keep(&Store::open(store)?, &record)?;
-    let run = suite::submitted(case, record);
-    let (apply, others) = run.applicable();
-    let judged: Vec<Judged> = apply.into_iter().cloned().collect();
-    let mut text = judged::shown(&judged, arguments.all);
-    if !others.is_empty() {
-        let rows = others.iter().map(|(id, why)| vec![id.to_string(), why.to_string()]);
-        text += &(output::table(&["not applicable", "because"], rows) + "\n");
     }
-    output::print(&(text + &outcome(case, &run.planned.spec, &run.record, &judged)))?;
-    output::say(&path.display().to_string());
-    let fails = judged.iter().any(|judged| judged.judgement.verdict.is_failure());
-    Ok(if fails { Exit::GateFailed } else { Exit::Pass })
+    let said = match arguments.store.as_ref().filter(|_| !arguments.check) {
+        Some(store) => keep(&Store::open(store)?, &record)?.display().to_string(),
+        None => "nothing was recorded".into(),
+    };
+    let (text, exit) = submitted::verdict(case, &suite::submitted(case, record), arguments.all);
+    output::print(&text)?;
+    output::say(&said);
+    Ok(exit)
 }
 
 /// Keeps the record of a submission. One of the same results that the store has already must say the same: a

@@ -137,7 +137,7 @@ impl SubmissionVerdicts {
             embedded,
             status: run.record.status.clone(),
             judged: apply.into_iter().cloned().collect(),
-            not_applicable: others.into_iter().map(|(id, why)| (id.into(), why.into())).collect(),
+            not_applicable: others.into_iter().map(|(id, why)| (id.into(), why)).collect(),
         })
     }
 

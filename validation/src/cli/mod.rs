@@ -29,6 +29,7 @@ mod progress;
 mod report;
 mod run;
 mod stability;
+mod submitted;
 mod summary;
 mod symmetry;
 #[cfg(test)]

@@ -9,10 +9,11 @@ use std::sync::{Mutex, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use base::{
+    absent::Absent,
     files::{self, FileError, OutputFolder},
     gate::Gate,
     lock,
-    record::{NOT_ASKED, Profile, Record, Status},
+    record::{Profile, Record, Status},
 };
 use harness::{
     case::{self, Case, RunError},
@@ -94,7 +95,8 @@ fn carry_out(
     }
     let frames = asked.vtk.unwrap_or_default();
     let written = folder.as_ref().map(|folder| write(&record, last, folder, frames)).transpose();
-    let is_asked = |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| why != NOT_ASKED);
+    let is_asked =
+        |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| *why != Absent::NotAsked);
     let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
         plan::gates_of(case, &asked.spec).into_iter().partition(is_asked);
     let verdicts: Vec<Judged> =
@@ -396,11 +398,11 @@ fn summary(record: &Record) -> String {
 
 /// The results that the run does not have, by the reason.
 fn absent(record: &Record) -> String {
-    let mut names: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+    let mut names: BTreeMap<String, Vec<&str>> = BTreeMap::new();
     for (name, reason) in &record.absent {
-        names.entry(reason).or_default().push(name);
+        names.entry(reason.to_string()).or_default().push(name);
     }
-    let line = |(reason, names): (&&str, &Vec<&str>)| {
+    let line = |(reason, names): (&String, &Vec<&str>)| {
         output::wrap(&format!("absent: {} ({reason})", names.join(", ")), "    ")
     };
     let lines: String = names.iter().map(line).collect();

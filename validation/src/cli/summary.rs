@@ -123,9 +123,14 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
     told.map(|(head, words)| output::hanging(head, 7, words)).collect()
 }
 
+/// A number of a record in words.
+pub fn in_words(name: &str, metric: &record::Metric) -> String {
+    format!("{name} = {} [{}], {}", report::sig(metric.value, 4), metric.unit, metric.formula)
+}
+
 /// The error of the case, which is that of its card or of its first ladder, in words; and the name of its
 /// metric.
-fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
+pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
     let ladder = declared.accuracy.first().map(|accuracy| &accuracy.error);
     let Some(metric) = declared.card.as_ref().map(|card| &card.metric).or(ladder) else {
         return Default::default();
@@ -133,19 +138,16 @@ fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
     let measured = record.metrics.get(&metric.name);
     let words = match (&declared.card, measured) {
         (_, None) => {
-            let reason = record.absent.get(&metric.name).map(String::as_str);
-            let reason =
-                reason.unwrap_or("no reference has these settings, or the run ended early");
+            let reason = record.absent.get(&metric.name).map(ToString::to_string);
+            let none = "no reference has these settings, or the run ended early";
+            let reason = reason.unwrap_or_else(|| none.into());
             format!("{} was not measured: {reason}", metric.name)
         }
         (Some(card), Some(found)) => {
             let stated = (card.stated)(&record.settings);
             format!("{}, {}", stated.number(found.value), stated.in_words())
         }
-        (None, Some(found)) => {
-            let value = report::sig(found.value, 4);
-            format!("{} = {value} [{}], {}", metric.name, found.unit, found.formula)
-        }
+        (None, Some(found)) => in_words(&metric.name, found),
     };
     (words, metric.name.clone())
 }
@@ -160,7 +162,7 @@ fn broken(declared: &Declaration, record: &Record) -> Option<String> {
 }
 
 /// The bound of that metric, with the verdict; of another one if this one has none.
-fn bound(verdicts: &[Judged], metric: &str) -> String {
+pub fn bound(verdicts: &[Judged], metric: &str) -> String {
     let of_metric = verdicts.iter().filter(|judged| judged.gate.metric == metric);
     let Some(Judged { gate, judgement, .. }) = worst(of_metric) else {
         let none = "none: no plan has a gate on this number for this variant with these settings";

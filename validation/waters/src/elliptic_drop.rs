@@ -6,7 +6,7 @@ use harness::{
     case::*, composed::*, context::Context, declare::*, method::*, pictures, rules, runner::Drive,
     simulate, table,
 };
-use maths::exact::EllipticDrop as Exact;
+use maths::{exact::EllipticDrop as Exact, metrics::norms::largest};
 use nalgebra::Vector2;
 use report::ColourMap;
 use schemes::water::{self, WaterMethod};
@@ -152,7 +152,7 @@ impl History {
     fn measure(&self, record: &mut Record) {
         let worst = |k: usize| {
             let error = |row: &[f64; 5]| (row[k] / row[k + 2] - 1.0).abs();
-            self.rows.iter().map(error).fold(0.0, f64::max)
+            largest(self.rows.iter().map(error))
         };
         record.put(A_ERROR, worst(1));
         record.put(B_ERROR, worst(2));

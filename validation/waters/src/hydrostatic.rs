@@ -5,7 +5,10 @@ use base::{gate::*, mutation::Constant, random::Random, record::*};
 use harness::{
     case::*, composed::*, context::Context, declare::*, method::*, runner::Drive, simulate, table,
 };
-use maths::{exact, geometry, metrics::norms::l2};
+use maths::{
+    exact, geometry,
+    metrics::norms::{l2, largest},
+};
 use nalgebra::Vector2;
 use schemes::water::WaterMethod;
 use solver::*;
@@ -279,7 +282,7 @@ impl<'a> History<'a> {
             record.put(LEVEL_DRIFT, level);
             record.put(GAP, gap);
             let later = self.rows.iter().filter(|row| row[0] >= 0.75 * end);
-            record.put(KINETIC, later.map(|row| row[4]).fold(0.0, f64::max));
+            record.put(KINETIC, largest(later.map(|row| row[4])));
             record.put(OUTSIDE, self.outside);
         }
         record.profiles.insert("history".into(), Profile::of_rows(&HISTORY, &self.rows));

@@ -26,6 +26,8 @@ pub fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     let accuracy = accuracy(tier, &table);
     Declaration {
+        // The force of our own controller: that of another code is in no file.
+        stepwise: &[FORCE, FORCE_ERROR, DRAG_BALANCE],
         card: Some(card(tier, &accuracy)),
         comparisons: comparisons(tier, &accuracy),
         curves: vec![profiles(&table)],

@@ -336,7 +336,7 @@ mod tests {
     fn of(code: &str) -> Submission {
         let [version, scheme, method] = ["1", "scheme", ""].map(String::from);
         let (code, division) = (code.to_string(), Division::Closed);
-        Submission { code, version, scheme, division, method, results: None, seed: None }
+        Submission { code, version, scheme, division, method, ..Submission::default() }
     }
 
     fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {

@@ -1,6 +1,7 @@
 //! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
 
 use super::*;
+use base::absent::Absent;
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
 const SAMPLES: f64 = 1600.0;
@@ -75,7 +76,7 @@ impl Watch for End {
         let columns = [("t", "s"), ("x", "m"), ("y", "m")];
         record.profiles.insert("end".into(), Profile::of_rows(&columns, &path.0));
         if path.0.len() < LEAST_POINTS {
-            let why = format!("the path of the end has less than {LEAST_POINTS} points");
+            let why = Absent::NotGiven(format!("{LEAST_POINTS} times, for the path of the end"));
             let all = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
             let all = all.chain([PATH_RMS]).chain(OF_METHODS.iter().copied());
             all.for_each(|metric| record.leave_out(metric, why.clone()));

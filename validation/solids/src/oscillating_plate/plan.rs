@@ -93,7 +93,8 @@ fn period(row: &Row<PlateSettings, For>) -> Gate {
 fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
     let theory = "A plate whose tip starts at the speed v swings to v T/(2 pi). It may swing 2 % farther, by \
                   which the first mode differs, and 10 % less far, a loss of a fifth of the energy.";
-    let gate = gate(row, AMPLITUDE_RATIO, Bound::Within(0.9, 1.02), Evidence::Theory, theory);
+    let swing = Bound::Within(0.9, 1.02);
+    let gate = gate(row, AMPLITUDE_RATIO, swing, Evidence::Theory, theory).of_others(swing, theory);
     if row.group != Damped {
         return gate;
     }
@@ -168,7 +169,7 @@ fn locked(row: &Row<PlateSettings, For>) -> Gate {
     let [least, most] = [-0.005, 0.014];
     let error = if n < 10 { 0.03 } else { 0.01 };
     let near = Bound::Within(least - error, most + error);
-    let period = gate(row, PERIOD_EXCESS, near, Evidence::Theory, thin);
+    let period = gate(row, PERIOD_EXCESS, near, Evidence::Theory, thin).of_others(near, thin);
     let locked = 1.0 / lagrangian::bending(n, poisson).sqrt() - 1.0;
     if locked >= -error {
         return period;

@@ -180,10 +180,13 @@ pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
     pressure.iter().find(|(_, p)| *p > ARRIVED).map_or(f64::NAN, |(t, _)| *t)
 }
 
-/// ∫ p dt from `from` for `window`, by the trapezoidal rule over the points in between.
+/// ∫ p dt from `from` for `window`, by the trapezoidal rule over the points in between; NaN of less than two.
 pub fn impulse(pressure: &[(f64, f64)], from: f64, window: f64) -> f64 {
     let inside: Vec<(f64, f64)> =
         pressure.iter().filter(|(t, _)| *t >= from && *t <= from + window).copied().collect();
+    if inside.len() < 2 {
+        return f64::NAN;
+    }
     inside.windows(2).map(trapezoid).sum()
 }
 

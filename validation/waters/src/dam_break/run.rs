@@ -97,7 +97,7 @@ mod tests {
     use super::*;
     use crate::{dam_break::DAM_BREAK, water::ledger::WORK_VISCOSITY};
     use base::{
-        record::NOT_ASKED,
+        absent::Absent,
         spec::{Measure, RunSpec},
     };
     use harness::case::Case;
@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(plain.state, all.state);
         assert_eq!([&plain, &all].map(Record::measured), [Measure::Headline, Measure::All]);
         for metric in COSTLY.iter().map(|metric| String::from(*metric)) {
-            assert_eq!(plain.absent.get(&metric).map(String::as_str), Some(NOT_ASKED), "{metric}");
+            assert_eq!(plain.absent.get(&metric), Some(&Absent::NotAsked), "{metric}");
             assert!(all.metrics.contains_key(&metric), "{metric}");
         }
         assert!(!plain.profiles.contains_key("energy") && all.profiles.contains_key("energy"));

@@ -1,0 +1,386 @@
+//! What is said of results of other codes: a run that cannot be measured fails, what was not handed in is not
+//! judged, a place in another period is the same place, and bounds of our own method judge it alone.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use base::{
+    absent::Absent,
+    random::Random,
+    record::{Record, Status},
+};
+
+/// A submission: the folder, and the lines of its results, a cell a column.
+struct Entry {
+    _holds: tempfile::TempDir,
+    folder: PathBuf,
+    case: String,
+    head: Vec<String>,
+    rows: Vec<Vec<String>>,
+}
+
+/// What came of a submission.
+struct Said {
+    code: i32,
+    text: String,
+    /// Gates by name, with the verdict.
+    gates: BTreeMap<String, String>,
+    record: Option<Record>,
+}
+
+fn touchstone(folder: &Path, line: &str) -> (i32, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
+    let output = command.current_dir(folder).args(line.split(' ')).output().unwrap();
+    let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
+    (output.status.code().unwrap_or(-1), format!("{out}{err}"))
+}
+
+fn cells(line: &str) -> Vec<String> {
+    line.split(',').map(String::from).collect()
+}
+
+impl Entry {
+    /// Our own results of a problem.
+    fn own(problem: &str) -> Self {
+        let holds = tempfile::tempdir().unwrap();
+        let (code, text) = touchstone(holds.path(), &format!("export {problem} --solve --out own"));
+        assert_eq!(code, 0, "{problem}: {text}");
+        let folder = holds.path().join("own");
+        let text = fs::read_to_string(folder.join("results.csv")).unwrap();
+        let mut lines = text.lines().map(cells);
+        let (head, rows) = (lines.next().unwrap(), lines.collect());
+        let case = problem.split(' ').next().unwrap().to_string();
+        Self { _holds: holds, folder, case, head, rows }
+    }
+
+    fn column(&self, name: &str) -> usize {
+        let is = |head: &String| head.split('[').next() == Some(name);
+        self.head.iter().position(is).unwrap_or_else(|| panic!("no column {name}"))
+    }
+
+    fn number(&self, row: usize, column: usize) -> f64 {
+        self.rows[row][column].parse().unwrap()
+    }
+
+    /// The rows of a particle, or of all.
+    fn of(&self, particle: Option<usize>) -> Vec<usize> {
+        let id = self.column("id");
+        let is = |row: &usize| particle.is_none_or(|k| self.rows[*row][id] == k.to_string());
+        (0..self.rows.len()).filter(is).collect()
+    }
+
+    /// Submits these rows of some columns.
+    fn submit(&self, head: &[String], rows: &[Vec<String>]) -> Said {
+        let text: String = std::iter::once(head)
+            .chain(rows.iter().map(Vec::as_slice))
+            .map(|row| row.join(",") + "\n")
+            .collect();
+        fs::write(self.folder.join("results.csv"), text).unwrap();
+        let store = tempfile::tempdir().unwrap();
+        let (own, at) = (self.folder.display(), store.path().display());
+        let line = format!("submit {} {own} --all --store {at}", self.case);
+        let (code, text) = touchstone(&self.folder, &line);
+        let verdicts = text.lines().filter_map(|line| {
+            let mut words = line.split_whitespace();
+            let verdict = words.next().filter(|word| ["pass", "FAIL"].contains(word))?;
+            Some((words.next()?.to_string(), verdict.to_string()))
+        });
+        let file = fs::read_dir(store.path()).unwrap().flatten().next();
+        let record = file.map(|file| fs::read_to_string(file.path()).unwrap());
+        let record = record.map(|text| Record::from_json(&text).unwrap());
+        Said { code, gates: verdicts.collect(), text, record }
+    }
+
+    /// Submits the rows with other numbers in some cells of a column.
+    fn edited(&self, cells: &[(usize, usize)], to: impl Fn(usize, f64) -> f64) -> Said {
+        let mut rows = self.rows.clone();
+        for &(row, column) in cells {
+            rows[row][column] = format!("{:?}", to(row, self.number(row, column)));
+        }
+        self.submit(&self.head, &rows)
+    }
+
+    /// Submits the rows without a column.
+    fn without(&self, column: &str) -> Said {
+        let column = self.column(column);
+        let but = |row: &Vec<String>| {
+            let all = row.iter().enumerate().filter(|(k, _)| *k != column);
+            all.map(|(_, cell)| cell.clone()).collect::<Vec<_>>()
+        };
+        let rows: Vec<_> = self.rows.iter().map(but).collect();
+        self.submit(&but(&self.head), &rows)
+    }
+}
+
+/// A density of 1500, twice the speed of sound and densities in other units ended with 0 and no verdict.
+#[test]
+fn a_submission_that_diverged_fails_and_names_particle_field_value_and_time() {
+    let own = Entry::own("couette --variant plain --set rows=20");
+    let honest = own.submit(&own.head, &own.rows);
+    assert!(honest.code < 2 && honest.gates.len() >= 2, "{}", honest.text);
+    let (density, u) = (own.column("density"), own.column("u"));
+    let of =
+        |rows: Vec<usize>, column| rows.into_iter().map(|row| (row, column)).collect::<Vec<_>>();
+    let of_seven = own.of(Some(7));
+    let last = vec![*of_seven.last().unwrap()];
+    for (what, cells, to, says) in [
+        ("a density", of(of_seven.clone(), density), 1500.0, "density of particle 7 is 1.5"),
+        ("the last frame", of(last.clone(), density), 1500.0, "density of particle 7 is 1.5"),
+        ("a speed", of(of_seven, u), 0.1, "velocity of particle 7 is 1.0"),
+        ("other units", of(own.of(None), density), 1.0, "density of particle 0 is 1.0"),
+        ("a place", of(last, own.column("y")), -1e300, "position of particle 7 is 1.0"),
+    ] {
+        let said = own.edited(&cells, |_, _| to);
+        assert_eq!(said.code, 1, "{what}: {}", said.text);
+        let words = said.text.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(words.contains(says) && words.contains("at t = "), "{what}: {}", said.text);
+        assert_eq!(said.gates.len(), honest.gates.len(), "{what}: {}", said.text);
+        assert!(said.gates.values().all(|verdict| verdict == "FAIL"), "{what}: {}", said.text);
+        let check = format!("submit couette {} --check", own.folder.display());
+        assert_eq!(touchstone(&own.folder, &check).0, 1, "{what}: --check");
+    }
+}
+
+/// Pressures of still water were those of our own start, and passed.
+#[test]
+fn nothing_is_judged_that_rests_on_a_density_that_was_not_handed_in() {
+    let own = Entry::own("hydrostatic");
+    let honest = own.submit(&own.head, &own.rows);
+    assert!(honest.gates.keys().any(|gate| gate.ends_with("p_l2")), "{}", honest.text);
+    let said = own.without("density");
+    assert!(!said.gates.keys().any(|gate| gate.ends_with("p_l2")), "{}", said.text);
+    assert!(said.text.contains("not given: density"), "{}", said.text);
+    assert!(!said.gates.is_empty(), "the level needs no density: {}", said.text);
+}
+
+/// The problems that are measured without densities, and metrics that must rest on them.
+const WITHOUT: [(&str, &[&str]); 9] = [
+    ("couette --variant plain --set rows=8 --set end=0.4", &["p_rms"]),
+    ("taylor_green --set n=16", &["pressure_l2"]),
+    ("dam_break --variant seed --set n=8 --set end=1", &["height_away"]),
+    ("hydrostatic --set rows=10 --set columns=5", &["p_l2"]),
+    ("still_wedge --set n=10", &["p_base"]),
+    ("elliptic_drop --set n=10", &[]),
+    ("periodic_hill --variant modern --set n=5 --set end=2", &["flux", "hill_pressure_drag"]),
+    ("taylor_couette --variant extrapolating-wall", &[]),
+    ("operators --variant quintic-density --set n=16 --set disorder=0", &["symbol_error"]),
+];
+
+/// Whatever is measured without densities has the same value whatever they are.
+#[test]
+fn what_is_measured_without_densities_does_not_depend_on_them() {
+    for (problem, rests) in WITHOUT {
+        let own = Entry::own(problem);
+        let without = own.without("density").record.expect(problem);
+        let (density, id) = (own.column("density"), own.column("id"));
+        let all: Vec<_> = own.of(None).into_iter().map(|row| (row, density)).collect();
+        let others = own
+            .edited(&all, |row, value| value * (1.0 + 1e-3 * (own.number(row, id) * 0.7).fract()));
+        let others = others.record.expect(problem);
+        for (name, metric) in &without.metrics {
+            let other = others.metrics.get(name).map(|metric| metric.value);
+            assert_eq!(Some(metric.value), other, "{name} of {problem} depends on densities");
+        }
+        let none = Absent::NotGiven("density".into());
+        let all = without.absent.iter().filter(|(_, why)| **why == none);
+        let names: BTreeSet<&str> = all.map(|(name, _)| name.split('@').next().unwrap()).collect();
+        for name in rests {
+            assert!(names.contains(name), "{name} of {problem}: {names:?}");
+        }
+        assert!(without.metrics.len() + names.len() > 2, "{problem}: {:?}", without.metrics.keys());
+    }
+}
+
+/// The periods of a problem along x and y.
+fn periods(folder: &Path) -> [Option<f64>; 2] {
+    let text = fs::read_to_string(folder.join("problem.json")).unwrap();
+    let problem: serde_json::Value = serde_json::from_str(&text).unwrap();
+    [0, 1].map(|axis| problem["domain"]["period"][axis]["value"].as_f64())
+}
+
+/// Hills one period further lost all errors, and their empty sections were perfect.
+#[test]
+fn a_place_is_the_same_in_every_period() {
+    for problem in [
+        "couette --variant plain --set rows=8 --set end=0.4",
+        "poiseuille --variant seed --set rows=8 --set end=0.4",
+        "periodic_hill --variant modern --set n=5 --set end=2",
+        "taylor_green --set n=16",
+        "acoustic_wave --set n=16",
+        "shear_wave --set n=16",
+        "operators --variant quintic-laplacian --set n=16",
+    ] {
+        let own = Entry::own(problem);
+        let honest = own.submit(&own.head, &own.rows).record.expect(problem);
+        let axes = periods(&own.folder).into_iter().zip(["x", "y"]);
+        let axes: Vec<_> = axes.filter_map(|(period, axis)| Some((period?, axis))).collect();
+        assert!(!axes.is_empty(), "{problem} is periodic");
+        let id = own.column("id");
+        let by: [fn(f64) -> f64; 3] = [|_| 1.0, |_| -2.0, |id| (id % 3.0) - 1.0];
+        for (period, axis) in axes {
+            let column = own.column(axis);
+            let cells: Vec<_> = own.of(None).into_iter().map(|row| (row, column)).collect();
+            for (k, turns) in by.into_iter().enumerate() {
+                let shift = |row, value| value + period * turns(own.number(row, id));
+                let said = own.edited(&cells, shift);
+                let found = said.record.unwrap_or_else(|| panic!("{problem}: {}", said.text));
+                let names = |record: &Record| record.metrics.keys().cloned().collect::<Vec<_>>();
+                assert_eq!(names(&found), names(&honest), "{problem}, {axis}, {k}");
+                for (name, metric) in &honest.metrics {
+                    let (is, was) = (found.metrics[name].value, metric.value);
+                    let is_same = (is - was).abs() <= 1e-9 * was.abs().max(1.0);
+                    assert!(is_same, "{name} of {problem}, {axis}, {k}: {is}, {was}");
+                }
+            }
+        }
+    }
+}
+
+/// A section without particles had no error of the flux.
+#[test]
+fn a_measure_over_nothing_is_no_number() {
+    let own = Entry::own("periodic_hill --variant modern --set n=5 --set end=2");
+    let y = own.column("y");
+    let cells: Vec<_> = own.of(None).into_iter().map(|row| (row, y)).collect();
+    let said = own.edited(&cells, |_, y| y + 20.0);
+    let record = said.record.expect(&said.text);
+    assert!(said.code != 0, "{}", said.text);
+    let flux = record.metrics.get("section_flux").map_or(f64::NAN, |metric| metric.value);
+    assert!(!flux.is_finite(), "no particle is in a section, and its error is {flux}");
+}
+
+/// Where no plan has a gate, 0 was the exit code, and nothing was said of the error.
+#[test]
+fn nothing_judged_ends_with_2_and_names_what_is() {
+    let own = Entry::own("couette --variant plain --set rows=12");
+    let said = own.submit(&own.head, &own.rows);
+    assert_eq!(said.code, 2, "{}", said.text);
+    let words = said.text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "Nothing was judged",
+        "the nearest that is judged is couette --variant plain --set rows=10",
+        "touchstone export couette --variant plain --set rows=10",
+        "error ",
+    ] {
+        assert!(words.contains(part), "no {part:?}: {words}");
+    }
+    assert_eq!(said.record.expect("a record").status, Status::Completed);
+}
+
+/// Our own run with a quarter of its step failed, for the error of the step cancels a part of that of the sums.
+#[test]
+fn a_window_of_our_own_step_judges_only_what_states_it() {
+    let at_once = |flow: &str| {
+        let own = Entry::own(&format!("{flow} --variant plain --set rows=20"));
+        let honest = own.submit(&own.head, &own.rows);
+        let fine = Entry::own(&format!("{flow} --variant plain --set rows=20 --set viscous=0.1"));
+        fs::copy(fine.folder.join("system.json"), own.folder.join("system.json")).unwrap();
+        (honest, own.submit(&fine.head, &fine.rows))
+    };
+    for (flow, gate) in
+        [("couette", "couette.plain.20.l2@0.1"), ("poiseuille", "poiseuille.plain.20.l2@1")]
+    {
+        let (honest, fine) = at_once(flow);
+        assert_eq!(honest.gates.get(gate).map(String::as_str), Some("pass"), "{}", honest.text);
+        assert!(honest.text.contains(" to "), "the window judges what states it: {}", honest.text);
+        assert_eq!(fine.gates.get(gate).map(String::as_str), Some("pass"), "{}", fine.text);
+        assert!(fine.gates.values().all(|verdict| verdict == "pass"), "{}", fine.text);
+    }
+}
+
+/// Honest submissions of six cases.
+const HONEST: [&str; 6] = [
+    "couette --variant plain --set rows=20",
+    "poiseuille --variant plain --set rows=20",
+    "taylor_green --set n=25 --set perturb=0.2",
+    "dam_break",
+    "hydrostatic",
+    "elastic_bar",
+];
+
+/// Numbers that no run has, and some that every run may have, in place of one.
+const ABSURD: [fn(f64) -> f64; 14] = [
+    |_| 1e300,
+    |_| -1e300,
+    |_| 1e-300,
+    |_| 0.0,
+    |_| -1.0,
+    |_| 1500.0,
+    |_| 1e9,
+    |_| 1e17,
+    |_| f64::MAX,
+    |value| 1e-3 * value,
+    |value| 1e3 * value,
+    |value| -value,
+    |value| 2.3 * value,
+    |value| value + 1e6,
+];
+
+/// An honest submission with one absurdity: one particle or all, in one frame or all, in one column.
+fn absurd(own: &Entry, random: &mut Random) -> (String, Said) {
+    let mut one_of = |count: usize| (random.uniform() * count as f64) as usize % count;
+    let columns: Vec<usize> = ["x", "y", "u", "v", "density"].map(|name| own.column(name)).into();
+    let (column, t) = (columns[one_of(5)], own.column("t"));
+    let mut times: Vec<String> = own.rows.iter().map(|row| row[t].clone()).collect();
+    times.dedup();
+    let particles: BTreeSet<_> = own.rows.iter().map(|row| &row[own.column("id")]).collect();
+    let particle = [None, Some(one_of(particles.len()))][one_of(3).min(1)];
+    let frame = [None, Some(0), Some(times.len() / 2), Some(times.len() - 1)][one_of(4)];
+    let is_in = |row: &usize| frame.is_none_or(|frame| own.rows[*row][t] == times[frame]);
+    let k = one_of(ABSURD.len());
+    let cells: Vec<_> =
+        own.of(particle).into_iter().filter(is_in).map(|row| (row, column)).collect();
+    let what =
+        format!("{} of particle {particle:?} in frame {frame:?}, number {k}", own.head[column]);
+    (what, own.edited(&cells, |_, value| ABSURD[k](value)))
+}
+
+/// Of 1,150 absurd numbers in honest submissions 239 evaded their verdict. `TOUCHSTONE_ABSURD=170` tries a
+/// thousand of them and prints the table.
+#[test]
+fn no_absurd_number_evades_its_verdict() {
+    let tries = std::env::var("TOUCHSTONE_ABSURD").ok().and_then(|text| text.parse().ok());
+    let mut random = Random::new(51);
+    for problem in HONEST {
+        let own = Entry::own(problem);
+        let honest = own.submit(&own.head, &own.rows);
+        assert!(honest.code < 2 && !honest.gates.is_empty(), "{problem}: {}", honest.text);
+        let judged = |said: &Said| said.gates.keys().cloned().collect::<Vec<_>>();
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for _ in 0..tries.unwrap_or(5) {
+            let (what, said) = absurd(&own, &mut random);
+            let Some(record) = &said.record else {
+                assert_eq!(said.code, 2, "{problem}, {what}: {}", said.text);
+                *counts.entry("refused").or_default() += 1;
+                continue;
+            };
+            assert_eq!(judged(&said), judged(&honest), "{problem}, {what}: {}", said.text);
+            let fails = said.gates.values().filter(|verdict| *verdict == "FAIL").count();
+            assert_eq!(said.code, i32::from(fails > 0), "{problem}, {what}: {}", said.text);
+            let mut numbers = record.profiles.values().flat_map(|of| &of.columns);
+            let is_whole =
+                numbers.all(|column| column.values.iter().all(|value| value.is_finite()));
+            assert!(is_whole || fails > 0, "{problem}, {what}: a curve has a hole");
+            let is_measured = record.metrics.values().all(|metric| metric.value.is_finite());
+            let ended = match &record.status {
+                Status::Completed if fails == 0 && is_measured => "passes as the honest one",
+                Status::Completed if fails == 0 => {
+                    "passes, and a number that is not judged is none"
+                }
+                Status::Completed => "fails",
+                _ => {
+                    assert_eq!(fails, honest.gates.len(), "{problem}, {what}: {}", said.text);
+                    assert!(said.text.contains(" of particle "), "{what}: {}", said.text);
+                    "diverged, and all gates fail"
+                }
+            };
+            if tries.is_some() && ended.starts_with("passes") {
+                println!("  passes: {what}");
+            }
+            *counts.entry(ended).or_default() += 1;
+        }
+        println!("{problem}: {counts:?}");
+    }
+}
