@@ -109,7 +109,13 @@ fn submissions_are_judged_where_our_own_runs_are() {
     let (words, code) = of(at, "report --store st --out page");
     assert!(code == 1 && words.contains("bad code"), "{words}");
     let page = fs::read_to_string(at.join("page/index.html")).unwrap();
-    for part in ["bad code 1, s", "as submitted", "proves nothing", "not looked at the scripts"] {
+    for part in [
+        "in the store:",
+        "bad code 1, s",
+        "as submitted",
+        "proves nothing",
+        "not looked at the scripts",
+    ] {
         assert!(page.contains(part), "the page lacks {part:?}");
     }
     let told = page.split("Equal results, to the last bit").nth(1).expect("they are told");

@@ -16,7 +16,8 @@ use harness::{
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use report::{
-    Block, Card, Cell, Column, Explorer, Page, Section, Table, VERDICTS, code, counted, plain,
+    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, code, counted,
+    plain,
 };
 
 use crate::{cases, limitations, stiffness, time};
@@ -34,7 +35,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
             }
         }
     }
-    let notes = vec![
+    let mut notes = vec![
         format!("**Supporting cases:** {}.", others.join("; ")),
         "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
          known limitation if it lies outside and inside of a second bound, which follows from the cause, or \
@@ -44,6 +45,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
          runs of this report."
             .to_string(),
     ];
+    notes.splice(0..0, of_others(suite));
     let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
     sections.extend(suite.cases.iter().map(case_section));
     sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
@@ -69,6 +71,19 @@ fn with_grades(mut card: Card) -> Card {
     let grades = cases::graded(&card.id).into_iter();
     card.facts.extend(grades.map(|(name, grade)| (format!("Reference `{name}`:"), grade)));
     card
+}
+
+/// How runs of other codes ended that the store has, and where they are shown.
+fn of_others(suite: &Suite) -> Option<String> {
+    let has_some = |of: &&CaseResults| !of.runs.submissions.is_empty();
+    let link = |of: &CaseResults| {
+        let name = of.case.name();
+        format!("[{name}](#study-{}-submissions)", name.replace('_', "-"))
+    };
+    let links: Vec<String> = suite.cases.iter().filter(has_some).map(link).collect();
+    let counts = Counts::of(suite.submitted().map(|of| of.judged.judgement.verdict));
+    let words = format!("**Runs of other codes in the store:** {}", counts.headline());
+    (!links.is_empty()).then(|| format!("{words} ({}).", links.join(", ")))
 }
 
 /// What all runs of the report cost together.

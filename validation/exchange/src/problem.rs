@@ -185,7 +185,7 @@ impl Problem {
     /// The same, sealed: judged by what follows from the bounds of judged runs.
     #[must_use]
     pub fn sealed(mut self, case: &dyn Case, sealed: Sealed) -> Self {
-        self.gates.extend(sealed::gates(case, &self.spec));
+        self.gates = sealed::gates(case, &self.spec);
         Self { sealed: Some(sealed), ..self }
     }
 

@@ -179,8 +179,13 @@ pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     leave_out_ours(case, &mut record);
     let spec = record.spec();
     let of = spec.submission.as_deref();
-    let states = of.is_some_and(|of| of.states_our_method);
-    let gates = plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() });
+    // Bounds of sealed problems are those of any method.
+    let is_sealed = of.is_some_and(|of| of.seed.is_some());
+    let states = is_sealed || of.is_some_and(|of| of.states_our_method);
+    let gates = match is_sealed {
+        true => sealed::gates(case, &spec),
+        false => plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() }),
+    };
     let (mut judged, mut not_of_others) = (Vec::new(), Vec::new());
     for gate in gates {
         let id = gate.id.clone();
@@ -188,12 +193,6 @@ pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
             Some(gate) => judged.push(gate),
             None => not_of_others.push(id),
         }
-    }
-    if of.is_some_and(|of| of.seed.is_some()) {
-        // Bounds of any method.
-        judged.extend(
-            sealed::gates(case, &spec).into_iter().filter_map(|gate| gate.for_submission(true)),
-        );
     }
     JudgedRun { not_of_others, ..JudgedRun::new(Planned::new(spec).judged(judged), record) }
 }

@@ -13,7 +13,7 @@ use report::{Axis, ColourMap};
 /// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.
 const SEALED: Draws = Draws {
     variants: &["carried"],
-    resolution: ("n", [8.0, 14.0]),
+    resolution: ("n", [8.0, 11.0]),
     order: 1.0,
     metrics: &["l2_u", "force_error"],
     set: &[],
