@@ -231,8 +231,10 @@ fn results_have_a_digest_and_machines_are_not_mixed() {
 /// The settings that a challenge draws for a method, or why there are none.
 fn drawn(at: &Path, method: &str, arguments: &str) -> Result<String, String> {
     fs::write(at.join("method.json"), method).unwrap();
-    let output =
-        touchstone(at, &format!("challenge {arguments} --method method.json --out sealed"));
+    let output = touchstone(
+        at,
+        &format!("challenge {arguments} --method method.json --out sealed --overwrite"),
+    );
     let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
     match output.status.code() {
         Some(0) => Ok(out.into_owned()),
