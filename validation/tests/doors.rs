@@ -221,6 +221,7 @@ fn a_report_of_older_records_fails_its_gates_and_is_no_bug() {
     // As it was before records had a digest.
     let (head, _) = whole.rsplit_once(",\n  \"digest\"").expect("a digest");
     fs::write(&path, head.replace("\"schema\": 3", "\"schema\": 2") + "\n}\n").unwrap();
+    submit_as(folder.path(), "[a](javascript:alert%281%29) *b* `c` <i>");
     for (line, exit) in [
         ("judge couette --store store", 1),
         ("report --store store --out report", 1),
@@ -231,6 +232,23 @@ fn a_report_of_older_records_fails_its_gates_and_is_no_bug() {
         assert_eq!(output.status.code(), Some(exit), "{line}: {message}");
         assert!(message.contains("made by an older version"), "{line}: {message}");
     }
+    let page = fs::read_to_string(folder.path().join("report/index.html")).unwrap();
+    assert!(
+        page.contains(">[a](javascript:alert%281%29) *b* `c` &lt;i&gt; "),
+        "a name is plain text"
+    );
+    assert!(!page.contains("href=\"javascript"));
+}
+
+/// Puts results of a code of this name into the store of a folder.
+fn submit_as(folder: &Path, name: &str) {
+    let export = "export couette --variant seed --set rows=8 --set end=0.1 --solve --out own";
+    assert!(touchstone(folder, export).status.success());
+    let method = folder.join("own/method.json");
+    let text = fs::read_to_string(&method).unwrap();
+    fs::write(&method, text.replace("\"touchstone\"", &format!("\"{name}\""))).unwrap();
+    let submitted = touchstone(folder, "submit couette own --store store");
+    assert!(submitted.status.code() < Some(2), "{}", said(&submitted));
 }
 
 /// Waits for a child, at most so long \[s\]; how it ended and what it said.

@@ -240,3 +240,58 @@ fn pipes_are_written_into_and_links_followed() {
         "it is not led out of its folder"
     );
 }
+
+/// The sign that a run is under way emptied the file that a link of its name led to, and waited at a pipe.
+#[test]
+fn a_store_leads_to_no_file_outside_of_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let (at, store) = (folder.path(), folder.path().join("store"));
+    let plan = touchstone(at, "plan couette --variant seed --set rows=8 --set end=0.01");
+    fs::write(at.join("plan"), [&b"\xef\xbb\xbf"[..], &plan.stdout].concat()).unwrap(); // a byte order mark
+    let line = "run --specs plan --store store --threads 1";
+    made(at, line);
+    let record = names(&store).pop().unwrap();
+    let sign = store.join(format!(".begun-{record}"));
+    fs::write(at.join("precious"), "mine").unwrap();
+    for target in ["../precious", "../new"] {
+        fs::remove_file(store.join(&record)).unwrap();
+        symlink(target, &sign).unwrap();
+        made(at, line);
+        assert!(sign.is_symlink() && store.join(&record).is_file());
+        fs::remove_file(&sign).unwrap();
+    }
+    assert_eq!(fs::read_to_string(at.join("precious")).unwrap(), "mine");
+    assert!(!at.join("new").exists());
+    fs::remove_file(store.join(&record)).unwrap();
+    let with_pipe = format!("mkfifo store/.begun-{record}; timeout 60 {TOUCHSTONE} {line}");
+    assert_eq!(shell(at, &with_pipe).status.code(), Some(0), "it waits at a pipe");
+    fs::remove_file(store.join(&record)).unwrap();
+    symlink("../precious", store.join(&record)).unwrap();
+    refused(at, line, "a link of this name; remove it");
+    assert_eq!(fs::read_to_string(at.join("precious")).unwrap(), "mine");
+}
+
+/// What the environment asks of threads was an exit code of no table, or a signal.
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_cannot_be_started_are_told_with_what_to_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = "touchstone run couette --variant seed --set rows=8 --set end=0.01";
+    for (lines, exit, words) in [
+        (format!("RUST_MIN_STACK=99999999999999 {TOUCHSTONE} list"), 0, ""),
+        (format!("export RUST_MIN_STACK=1; {run}"), 0, ""),
+        (
+            format!("ulimit -v 1000000; export RAYON_NUM_THREADS=1000; {run}"),
+            2,
+            "cannot be started (1000)",
+        ),
+        (format!("ulimit -v 1000000; {run} --threads 1000"), 2, "ask for fewer by --threads N"),
+    ] {
+        let output = shell(folder.path(), &lines);
+        let message = said(&output);
+        assert!(
+            output.status.code() == Some(exit) && message.contains(words),
+            "{lines}: {message}"
+        );
+    }
+}

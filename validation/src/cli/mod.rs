@@ -367,7 +367,8 @@ fn pool(threads: usize) -> rayon::ThreadPoolBuilder {
 }
 
 fn no_threads(threads: usize, error: &rayon::ThreadPoolBuildError) -> Failure {
-    let many = if threads > 0 { threads.to_string() } else { "one a core".into() };
+    let asked = std::env::var("RAYON_NUM_THREADS").unwrap_or_else(|_| "one a core".into());
+    let many = if threads > 0 { threads.to_string() } else { asked };
     Failure::usage(format!(
         "the threads cannot be started ({many}): {error}; ask for fewer by --threads N or RAYON_NUM_THREADS=N"
     ))
