@@ -1,4 +1,4 @@
-//! What is measured of the water: front, heights, levels, and pressure on the far wall.
+//! What is measured of the water: front, heights, levels, potential energy, and pressure on the far wall.
 
 use std::collections::BTreeSet;
 
@@ -49,13 +49,29 @@ fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, height:
     low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
+/// The floor under water at rest \[m\]: half a spacing below its lowest particle, whose area states the
+/// spacing. Variants place their lowest row half a spacing or a whole one above the surface of the wall.
+fn floor(water: &[Particle]) -> f64 {
+    let lowest = water.iter().min_by(|a, b| a.position.y.total_cmp(&b.position.y));
+    lowest.map_or(f64::NAN, |p| p.position.y - 0.5 * (p.mass / p.density).sqrt())
+}
+
+/// Mean height of the mass of all particles \[m\].
+fn centre(water: &[Particle]) -> f64 {
+    let add = |(all, sum), p: &Particle| (all + p.mass, sum + p.mass * p.position.y);
+    let (mass, moment) = water.iter().fold((0.0, 0.0), add);
+    moment / mass
+}
+
 /// Samples of a run.
 pub struct Samples<'a> {
     dam: &'a Dam,
-    /// x of the foremost particle at the start \[m\].
-    start: f64,
-    /// t \[s\], front, residual height, levels at H1 to H4 \[m\].
-    rows: Vec<[f64; 7]>,
+    /// x of the foremost particle at the start, and the floor under the water then \[m\].
+    start: [f64; 2],
+    /// t \[s\], front, residual height, levels at H1 to H4 \[m\], potential energy \[M g H/2\].
+    rows: Vec<[f64; 8]>,
+    /// Height of the centre of mass at the start/(H/2) - 1.
+    released: f64,
     /// Particles outside: the most at any time, and those at the last.
     outside: [f64; 2],
     /// The largest speed \[m/s\].
@@ -64,22 +80,37 @@ pub struct Samples<'a> {
     spilled: BTreeSet<usize>,
 }
 
-harness::observed! { Samples<'_>: changes(start, rows, outside, fastest, spilled), stays(dam) }
+harness::observed! { Samples<'_>: changes(start, rows, released, outside, fastest, spilled), stays(dam) }
 
 impl<'a> Samples<'a> {
     /// None yet.
     pub fn new(dam: &'a Dam) -> Self {
-        let (start, outside, fastest) = (f64::NAN, [f64::NAN; 2], f64::NAN);
-        Self { dam, start, rows: Vec::new(), outside, fastest, spilled: BTreeSet::new() }
+        let (start, outside, fastest) = ([f64::NAN; 2], [f64::NAN; 2], f64::NAN);
+        Self {
+            dam,
+            start,
+            rows: Vec::new(),
+            released: f64::NAN,
+            outside,
+            fastest,
+            spilled: BTreeSet::new(),
+        }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, simulation: &dyn Stepper<()>) {
         let (s, dx) = (&self.dam.settings, self.dam.medium.dx);
         let foremost = foremost(simulation.fluid(), s.height);
+        // In the order of the scene: that of storage changes, and with it the last bits of a sum.
+        let mut water = simulation.particles();
+        water.retain(|p| p.role == Role::Fluid);
+        let centre = centre(&water);
+        let half = 0.5 * s.height;
         if self.rows.is_empty() {
-            self.start = foremost;
+            self.start = [foremost, floor(&water)];
+            self.released = centre / half - 1.0;
         }
+        let [first, floor] = self.start;
         let width = self.dam.tank.width();
         let depth_at = |x: f64, spacings: f64| {
             let (place, w) = probe(x, spacings, dx, width);
@@ -87,10 +118,11 @@ impl<'a> Samples<'a> {
         };
         let over = (HEIGHT_OVER * s.width / dx).round().max(2.0);
         // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
-        let front = s.width + foremost - self.start;
+        let front = s.width + foremost - first;
         let height = depth_at(HEIGHT_AT * s.width, over);
         let [h1, h2, h3, h4] = PROBES.map(|x| depth_at(x, 2.0));
-        self.rows.push([simulation.time(), front, height, h1, h2, h3, h4]);
+        let potential = (centre - floor) / half;
+        self.rows.push([simulation.time(), front, height, h1, h2, h3, h4, potential]);
         self.look_at_walls(simulation);
     }
 
@@ -131,10 +163,12 @@ impl<'a> Samples<'a> {
         record.put(metrics::OUTSIDE_END, last);
         let [columns, rows] = self.dam.counts;
         record.put(metrics::SPILLED, self.spilled.len() as f64 / (columns * rows) as f64);
+        record.put(metrics::RELEASED, self.released);
         record.put(metrics::MACH, self.fastest / self.dam.medium.eos.sound_speed);
         let [front, height, one, two, three, four] =
             ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));
-        let columns = [("t", "s"), front, height, one, two, three, four];
+        let potential = ("potential", "M g H/2");
+        let columns = [("t", "s"), front, height, one, two, three, four, potential];
         record.profiles.insert("series".into(), Profile::of_rows(&columns, &self.rows));
     }
 }
@@ -255,8 +289,8 @@ mod tests {
     use solver::{Particle, Smoothing, WendlandC2};
 
     impl<'a> Samples<'a> {
-        /// Samples with these t, front, residual height and levels at each time \[s, m\].
-        pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 7]>) -> Self {
+        /// Samples with these t, front, residual height, levels \[s, m\] and potential energy \[M g H/2\].
+        pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 8]>) -> Self {
             Self { rows: rows.collect(), ..Self::new(dam) }
         }
     }
@@ -319,7 +353,7 @@ mod tests {
             (1, 20.0, 4.0 * (1.0 - 0.5 * 0.25), [4.0, 4.0, 4.0, 0.0]),
             (2, 30.0, 2.0 * 0.125, [2.0; 4]),
         ] {
-            let [_, reached, fallen, found @ ..] = samples.rows[row];
+            let [_, reached, fallen, found @ .., _] = samples.rows[row];
             is(reached, 0.6 + front * dx);
             is(fallen, height * dx);
             for (level, expected) in found.into_iter().zip(levels) {
@@ -331,6 +365,36 @@ mod tests {
         samples.sample(&*simulation(&tank, water(&tank, 30, 45, 3, Vector2::zeros())));
         let hat = |k: f64| (1.0 - (k + 0.5 - 1.3625 / dx).abs() / 2.0) / 2.0;
         is(samples.rows[0][6], 3.0 * dx * (hat(44.0) + hat(43.0)));
+    }
+
+    /// A table that lost its heights passed every gate: front, heights and levels are areas over x.
+    #[test]
+    fn potential_energy_is_that_of_water_put_by_hand_and_heights_are_seen() {
+        let free = Dam::changed(|s| s.n = 10).unwrap();
+        let (dx, height) = (free.medium.dx, free.settings.height);
+        let as_it_is = |y: f64| y;
+        for (place, released) in [
+            (&as_it_is as &dyn Fn(f64) -> f64, 0.0),
+            (&|y| y + 0.5 * dx, 1.0 / 20.0), // the lowest row a whole spacing above the wall
+            (&|_| 1e-3, 1e-3 / (0.5 * height) - 1.0),
+            (&|y| 10.0 * y, 9.0),
+        ] {
+            let mut samples = Samples::new(&free);
+            for rows in [20, 5] {
+                // The same mass on fewer rows, or all over the floor.
+                let mut all = water(&free, 0, 200 / rows, rows, Vector2::zeros());
+                all.iter_mut().for_each(|p| p.position.y = place(p.position.y));
+                samples.sample(&*simulation(&free, all));
+            }
+            let record = record(&free, |record| samples.measure(record));
+            is(record.value(metrics::RELEASED).expect("a metric"), released);
+            let [start, end] = [0, 1].map(|k| samples.rows[k][7]);
+            let row = |k: usize| place((k as f64 + 0.5) * dx);
+            let mean = |rows: usize| (0..rows).map(row).sum::<f64>() / rows as f64;
+            let floor = row(0) - 0.5 * dx;
+            is(start, 2.0 * (mean(20) - floor) / height);
+            is(end, 2.0 * (mean(5) - floor) / height);
+        }
     }
 
     #[test]

@@ -51,6 +51,12 @@ base::metrics! {
          at t (g/H)^(1/2)";
     HEIGHT_AWAY = "height_away" ["-"]
         "rms distance of the residual height/H from that of the same model by volume of fluid";
+    RELEASED = "released" ["-"]
+        "height of the centre of mass above the floor at the start/(H/2) - 1";
+    POTENTIAL_AWAY = "potential_away" ["-"]
+        "rms distance of the potential energy 2 sum m (y - b)/(H sum m) of all particles from that of the \
+         same model by volume of fluid, until t (g/H)^(1/2) = 1.8, in the tank 3; b is half a spacing below \
+         the lowest particle at the start";
     ARRIVAL = "arrival" ["-"]
         "t (g/H)^(1/2) at which P1 first exceeds 0.1 rho g H; pressures are aligned by it";
     PEAK = "peak_P1" ["-"] "largest pressure on P1/(rho g H), means over 0.01 (H/g)^(1/2)";

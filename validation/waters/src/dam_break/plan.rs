@@ -64,23 +64,34 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
 /// The gates of a run.
 fn gates(row: &Row) -> Vec<Gate> {
     let (variant, n) = (row.variant, row.settings.n);
+    let dx = row.settings.width.min(row.settings.height) / (n as f64 * row.settings.height);
     let gates = match row.group {
         Group::Free => {
             let run = format!("martin-moyce.{variant}.{n}");
             match variant {
-                "modern" => [invariants(&run), free_references(&run), free_model(&run, n)].concat(),
-                "seed" => [invariants(&run), free_references(&run)].concat(),
+                "modern" => {
+                    [invariants(&run, dx), free_references(&run), free_model(&run, n)].concat()
+                }
+                "seed" => [
+                    invariants(&run, dx),
+                    free_references(&run),
+                    vec![potential(&run, FREE_POTENTIAL)],
+                ]
+                .concat(),
                 // Which of its jets hit a wall between two samples of the force is left to chance.
                 "ghosts" => {
                     let momentum = String::from(MOMENTUM_GAP);
-                    invariants(&run).into_iter().filter(|gate| gate.metric != momentum).collect()
+                    invariants(&run, dx)
+                        .into_iter()
+                        .filter(|gate| gate.metric != momentum)
+                        .collect()
                 }
-                _ => invariants(&run),
+                _ => invariants(&run, dx),
             }
         }
         Group::Tank => {
             let run = format!("lobovsky.{variant}.{n}");
-            [invariants(&run), tank_references(&run), tank_model(&run)].concat()
+            [invariants(&run, dx), tank_references(&run), tank_model(&run)].concat()
         }
         Group::Ladder | Group::Ensemble => Vec::new(),
     };
@@ -115,7 +126,7 @@ fn against(run: &str, metric: impl Into<MetricName>, bound: Bound, because: &str
 
 /// What holds whatever the water does. Walls that only images of other velocities make are judged by it
 /// alone: neither is the wall of the experiment.
-fn invariants(run: &str) -> Vec<Gate> {
+fn invariants(run: &str, dx: f64) -> Vec<Gate> {
     let tight = "No particle may pass a wall, whose surface lies half a spacing before its first particles.";
     let kept = "Particles keep their masses, and none is added or removed.";
     let closes =
@@ -127,7 +138,11 @@ fn invariants(run: &str) -> Vec<Gate> {
     let still =
         "Walls at rest do no work. The bound is for what their pressure stores and gives back.";
     let ends = "A run that ends early says nothing about what comes later.";
+    let filled = "The column is H high, so its centre is at H/2. Its lowest row is half a spacing to a whole \
+                  one above the wall, which is dx/2 or nothing of difference.";
+    let released = Bound::Within(-dx, dx);
     [
+        (RELEASED, released, Evidence::Theory, filled),
         (REACHED, Bound::Above(1.0), Evidence::Invariant, ends),
         (WORK_WALLS, Bound::Within(-0.05, 0.05), Evidence::Invariant, still),
         (OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, tight),
@@ -166,6 +181,17 @@ fn free_references(run: &str) -> Vec<Gate> {
     PEERS.map(place).into_iter().chain(of_experiment).collect()
 }
 
+/// Bound of the potential energy of the column of Martin & Moyce \[M g H/2\].
+const FREE_POTENTIAL: f64 = 0.003;
+
+/// The gate on the potential energy, by which heights and gravity are seen.
+fn potential(run: &str, most: f64) -> Gate {
+    let because = "By the slope of the curve by volume of fluid, which is known to 0.003 M g H/2, in the tank \
+                   to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The bound is half of this, so \
+                   that either sign of it is outside.";
+    against(run, POTENTIAL_AWAY, Bound::Below(most), because)
+}
+
 /// Gates of the method on such a column: the same model by volume of fluid.
 fn free_model(run: &str, n: usize) -> Vec<Gate> {
     let front =
@@ -174,7 +200,9 @@ fn free_model(run: &str, n: usize) -> Vec<Gate> {
         "The bound is 1 % of the column. By volume of fluid the height is known to 0.003 H.";
     let place =
         (n >= 40).then(|| against(run, FRONT_AWAY.at(2), Bound::Within(-0.02, 0.02), front));
-    [against(run, HEIGHT_AWAY, Bound::Below(0.01), height)].into_iter().chain(place).collect()
+    let always =
+        [against(run, HEIGHT_AWAY, Bound::Below(0.01), height), potential(run, FREE_POTENTIAL)];
+    always.into_iter().chain(place).collect()
 }
 
 /// Gates of a column in the tank: Lobovsky et al.
@@ -219,6 +247,7 @@ fn tank_model(run: &str) -> Vec<Gate> {
         let tenth = Bound::Within(-0.1, 0.1);
         gates.extend(IMPULSE_AWAY.map(|away| against(run, away.at(window), tenth, impulse)));
     }
+    gates.push(potential(run, 0.0019));
     // Only a thin jet reaches the uppermost sensor during the first window.
     let thin = &mut gates[LEVEL_AWAY.len() + 3];
     let known = Bound::Within(-0.28, 0.28);
@@ -238,6 +267,7 @@ fn known(row: &Row) -> Vec<(MetricName, f64, Why)> {
             (z3, 3.51, THICK),
             (FRONT.shift.into(), -0.05, THICK),
             (HEIGHT.shift.into(), -0.11, LAYER),
+            (POTENTIAL_AWAY.into(), 0.0263, THICK),
         ],
         (Group::Free, "ghosts") => vec![
             (OUTSIDE.into(), 5.0, CROSSED),
@@ -290,8 +320,36 @@ const FAST: Why = (
 mod tests {
     use super::*;
     use crate::dam_break::DAM_BREAK;
-    use base::spec::{Measure, RunSpec};
+    use base::{
+        mutation::{Constant, Mutation},
+        spec::{Measure, RunSpec},
+    };
     use harness::{case::Case, context::Context, plan, runs::JudgedRun};
+
+    /// Gravity that was 3 % too large passed all gates that read particles.
+    #[test]
+    fn gravity_that_is_3_percent_off_fails_the_gate_on_the_potential_energy() {
+        let table = table(Tier::Quick);
+        for group in [Group::Free, Group::Tank] {
+            let row = table.of(group).find(|row| row.variant == "modern").expect("a run");
+            let mut gates = row.run.gates.iter();
+            let gate = gates.find(|gate| gate.metric == String::from(POTENTIAL_AWAY));
+            let gate = gate.expect("a gate on the potential energy");
+            for (factor, is_failure) in [(1.0, false), (0.97, true), (1.03, true)] {
+                let mut spec = row.run.spec.clone();
+                (spec.measure, spec.mutation) =
+                    (Measure::Headline, Some(Mutation { of: Constant::BodyForce, factor }));
+                spec.keep = RunSpec::default().keep;
+                let record = DAM_BREAK.run(&spec, &Context::default()).expect("a run");
+                let judged = gate.judge_record(&record);
+                assert_eq!(
+                    judged.verdict.is_failure(),
+                    is_failure,
+                    "{group:?}, {factor}: {judged:?}"
+                );
+            }
+        }
+    }
 
     /// The need of a run follows from its gates, and a gate on what was not asked for fails.
     #[test]
