@@ -123,6 +123,7 @@ impl FromMedium for Wrong {
     fn new(m: &Medium) -> Self {
         Self { kind: SOUND, size: 1e-6 * m.sound_speed * m.sound_speed }
     }
+    fn state(_: &mut Vec<&'static str>) {}
 }
 
 impl<X> Term<X> for Wrong {

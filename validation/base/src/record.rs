@@ -241,7 +241,8 @@ impl MetricKey {
     }
 }
 
-/// Declares metrics, a line each: constant, name, unit, formula. The formula is the documentation.
+/// Declares metrics, a line each: constant, name, unit, formula. The formula is the documentation. After
+/// `all NAME;` they are in a list of this name too.
 ///
 /// ```
 /// base::metrics! {
@@ -253,6 +254,11 @@ impl MetricKey {
 /// ```
 #[macro_export]
 macro_rules! metrics {
+    (all $all:ident; $($constant:ident = $name:literal [$unit:literal] $formula:literal;)+) => {
+        $crate::metrics! { $($constant = $name [$unit] $formula;)+ }
+        /// All of these metrics.
+        pub const $all: &[$crate::record::MetricKey] = &[$($constant),+];
+    };
     ($($constant:ident = $name:literal [$unit:literal] $formula:literal;)+) => {$(
         #[doc = $formula]
         pub const $constant: $crate::record::MetricKey =
@@ -267,6 +273,23 @@ pub struct MetricName {
     /// The name, as gates state it.
     pub name: String,
     what: String,
+}
+
+impl MetricName {
+    /// The unit.
+    pub fn unit(&self) -> &'static str {
+        self.key.unit
+    }
+
+    /// How it is computed.
+    pub fn formula(&self) -> String {
+        self.key.formula.replace("{}", &self.what)
+    }
+
+    /// Is a metric in a record or a gate this one, at whatever time or other mark?
+    pub fn is(&self, name: &str) -> bool {
+        is_of(&[self.key], name)
+    }
 }
 
 impl From<MetricKey> for MetricName {

@@ -2,14 +2,16 @@
 
 use base::{
     gate::Gate,
-    record::{Column, Profile},
+    record::{self, Column, MetricName, Profile},
+    settings::{self, Field},
     spec::RunSpec,
     text::short,
 };
 use harness::{
-    case::{Case, RunError},
+    case::{Case, RunError, Tier},
     context::Context,
-    method::{Medium, Properties},
+    declare::{Curve, Declaration, Fact},
+    method::{Knob, Medium, Properties},
     outline::{Outline, Sink},
     plan,
     relation::Relation,
@@ -19,6 +21,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 
 use crate::flaw::Flaw;
+
+use crate::read::curve::CURVE;
 
 /// Version of `problem.json`; raised with every change that an older reader would misread.
 pub const SCHEMA: u32 = 1;
@@ -40,8 +44,18 @@ pub struct Problem {
     pub outline: Outline,
     /// What our own method is.
     pub method: Properties,
-    /// What a run of these settings is judged by.
+    /// What a run of another code with these settings can be judged by.
     pub gates: Vec<Gate>,
+    /// The settings of the case.
+    pub fields: &'static [Field],
+    /// The conditions at walls, clamps and surfaces in words.
+    pub boundary: &'static str,
+    /// What it is driven by beside the acceleration.
+    pub further: Vec<Fact>,
+    /// Every metric that is measured of results.
+    pub metrics: Vec<MetricName>,
+    /// What may be handed in in place of particles.
+    pub curve: Option<Curve>,
     /// Of a sealed problem, what it was drawn from.
     pub sealed: Option<Sealed>,
     /// If observers are to be compared, how the one differs who sees it so.
@@ -178,8 +192,47 @@ impl Problem {
         let sink = Sink::of(relation, false);
         let context = Context { outline: Some(sink.clone()), allow_long, ..Context::default() };
         let (outline, method) = sink.of_run(case.run(&spec, &context), case.name())?;
-        let gates = if relation.is_none() { plan::gates_of(case, &spec) } else { Vec::new() };
-        Ok(Self { spec, about: case.about(), outline, method, gates, sealed: None, relation })
+        let Declaration { posed, curve, stepwise, of_methods, costly, .. } =
+            case.declaration(Tier::Quick);
+        let ours = [stepwise, of_methods, costly].concat();
+        let (mut gates, mut metrics) = (Vec::new(), Vec::new());
+        let (mut further, mut fields): (_, &[Field]) = (Vec::new(), &[]);
+        // What another observer sees is compared, not measured, and settings are as the first one sees them.
+        if relation.is_none() {
+            gates = plan::gates_of(case, &spec);
+            gates.retain(|gate| !record::is_of(&ours, &gate.metric));
+            metrics = posed.metrics;
+            metrics.retain(|metric| !record::is_of(&ours, &metric.name));
+            further = posed.further.map_or_else(Vec::new, |of| of(&spec.settings));
+            fields = case.fields();
+        }
+        let (about, boundary, sealed) = (case.about(), posed.boundary, None);
+        let curve = curve.filter(|_| relation.is_none());
+        Ok(Self {
+            spec,
+            about,
+            outline,
+            method,
+            gates,
+            fields,
+            boundary,
+            further,
+            metrics,
+            curve,
+            sealed,
+            relation,
+        })
+    }
+
+    /// The times of its particles \[s\]: those at which it is measured, or as many as its path takes.
+    pub fn times(&self) -> Vec<f64> {
+        let times = &self.outline.times;
+        match (self.curve.as_ref().map_or(0, |curve| curve.least), times.last()) {
+            (least, Some(end)) if least > times.len() => {
+                (1..=least).map(|k| end * k as f64 / least as f64).collect()
+            }
+            _ => times.clone(),
+        }
     }
 
     /// The same, sealed: judged by what follows from the bounds of judged runs.
@@ -203,7 +256,8 @@ impl Problem {
     /// The document.
     pub fn to_json(&self) -> Value {
         let Self { outline, method, .. } = self;
-        let Outline { medium: m, domain, mirrors, times, dt, .. } = outline;
+        let Outline { medium: m, domain, mirrors, dt, .. } = outline;
+        let times = self.times();
         let plane = |wall: &solver::PlaneWall| {
             json!({
                 "point": with_unit(wall.point.as_slice(), "m"),
@@ -213,14 +267,15 @@ impl Problem {
         };
         let gate =
             |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
+        let equation = |(name, text): &(&str, &str)| json!({ "name": name, "text": text });
         let column = |column: &Column| json!({ "name": column.name, "unit": column.unit });
         let mut document = json!({
             "schema": SCHEMA,
             "spec": self.spec.to_value(),
             "about": self.about,
             "dimensions": 2,
-            "equations": self.equations().map(|(name, text)| json!({ "name": name, "text": text })),
-            "material": material(m, self.is_solid()),
+            "equations": self.equations().iter().map(equation).collect::<Vec<_>>(),
+            "material": material(m, method),
             "acceleration": with_unit(m.acceleration.as_slice(), "m/s^2"),
             "domain": {
                 "low": with_unit(domain.low.as_slice(), "m"),
@@ -237,7 +292,7 @@ impl Problem {
                 "roles": { "0": "moves", "1": "behind a wall", "2": "on a wall" },
                 "columns": self.particles().columns.iter().map(column).collect::<Vec<_>>(),
             },
-            "times": with_unit(times, "s"),
+            "times": with_unit(&times, "s"),
             "end": with_unit(times.last(), "s"),
             JUDGED_BY: self.gates.iter().map(gate).collect::<Vec<_>>(),
             "our_method": {
@@ -247,8 +302,10 @@ impl Problem {
                 "integrator": method.integrator,
                 "walls": method.walls,
                 "time_step": with_unit(dt, "s"),
+                "terms": method.terms,
             },
         });
+        self.state(&mut document);
         if let Some(sealed) = &self.sealed {
             document["sealed"] = json!(sealed);
         }
@@ -256,6 +313,34 @@ impl Problem {
             document["relation"] = json!(relation.name());
         }
         document
+    }
+
+    /// Adds what is beside the scene: boundaries, drive, settings, metrics, the curve in place of particles.
+    fn state(&self, document: &mut Value) {
+        let stated = |name: &str, value: Value, [unit, about]: [&str; 2]| {
+            let mut all = json!({ "name": name, "unit": unit, "about": about });
+            all["value"] = value;
+            all
+        };
+        let fact = |of: &Fact| stated(of.name, json!(of.value), [of.unit, of.about]);
+        let setting = |(field, value): (&Field, &Value)| {
+            stated(field.name, value.clone(), [field.unit, field.doc])
+        };
+        let metric = |of: &MetricName| json!({ "name": of.name, "unit": of.unit(), "formula": of.formula() });
+        document["boundary"] = json!(self.boundary);
+        document["further"] = self.further.iter().map(fact).collect();
+        document["settings"] = self.settings().map(setting).collect();
+        document["metrics"] = self.metrics.iter().map(metric).collect();
+        if let Some(curve) = &self.curve {
+            let column = |(name, unit): &(&str, &str)| json!({ "name": name, "unit": unit });
+            document["curve"] = json!({
+                "file": CURVE,
+                "columns": curve.columns.iter().map(column).collect::<Vec<_>>(),
+                "rows_at_a_time": (curve.rows)(&self.spec.settings),
+                "least_times": curve.least,
+                "about": curve.about,
+            });
+        }
     }
 
     /// All particles, with the number of the body to which each belongs if there are bodies.
@@ -266,43 +351,160 @@ impl Problem {
         if bodies.is_empty() { particles } else { particles.with("body", "-", bodies) }
     }
 
+    /// The settings of the case with their values in this run.
+    fn settings(&self) -> impl Iterator<Item = (&Field, &Value)> {
+        let value = |field: &'static Field| Some((field, self.spec.settings.get(field.name)?));
+        self.fields.iter().filter_map(value)
+    }
+
     /// The equations in words.
-    pub fn equations(&self) -> [(&'static str, &'static str); 3] {
+    pub fn equations(&self) -> Vec<(&'static str, &'static str)> {
         let continuity = ("continuity", "dρ/dt = -ρ ∇·v");
         if let Some(energy) = self.method.law {
-            let momentum = "ρ0 dv/dt = ∇·P + ρ0 g, P = ∂w/∂F, in the configuration without stress";
-            return [continuity, ("momentum", momentum), ("stored energy, plane strain", energy)];
+            let momentum = "ρ0 dv/dt = ∇·P + ρ0 g, P = ∂w/∂F, in the configuration without stress; F = \
+                            ∂x/∂X, J = det F";
+            let mut all =
+                vec![continuity, ("momentum", momentum), ("stored energy, plane strain", energy)];
+            let deviator = "dev A = A - (A_xx + A_yy + A_zz) I/3 of three dimensions, A_zz = 0 for plane \
+                            strain: |dev A|² = A_xx² + A_yy² + 2 A_xy² - (A_xx + A_yy)²/3";
+            all.extend(energy.contains("dev ").then_some(("deviator", deviator)));
+            return all;
         }
         if self.is_solid() {
-            let material =
-                "p = c0² (ρ - ρ0); dS/dt = 2 μ (ε̇ - tr(ε̇) I/3) + S·Ωᵀ + Ω·S (Jaumann rate)";
+            let material = "p = c0² (ρ - ρ0); dS/dt = 2 μ (ε̇ - tr(ε̇) I/3) + S·Ωᵀ + Ω·S (Jaumann rate); S \
+                            of three dimensions, S_zz = -(S_xx + S_yy)";
             let momentum = ("momentum", "dv/dt = (1/ρ) ∇·σ + g, σ = -p I + S");
-            return [continuity, momentum, ("material, plane strain", material)];
+            return vec![continuity, momentum, ("material, plane strain", material)];
         }
-        [
+        vec![
             continuity,
             ("momentum", "dv/dt = -(1/ρ) ∇p + ν ∇²v + g"),
             ("state", "p = p_b + (ρ0 c0²/γ) ((ρ/ρ0)^γ - 1)"),
         ]
     }
 
+    /// In which units numbers are.
+    fn units(&self) -> String {
+        let units @ [length, time, mass] = self.outline.view.units();
+        if units == [1.0; 3] {
+            return "All numbers are in SI units, in two dimensions, masses per unit depth.".into();
+        }
+        format!(
+            "All numbers are in the units of this observer, in two dimensions, masses per unit depth: where \
+             a head or `{PROBLEM}` says m, s or kg/m, read {length} m, {time} s or {mass} kg/m."
+        )
+    }
+
     /// A page that a person can work from.
     pub fn page(&self) -> String {
-        let Outline { medium: m, times, .. } = &self.outline;
+        let (case, variant) = (&self.spec.case, &self.spec.variant);
+        let further =
+            |of: &Fact| [of.name.into(), of.value.to_string(), of.unit.into(), of.about.into()];
+        let setting = |(field, value): (&Field, &Value)| {
+            [field.name.into(), settings::text(value), field.unit.into(), field.doc.into()]
+        };
+        let metric = |of: &MetricName| [format!("`{}`", of.name), of.unit().into(), of.formula()];
+        let measured = ["metric", "unit", "formula"];
+        let parts = [
+            format!("# {case}, variant {variant}\n\n{}\n\n{}", self.about, self.units()),
+            format!("`{PROBLEM}` has every number with its unit."),
+            "## Equations".into(),
+            list(self.equations().iter().map(|(name, text)| format!("{name}: {text}"))),
+            format!("Boundaries: {}", self.boundary),
+            "## Material and forces".into(),
+            self.quantities(),
+            titled("## What drives it", HEAD, self.further.iter().map(further)),
+            titled("## Settings", HEAD, self.settings().map(setting)),
+            "## Particles".into(),
+            format!(
+                "`{PARTICLES}` has one line a particle. Role 0 moves; role 1 is behind a wall and role 2 on \
+                 it, and neither moves except along the wall with its velocity. Axes with a period repeat."
+            ),
+            "## Our method".into(),
+            self.ours(),
+            list(self.method.terms.iter().map(|term| (*term).into())),
+            format!("## What to hand in\n\n{HAND_IN}{}", self.of_curve()),
+            self.then(),
+            titled("## What is measured", measured, self.metrics.iter().map(metric)),
+            "## How it is judged".into(),
+            self.judged(),
+        ];
+        let said = parts.iter().filter(|part| !part.is_empty());
+        said.map(|part| format!("{}\n", part.trim_end())).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The table of material and forces.
+    fn quantities(&self) -> String {
+        let m = &self.outline.medium;
         let quantity = |(name, value): (&String, &Value)| {
             let unit = value["unit"].as_str().unwrap_or_default();
-            format!("| {} | {} | {unit} |\n", name.replace('_', " "), value["value"])
+            [name.replace('_', " "), value["value"].to_string(), unit.into()]
         };
-        let material = material(m, self.is_solid());
-        let material: String = material.as_object().into_iter().flatten().map(quantity).collect();
-        let equations: String =
-            self.equations().iter().map(|(name, text)| format!("- {name}: {text}\n")).collect();
-        let gates: String = self
-            .gates
-            .iter()
-            .map(|gate| format!("| `{}` | `{}` | {} |\n", gate.id, gate.metric, gate.bound))
-            .collect();
-        let times: Vec<String> = times.iter().map(f64::to_string).collect();
+        let material = material(m, &self.method);
+        let [gx, gy] = [m.acceleration.x, m.acceleration.y];
+        let end = self.outline.times.last().copied().unwrap_or_default();
+        let more = [
+            ["acceleration g".into(), format!("{gx}, {gy}"), "m/s^2".into()],
+            ["spacing of particles".into(), m.dx.to_string(), "m".into()],
+            ["end".into(), end.to_string(), "s".into()],
+        ];
+        let all = material.as_object().into_iter().flatten().map(quantity).chain(more);
+        table(["quantity", "value", "unit"], all)
+    }
+
+    /// Our method, of which the closed division takes the support radius.
+    fn ours(&self) -> String {
+        let Self { method, outline: Outline { medium: m, dt, .. }, .. } = self;
+        format!(
+            "The closed division takes particles, spacing and support radius; nothing else of this is asked \
+             for. Kernel: {}, smoothing length h = {} m, support radius {} m. Integrator: {}, time step \
+             {dt} s. Walls: {}. Terms:",
+            method.kernel,
+            m.h,
+            method.support * m.h,
+            method.integrator,
+            method.walls
+        )
+    }
+
+    /// The gates, or why there is none.
+    fn judged(&self) -> String {
+        let gate = |gate: &Gate| {
+            [format!("`{}`", gate.id), format!("`{}`", gate.metric), gate.bound.to_string()]
+        };
+        match (self.gates.is_empty(), self.relation) {
+            (false, _) => table(["gate", "metric", "bound"], self.gates.iter().map(gate)),
+            (true, Some(_)) => "No gate judges it: two observers are compared.".into(),
+            (true, None) => format!(
+                "No gate judges results of another code with these settings: they are measured, and nothing \
+                 is judged. `touchstone explain {}` lists the gates of the case and their settings.",
+                self.spec.case
+            ),
+        }
+    }
+
+    /// What may be handed in in place of particles.
+    fn of_curve(&self) -> String {
+        let Some(curve) = &self.curve else { return String::new() };
+        let columns = curve.columns.iter().map(|(name, unit)| format!(",{name}[{unit}]"));
+        let times = match curve.least {
+            0 => "the times below".into(),
+            least => format!("at least {least} times, equally far apart, until the end"),
+        };
+        format!(
+            "- In place of the particles there may be `{CURVE}` with the columns `t[s]{}`, {} a time, at \
+             {times}: {}. Metrics that need particles are not measured then.\n",
+            columns.collect::<String>(),
+            match (curve.rows)(&self.spec.settings) {
+                1 => "one line".into(),
+                rows => format!("{rows} lines"),
+            },
+            curve.about,
+        )
+    }
+
+    /// The document itself, the command that measures results, and their times.
+    fn then(&self) -> String {
         let case = &self.spec.case;
         let then = match self.relation.map(Relation::name) {
             None => format!("`touchstone submit {case} DIR --store STORE` measures and judges it."),
@@ -310,34 +512,47 @@ impl Problem {
                 "All is seen by an observer ({by}), and `touchstone relate {case} SAME DIR` compares it."
             ),
         };
-        format!(
-            "# {case}, variant {variant}\n\n{about}\n\nAll numbers are in SI units, in two dimensions, \
-             masses per unit depth. `{PROBLEM}` has every number with its unit.\n\n## Equations\n\n\
-             {equations}\n## Material and forces\n\n| quantity | value | unit |\n|---|---|---|\n\
-             {material}| acceleration g | {gx}, {gy} | m/s^2 |\n| spacing of particles | {dx} | m |\n\
-             | end | {end} | s |\n\n## Particles\n\n`{PARTICLES}` has one line a particle. Role 0 moves; \
-             role 1 is behind a wall and role 2 on it, and neither moves except along the wall with its \
-             velocity. Axes with a period repeat.\n\n## What to hand in\n\n{HAND_IN}\
-             - `{PROBLEM}`, as it is here.\n\n{then}\n\n\
-             Times [s]: {times}\n\n## How it is judged\n\n| gate | metric | bound |\n\
-             |---|---|---|\n{gates}",
-            variant = self.spec.variant,
-            about = self.about,
-            gx = m.acceleration.x,
-            gy = m.acceleration.y,
-            dx = m.dx,
-            end = times.last().map_or("", String::as_str),
-            times = times.join(", "),
-        )
+        let times: Vec<String> = self.times().iter().map(f64::to_string).collect();
+        format!("- `{PROBLEM}`, as it is here.\n\n{then}\n\nTimes [s]: {}", times.join(", "))
     }
 }
 
+/// Heads of a table of numbers.
+const HEAD: [&str; 4] = ["name", "value", "unit", "meaning"];
+
+/// A list in Markdown.
+fn list(items: impl Iterator<Item = String>) -> String {
+    items.map(|item| format!("- {item}\n")).collect()
+}
+
+/// A table in Markdown.
+fn table<const N: usize>(heads: [&str; N], rows: impl IntoIterator<Item = [String; N]>) -> String {
+    let row = |row: [String; N]| {
+        format!("| {} |\n", row.map(|cell| cell.replace('|', "\\|")).join(" | "))
+    };
+    let rows: String = rows.into_iter().map(row).collect();
+    format!("{}|{}\n{rows}", row(heads.map(String::from)), "---|".repeat(N))
+}
+
+/// A table with its title, or nothing if it has no rows.
+fn titled<const N: usize>(
+    title: &str,
+    heads: [&str; N],
+    rows: impl Iterator<Item = [String; N]>,
+) -> String {
+    let mut rows = rows.peekable();
+    if rows.peek().is_none() {
+        return String::new();
+    }
+    format!("{title}\n\n{}", table(heads, rows))
+}
+
 /// The parameters of the material.
-fn material(m: &Medium, is_solid: bool) -> Value {
+fn material(m: &Medium, method: &Properties) -> Value {
     let (density, sound_speed) = (m.eos.density, m.eos.sound_speed);
     let common =
         [("density", with_unit(density, "kg/m^3")), ("sound_speed", with_unit(sound_speed, "m/s"))];
-    let own = match is_solid {
+    let mut own = match m.shear_modulus > 0.0 {
         true => vec![
             ("bulk_modulus", with_unit(density * sound_speed * sound_speed, "Pa")),
             ("shear_modulus", with_unit(m.shear_modulus, "Pa")),
@@ -346,9 +561,11 @@ fn material(m: &Medium, is_solid: bool) -> Value {
             ("kinematic_viscosity", with_unit(m.nu, "m^2/s")),
             ("exponent_gamma", with_unit(m.eos.gamma, "-")),
             ("background_pressure", with_unit(m.eos.background, "Pa")),
-            ("artificial_viscosity_alpha", with_unit(m.alpha, "-")),
         ],
     };
+    if m.shear_modulus == 0.0 && method.uses.contains(&Knob::Alpha) {
+        own.push(("artificial_viscosity_alpha", with_unit(m.alpha, "-")));
+    }
     let mut all = serde_json::Map::new();
     for (name, value) in common.into_iter().chain(own) {
         all.insert(name.into(), value);

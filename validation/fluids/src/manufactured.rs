@@ -84,6 +84,7 @@ pub static CASE: Composed<ManufacturedSettings> = Composed {
 };
 
 base::metrics! {
+    all ALL;
     L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
     PRESSURE_L2 = "pressure_l2" ["-"]
         "rms(p - p_exact - mean of p - p_exact)/rms(p_exact) over particles at the end";
@@ -261,6 +262,51 @@ mod tests {
         assert!(error(None) < 0.06, "{}", error(None));
         for of in [Constant::Viscosity, Constant::BodyForce] {
             assert!(error(Some(of)) > 0.1, "{of}: {}", error(Some(of)));
+        }
+    }
+
+    /// Exact velocities, pressures that are off by one number for all; then velocities 3 % too large and
+    /// pressures 7 % too large.
+    #[test]
+    fn what_was_done_to_an_exact_flow_is_measured_and_an_offset_of_the_pressure_is_none() {
+        let settings = CASE.chosen("consistent", |s| s.n = 16);
+        let method = flow::manufactured_consistent();
+        let flow = flow(&settings, &method, &Context::of_rules()).expect("settings");
+        let Medium { eos, nu, .. } = flow.medium;
+        let measured = |share: [f64; 2], offset: f64| {
+            let mut all = particles(&method, &flow);
+            for p in &mut all {
+                p.velocity = manufactured::velocity(p.position) * share[0];
+                let pressure = share[1] * nu * manufactured::pressure(p.position);
+                p.density = eos.density(pressure + offset);
+            }
+            let mut record = Record::new(NAME, "consistent", serde_json::json!({}), 1);
+            measure(&flow.medium, &all, &mut record);
+            [L2, PRESSURE_L2].map(|metric| record.value(metric).expect("a metric"))
+        };
+        let [l2, pressure] = measured([1.0, 1.0], 0.4 * nu);
+        assert!(l2 < 1e-12 && pressure < 1e-9, "{l2:e} {pressure:e}");
+        let [l2, pressure] = measured([1.03, 1.07], 0.0);
+        assert!((l2 - 0.03).abs() < 1e-12 && (pressure - 0.07).abs() < 2e-3, "{l2} {pressure}");
+    }
+
+    /// The last row of a wall is the last within the support of the first row of the fluid.
+    #[test]
+    fn walls_are_as_thick_as_the_support_of_the_surface() {
+        for (variant, method) in [
+            (CONSISTENT[1], flow::manufactured_consistent_interface()),
+            (MODERN[1], flow::manufactured_modern_interface()),
+            (SEED[1], flow::manufactured_seed_interface()),
+        ] {
+            let settings = CASE.chosen(variant, |s| s.n = 16);
+            let flow = flow(&settings, &method, &Context::of_rules()).expect("settings");
+            let dx = flow.medium.dx;
+            let all = particles(&method, &flow);
+            let lowest = all.iter().map(|p| p.position.y).fold(0.0, f64::min);
+            assert!(
+                -lowest < flow.support && -lowest + dx >= flow.support * (1.0 - 1e-9),
+                "{lowest}"
+            );
         }
     }
 

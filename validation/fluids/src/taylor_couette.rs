@@ -49,6 +49,7 @@ const EXTRAPOLATING: &str = "extrapolating-wall";
 const DECISIVE: &str = "end, viscous, layers or ratio";
 
 base::metrics! {
+    all ALL;
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
     RADIAL_RMS = "radial_rms" ["-"] "rms of the radial velocity over V";
     OUTSIDE = "outside" ["-"] "particles inside of the inner or outside of the outer cylinder";
@@ -216,7 +217,11 @@ const SEALED: Draws = Draws {
 
 fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
+    let boundary = "No slip: at both cylinders the velocity is that of the cylinder. The outer one rests; \
+                    the inner one turns, with the velocities that its particles have at the start, however \
+                    long it turns.";
     Declaration {
+        posed: Posed::new(boundary, &[ALL]),
         curves: vec![profiles(&table)],
         accuracy: vec![accuracy(&table)],
         sealed: Some(SEALED),

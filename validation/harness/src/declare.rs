@@ -54,6 +54,8 @@ pub struct Declaration {
     pub of_methods: &'static [MetricKey],
     /// The metrics that are rates over a very short time, which results with few digits do not determine.
     pub of_all_digits: &'static [MetricKey],
+    /// What another code must know beside the scene.
+    pub posed: Posed,
     /// What can be measured of a profile or a series of another code that hands in no particles.
     pub curve: Option<Curve>,
     /// What sealed problems draw, and by what they are judged; none if no reference holds at drawn settings.
@@ -65,6 +67,37 @@ pub struct Declaration {
 /// Studies of a case, a pure function of the records of its plan.
 pub type OwnStudies = Box<dyn Fn(&Runs) -> Vec<Study> + Send + Sync>;
 
+/// What another code must know of a problem beside its scene.
+#[derive(Clone, Default)]
+pub struct Posed {
+    /// The conditions at walls, clamps and surfaces in words.
+    pub boundary: &'static str,
+    /// What a run of these settings is driven or moved by, beside its acceleration.
+    pub further: Option<fn(&Value) -> Vec<Fact>>,
+    /// Every metric of the case.
+    pub metrics: Vec<MetricName>,
+}
+
+impl Posed {
+    /// With these lists of metrics.
+    pub fn new(boundary: &'static str, metrics: &[&[MetricKey]]) -> Self {
+        let metrics = metrics.concat().into_iter().map(MetricName::from).collect();
+        Self { boundary, further: None, metrics }
+    }
+}
+
+/// A number of a problem that follows from its settings.
+pub struct Fact {
+    /// Name.
+    pub name: &'static str,
+    /// Value.
+    pub value: f64,
+    /// SI unit.
+    pub unit: &'static str,
+    /// What it is and in which equation.
+    pub about: &'static str,
+}
+
 /// Settings, the rows at a time, and the positions at the start of the particles that move in their order, to
 /// their positions and velocities.
 type Place = fn(&Value, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
@@ -73,6 +106,10 @@ type Place = fn(&Value, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
 pub struct Curve {
     /// Names and units of its columns after the time.
     pub columns: &'static [(&'static str, &'static str)],
+    /// The columns in words.
+    pub about: &'static str,
+    /// Times that it takes at least, equally far apart; 0 if those of the problem are enough.
+    pub least: usize,
     /// Its rows at each time, of a run of these settings; the first column ascends in them.
     pub rows: fn(&Value) -> usize,
     /// Positions and velocities by which particles stand for the rows at a time.

@@ -138,6 +138,11 @@ impl View {
         })
     }
 
+    /// The units of length \[m\], of time \[s\] and of mass a depth \[kg/m\].
+    pub fn units(&self) -> [f64; 3] {
+        self.units.map(|inverse| 1.0 / inverse)
+    }
+
     /// By what a quantity of a unit is multiplied.
     pub fn scale(&self, unit: Unit) -> f64 {
         (0..3).map(|k| self.units[k].powi(unit[k])).product()

@@ -133,6 +133,10 @@ impl FromMedium for Source {
     fn new(medium: &Medium) -> Self {
         Self { scales: medium.acceleration }
     }
+    fn state(terms: &mut Vec<&'static str>) {
+        terms
+            .push("dv_i/dt += the force of the manufactured solution at the place of the particle");
+    }
 }
 
 impl<X> Term<X> for Source {

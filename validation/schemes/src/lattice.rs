@@ -73,6 +73,9 @@ impl<K: Kernel> FromMedium for Summation<K> {
     fn new(m: &Medium) -> Self {
         Self { kernel: Smoothing::new(m.h), rate: 1.0 / summing_step(m) }
     }
+    fn state(terms: &mut Vec<&'static str>) {
+        terms.push("ρ_i = Σ m_j W_ij, the particle itself included, after one step");
+    }
 }
 
 impl<X, K: Kernel> Term<X> for Summation<K> {

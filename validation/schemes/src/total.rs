@@ -59,6 +59,10 @@ fn bodies<L: Law>() -> Method {
     properties.law = Some(L::ENERGY);
     properties.limit = Some(step_limit);
     properties.uses.clear();
+    properties.terms = vec![
+        "sums over the neighbours of the configuration without stress; ∂x/∂X exact for linear fields; forces \
+         are the derivative of Σ V w by the places",
+    ];
     Method { properties, build: build::<L> }
 }
 

@@ -55,6 +55,7 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
 };
 
 base::metrics! {
+    all ALL;
     TRAVEL_ERROR = "travel_error" ["-"]
         "t c_p/(0.4 L) - 1, t the time of sum m v x/sum m v from 0.3 L to 0.7 L";
     TRAVEL_LATTICE_ERROR = "travel_lattice_error" ["-"]
@@ -446,7 +447,11 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: ["seed", "bare"].map(ladder).into(),
         ..Accuracy::new("elastic-bar", PULSE_RMS, "rms distance from the exact pulse [-]")
     };
-    Declaration { accuracy: vec![accuracy], stepwise: STEPWISE, ..Declaration::default() }
+    let free = "y is periodic, so that strain is along x alone. No force acts on the ends of a bar but that \
+                of a bar that it touches: there ends have one place and one velocity while they press on \
+                each other.";
+    let posed = Posed::new(free, &[ALL]);
+    Declaration { posed, accuracy: vec![accuracy], stepwise: STEPWISE, ..Declaration::default() }
 }
 
 #[cfg(test)]

@@ -38,13 +38,18 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
             particles, and the effect of the time step is divided out.",
     variants,
-    declaration: |_| Declaration { stepwise: &[FREQUENCY_ERROR], ..Declaration::default() },
+    declaration: |_| Declaration {
+        posed: Posed::new("There is no surface: x and y are periodic.", &[ALL]),
+        stepwise: &[FREQUENCY_ERROR],
+        ..Declaration::default()
+    },
     plan: |tier| table(tier).plan(),
 };
 
 const NAME: &str = "elastic_wave";
 
 base::metrics! {
+    all ALL;
     FREQUENCY_ERROR = "frequency_error" ["-"]
         "|omega - theory|/theory, the time step divided out; theory: |g| (K + 4 mu/3)^(1/2) along, |g| \
          mu^(1/2) across, over rho^(1/2)";

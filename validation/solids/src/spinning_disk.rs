@@ -43,6 +43,7 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
 };
 
 base::metrics! {
+    all ALL;
     INTERIOR_STRAIN = "interior_strain" ["-"]
         "largest ((S_xx - S_yy)^2/2 + 2 S_xy^2)^(1/2)/(2 mu dt) over the spin after one step, of particles \
          farther than 4 h + dx from the rim";
@@ -311,7 +312,8 @@ fn declaration(tier: Tier) -> Declaration {
         of: vec![changes],
     };
     let stepwise = &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS];
-    Declaration { accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }
+    let posed = Posed::new("No force acts on the rim.", &[ALL]);
+    Declaration { posed, accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }
 }
 
 #[cfg(test)]

@@ -62,6 +62,7 @@ base::settings! {
 const NAME: &str = "hydrostatic";
 
 base::metrics! {
+    all ALL;
     P_L2 = "p_l2" ["-"]
         "rms(p - p_exact)/rms(p_exact) over particles, p_exact at their places, at the end";
     LEVEL_DRIFT = "level_drift" ["-"]
@@ -370,7 +371,11 @@ fn declaration(tier: Tier) -> Declaration {
     ];
     let run = HYDROSTATIC.spec("modern", |_| ());
     let sensitivity = Some(Sensitivity::new(tier, [run], watched));
+    let boundary = "Nothing passes floor and sides, along which water is free to slip. The surface is free: \
+                    no pressure acts on it. The exact solution is at rest.";
+    let posed = Posed::new(boundary, &[ALL]);
     Declaration {
+        posed,
         accuracy: vec![accuracy],
         sensitivity,
         sealed: Some(SEALED),

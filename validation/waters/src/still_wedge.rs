@@ -31,6 +31,7 @@ crate::water_settings! {
 
 const NAME: &str = "still_wedge";
 base::metrics! {
+    all ALL;
     P_L2 = "p_l2" ["rho g H"]
         "rms over particles of the mean of p - p_exact over the last quarter, eight times a period";
     P_BASE = "p_base" ["rho g H"]
@@ -314,11 +315,87 @@ fn declaration(tier: Tier) -> Declaration {
     let pictures = vec![
         table.picture(texts, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]),
     ];
+    let boundary = "Nothing passes floor, sides and wedge, along which water is free to slip. The surface is \
+                    free: no pressure acts on it. The exact solution is at rest.";
+    let posed = Posed::new(boundary, &[ALL]);
     Declaration {
+        posed,
         accuracy: vec![accuracy],
         pictures,
         sensitivity,
         sealed: Some(SEALED),
         ..Declaration::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wedge() -> Wedge {
+        base::settings::of_json(&STILL_WEDGE.spec("modern", |_| {}).settings).expect("settings")
+    }
+
+    /// Sums over four samples of errors at both corners of the base and at the apex.
+    #[test]
+    fn the_larger_error_of_both_corners_counts_with_its_sign() {
+        let (settings, method) = (wedge(), schemes::water::modern());
+        let (medium, _) = scene(&settings, &method, &Context::of_rules()).expect("settings");
+        let samples = 4.0;
+        for (left, right, base) in [(0.1, -0.2, -0.2), (-0.3, 0.2, -0.3), (0.05, 0.04, 0.05)] {
+            let moments = Moments {
+                settings: &settings,
+                medium: &medium,
+                samples,
+                corners: [left, right, 0.07].map(|error| error * samples),
+                errors: vec![0.3 * samples, -0.3 * samples],
+                kinetic: 2e-6,
+            };
+            let mut record = Record::new("still_wedge", "modern", serde_json::json!({}), 1);
+            moments.measure(&[], &Context::default(), &mut record);
+            let expected = [(P_BASE, base), (P_APEX, 0.07), (P_L2, 0.3), (KINETIC, 2e-6)];
+            for (metric, expected) in expected {
+                let value = record.value(metric).expect("a metric");
+                assert!((value - expected).abs() < 1e-12, "{metric:?}: {value}, not {expected}");
+            }
+        }
+    }
+
+    /// Water with the exact pressure, and 0.01 ρ g H more on its left half, at 0.02 (g H)^(1/2) there; one
+    /// particle inside of the wedge and one below the floor.
+    #[test]
+    fn what_is_measured_of_water_over_a_wedge_is_what_was_done_to_it() {
+        let (s, method, context) = (wedge(), schemes::water::modern(), Context::default());
+        let (medium, _) = scene(&s, &method, &Context::of_rules()).expect("settings");
+        let mut all = particles(&s, &method, &medium).expect("particles");
+        let exact = water::at_rest(&medium);
+        let mut half = 0.0;
+        for p in all.iter_mut().filter(|p| p.role == Role::Fluid && p.position.x < HALF) {
+            let pressure = exact.pressure(1.0 - p.position.y) + 0.01 * s.rho * s.gravity;
+            p.density = medium.eos.density(pressure);
+            p.velocity = Vector2::new(0.012, -0.016) * s.gravity.sqrt();
+            half += p.mass;
+        }
+        let mass: f64 = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum();
+        let mut simulation =
+            (method.build)(Parts::new(medium, Domain::open(), all.clone(), &context))
+                .expect("a scene");
+        simulation.advance(0.0, 1.0, &mut ());
+        let (corners, errors) = ([0.0; 3], Vec::new());
+        let mut moments =
+            Moments { settings: &s, medium: &medium, samples: 0.0, corners, errors, kinetic: 0.0 };
+        moments.sample(&*simulation);
+        let [left, right, apex] = moments.corners;
+        assert!((left - 0.01).abs() < 1e-9 && right.abs() < 1e-9, "{left} {right}");
+        // On one of both sides of the apex.
+        assert!((apex - 0.005).abs() < 1e-3, "{apex}");
+        assert!((moments.kinetic / (0.5 * 4e-4 * half / mass) - 1.0).abs() < 1e-9);
+        let mut fluid = all.iter_mut().filter(|p| p.role == Role::Fluid);
+        let [one, two] = [0, 0].map(|_| fluid.next().expect("water"));
+        one.position = Vector2::new(HALF, 0.9 * s.apex);
+        two.position.y = -0.01;
+        let mut record = Record::new("still_wedge", "modern", serde_json::json!({}), 1);
+        moments.measure(&all, &context, &mut record);
+        assert_eq!(record.value(OUTSIDE), Some(2.0));
     }
 }

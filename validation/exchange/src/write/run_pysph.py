@@ -54,7 +54,7 @@ class Run(Application):
     def create_scheme(self):
         walls = ["wall"] if (columns["role"] > 0).any() else []
         if which == "wcsph":
-            alpha = number(material["artificial_viscosity_alpha"])
+            alpha = number(material.get("artificial_viscosity_alpha", {"value": 0.0}))
             return WCSPHScheme(["fluid"], walls, dim=2, rho0=rho0, c0=c0, h0=h, hdx=h / dx, gamma=7.0,
                                alpha=alpha, beta=0.0, nu=nu, gx=gx, gy=gy)
         of = dict(dim=2, rho0=rho0, c0=c0, nu=nu, gx=gx, gy=gy, pb=rho0 * c0**2)

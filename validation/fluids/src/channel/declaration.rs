@@ -15,7 +15,11 @@ use report::Axis;
 pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
     let table = plan::table(flow, tier);
     let at_half = at_half(flow, &table);
+    let boundary = "No slip: at both plates the velocity is that of the plate, which is 0 unless the plate \
+                    has a velocity. Nothing passes a plate. The velocity at the start is that of the \
+                    particles. x is periodic.";
     Declaration {
+        posed: Posed::new(boundary, &[ALL]),
         card: Some(card(flow, &at_half)),
         curves: vec![curves(flow)],
         comparisons: comparisons(flow, &at_half),
@@ -48,6 +52,9 @@ const SEALED: Draws = Draws {
 fn profile() -> Curve {
     Curve {
         columns: &[("y", "m"), ("u", "m/s")],
+        about: "y is the distance from the lower plate, u the velocity along the plates; a line for each row \
+                of the problem, y ascending",
+        least: 0,
         rows: |settings| settings["rows"].as_u64().unwrap_or_default() as usize,
         place: |settings, at, starts| {
             let width = settings["width"].as_f64().unwrap_or(f64::NAN);

@@ -12,6 +12,7 @@ use maths::metrics::norms::{l2, linf};
 const WORST_FROM: f64 = 0.1;
 
 base::metrics! {
+    all ALL;
     // Relative error of the velocity; at a νt/L².
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles";
     LINF = "linf" ["-"] "max|u - u_exact|/V over particles";

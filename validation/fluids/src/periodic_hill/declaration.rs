@@ -4,7 +4,9 @@
 
 use nalgebra::Vector2;
 
-use super::{CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*};
+use super::{
+    CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*, setup::FLUX,
+};
 use base::{gate::*, mutation::Constant, record::*};
 use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
 use maths::metrics::norms::rms;
@@ -25,7 +27,11 @@ const SEALED: Draws = Draws {
 pub fn declaration(tier: Tier) -> Declaration {
     let table = table(tier);
     let accuracy = accuracy(tier, &table);
+    let boundary = "No slip: at the hill and at the lid the velocity is 0. Nothing passes them. x is \
+                    periodic.";
+    let posed = Posed { further: Some(drive), ..Posed::new(boundary, &[ALL]) };
     Declaration {
+        posed,
         // The force of our own controller: that of another code is in no file.
         stepwise: &[FORCE, FORCE_ERROR, DRAG_BALANCE],
         card: Some(card(tier, &accuracy)),
@@ -41,6 +47,23 @@ pub fn declaration(tier: Tier) -> Declaration {
         sealed: Some(SEALED),
         ..Declaration::default()
     }
+}
+
+/// What drives the flow: the flux that is asked for.
+fn drive(settings: &serde_json::Value) -> Vec<Fact> {
+    let setting = |name: &str| settings[name].as_f64().unwrap_or(f64::NAN);
+    let flux = "the flux of volume through every section, the integral of u over y from the hill to the lid, \
+                that the force keeps; where u is 0 it is 2.035 U_b H times the setting `flux`, U_b = 1 m/s \
+                the mean velocity over the crest and H = 1 m the height of the hill";
+    let force = "at the start, of the acceleration f(t) along x, uniform over the fluid: dv/dt = -(1/ρ) ∇p + \
+                 ν ∇²v + (f, 0). Any f(t) that leads to this flux will do, for the steady flow has one force";
+    let response = "T of our controller: f' = ((u* - u)/T - u')/(T/4), u the mean of the velocity along x \
+                    over the fluid, u* that of the flux, looked at every ten steps; 0 keeps the force";
+    vec![
+        Fact { name: "flux", value: setting("flux") * FLUX, unit: "m^2/s", about: flux },
+        Fact { name: "force", value: setting("force"), unit: "m/s^2", about: force },
+        Fact { name: "response", value: setting("response"), unit: "s", about: response },
+    ]
 }
 
 /// The recommended variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing

@@ -17,6 +17,7 @@ pub const STATIONS: [f64; 10] = [0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8
 pub const WALL: usize = 361;
 
 base::metrics! {
+    all ALL;
     FORCE = "force" ["U_b^2/H"] "mean body force of the last window";
     FLUX = "flux" ["-"] "mean flux over the flux wanted, less 1, from the particles' volumes";
     SECTION_FLUX = "section_flux" ["-"]

@@ -212,7 +212,9 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: ladders.into(),
         ..Accuracy::new("taylor-green", L2, "relative L2 error of the velocity [-]")
     };
+    let boundary = "There is no wall: x and y are periodic.";
     Declaration {
+        posed: Posed::new(boundary, &[run::ALL]),
         curves: vec![histories(tier, &table)],
         pictures: vec![picture(&table)],
         budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),

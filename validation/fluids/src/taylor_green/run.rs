@@ -20,6 +20,7 @@ pub struct Setup {
 }
 
 base::metrics! {
+    all ALL;
     L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
     L2_WORST = "l2_worst" ["-"] "largest l2 over 40 times, while 1 % of the speed of the start is left";
     ENERGY = "energy" ["-"] "kinetic energy over the exact one at the end, less 1";

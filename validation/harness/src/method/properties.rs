@@ -44,6 +44,8 @@ pub struct Properties {
     pub limit: Option<fn(&Medium) -> f64>,
     /// The settings that only its terms and walls read.
     pub uses: Vec<Knob>,
+    /// Its terms as equations.
+    pub terms: Vec<&'static str>,
     /// W from h and r².
     weight: fn(f64, f64) -> f64,
     /// The square lattice as its kernel sees it, from h/dx and η²/h².
@@ -59,6 +61,9 @@ impl Properties {
         S::Forces::uses(&mut uses);
         S::Drift::uses(&mut uses);
         uses.extend(S::Walls::USES);
+        let mut terms = Vec::new();
+        S::Forces::state(&mut terms);
+        S::Drift::state(&mut terms);
         Self {
             kernel: S::Kernel::NAME,
             integrator: S::Integrator::NAME,
@@ -70,6 +75,7 @@ impl Properties {
             theory: S::Integrator::THEORY,
             limit: None,
             uses,
+            terms,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),
             lattice: SquareLattice::of::<S::Kernel>,
             is_corrected: S::Forces::NORMALISES,

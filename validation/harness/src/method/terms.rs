@@ -17,11 +17,14 @@ pub trait FromMedium: Sized {
     fn new(medium: &Medium) -> Self;
     /// Adds the settings that only some terms read and this one does, including those of the terms inside it.
     fn uses(_: &mut Vec<Knob>) {}
+    /// Adds the term as an equation, and those inside it.
+    fn state(_: &mut Vec<&'static str>);
 }
 
-/// `Type [generics] (settings that it reads; the terms inside it) = |medium| value`.
+/// `Type [generics] (settings that it reads; the terms inside it) = |medium| value, equation`.
 macro_rules! from_medium {
-    ($($type:ty [$($generics:tt)*] ($($knob:ident),* $(; $($inner:ident),+)?) = $new:expr;)+) => {$(
+    ($($type:ty [$($generics:tt)*] ($($knob:ident),* $(; $($inner:ident),+)?) =
+        $new:expr, $text:expr;)+) => {$(
         impl<$($generics)*> FromMedium for $type {
             fn new(medium: &Medium) -> Self {
                 let new: fn(&Medium) -> Self = $new;
@@ -31,49 +34,81 @@ macro_rules! from_medium {
                 knobs.extend_from_slice(&[$(Knob::$knob),*]);
                 $($($inner::uses(knobs);)+)?
             }
+            fn state(terms: &mut Vec<&'static str>) {
+                let text: &'static str = $text;
+                terms.extend(Some(text).filter(|text| !text.is_empty()));
+                $($($inner::state(terms);)+)?
+            }
         }
     )+};
 }
 
 from_medium! {
-    () [] () = |_| ();
-    Tait [] () = |m| m.eos;
-    Linear [] () = |m| Self { density: m.eos.density, sound_speed: m.eos.sound_speed };
-    Continuity [] () = |_| Continuity;
-    ConsistentContinuity [] () = |_| ConsistentContinuity;
-    ConsistentPressure<Tait> [] () = |m| ConsistentPressure { eos: m.eos };
-    ConsistentViscosity [] () = |m| ConsistentViscosity { nu: m.nu };
+    () [] () = |_| (), "";
+    Tait [] () = |m| m.eos, "";
+    Linear [] () = |m| Self { density: m.eos.density, sound_speed: m.eos.sound_speed }, "";
+    Continuity [] () = |_| Continuity, "dρ_i/dt = Σ m_j v_ij·∇W_ij, v_ij = v_i - v_j";
+    ConsistentContinuity [] () = |_| ConsistentContinuity,
+        "dρ_i/dt = -ρ_i ∇·v, gradients exact for linear fields";
+    ConsistentPressure<Tait> [] () = |m| ConsistentPressure { eos: m.eos },
+        "dv_i/dt += -∇p/ρ_i, gradients exact for linear fields";
+    ConsistentViscosity [] () = |m| ConsistentViscosity { nu: m.nu },
+        "dv_i/dt += ν ∇²v, 0 for linear fields on any particles";
     Viscosity [] (Eta2) =
-        |m| Viscosity { mu: m.density * m.nu, eta2: m.eta2_over_h2 * m.h * m.h };
-    BodyForce [] () = |m| BodyForce(m.acceleration);
-    ArtificialStress [] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing);
-    InTension<A> [A: Axes] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing);
+        |m| Viscosity { mu: m.density * m.nu, eta2: m.eta2_over_h2 * m.h * m.h },
+        "dv_i/dt += 2 ρ0 ν Σ m_j/(ρ_i ρ_j) (r_ij·∇W_ij)/(r_ij² + eta2_over_h2 h²) v_ij";
+    BodyForce [] () = |m| BodyForce(m.acceleration), "dv_i/dt += g";
+    ArtificialStress [] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing),
+        "artificial stress: p_i/ρ_i² + p_j/ρ_j² plus (R_i + R_j) (W_ij/W(dx))^exponent, R = xi |p|/ρ² where \
+         p < 0, else 0";
+    InTension<A> [A: Axes] (Xi, Exponent) = |m| Self::new(m.xi, m.exponent, m.w_at_spacing),
+        "artificial stress: σ_i/ρ_i² + σ_j/ρ_j² plus (R_i + R_j) (W_ij/W(dx))^exponent, R = -xi σ/ρ² where σ \
+         is tension, else 0";
     ArtificialViscosity<E, ALL> [E: FromMedium + Copy, const ALL: bool] (Alpha, Beta) =
-        |m| Self::new(m.alpha, m.beta, m.h, E::new(m));
-    Xsph [] (Xsph) = |m| Xsph { epsilon: m.xsph };
-    DensityDiffusion [] (Diffusion) = |m| Self::new(m.diffusivity());
+        |m| Self::new(m.alpha, m.beta, m.h, E::new(m)),
+        if ALL {
+            "artificial viscosity: dv_i/dt += -Σ m_j Π_ij ∇W_ij, Π_ij = -(alpha (c_i + c_j)/2 + beta |μ|) \
+             μ 2/(ρ_i + ρ_j), μ = h v_ij·r_ij/(r_ij² + 0.01 h²)"
+        } else {
+            "artificial viscosity: dv_i/dt += -Σ m_j Π_ij ∇W_ij of pairs that approach, Π_ij = (-alpha (c_i \
+             + c_j)/2 μ + beta μ²) 2/(ρ_i + ρ_j), μ = h v_ij·r_ij/(r_ij² + 0.01 h²)"
+        };
+    Xsph [] (Xsph) = |m| Xsph { epsilon: m.xsph },
+        "XSPH: dr_i/dt = v_i - xsph Σ 2 m_j/(ρ_i + ρ_j) W_ij v_ij";
+    DensityDiffusion [] (Diffusion) = |m| Self::new(m.diffusivity()),
+        "density diffusion: dρ_i/dt += 2 diffusion h c0 Σ m_j/ρ_j F_ij (ρ_j - ρ_i), ∇W = -F r";
     DensityDiffusion<Hydrostatic> [] (Diffusion) = |m| DensityDiffusion {
         diffusivity: m.diffusivity(),
         rest: Hydrostatic { eos: m.eos, gravity: m.acceleration },
-    };
-    Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing);
-    ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing));
-    JaumannRate [] () = |m| JaumannRate { shear_modulus: m.shear_modulus };
-    ConsistentJaumannRate [] () = |m| Self(JaumannRate::new(m));
+    },
+        "density diffusion: dρ_i/dt += 2 diffusion h c0 Σ m_j/ρ_j F_ij (ρ0/c0²) (w_j - w_i - g·(r_j - r_i)), \
+         ∇W = -F r, dw = dp/ρ";
+    Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing),
+        "shifting: dr_i/dt = v_i - shift v_max h Σ m_j/ρ_j (1 + 0.2 (W_ij/W(dx))⁴) ∇W_ij";
+    ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing)),
+        "dv_i/dt += (δu_i·∇) v, δu the velocity of shifting";
+    JaumannRate [] () = |m| JaumannRate { shear_modulus: m.shear_modulus },
+        "dS/dt as above, with the velocity gradient -Σ m_j/ρ_j v_ij ∇W_ij";
+    ConsistentJaumannRate [] () = |m| Self(JaumannRate::new(m)),
+        "dS/dt as above, gradients exact for linear fields";
     Pressure<E, R> [E: FromMedium, R: FromMedium] (; R) =
-        |m| Self { eos: E::new(m), tensile: R::new(m) };
+        |m| Self { eos: E::new(m), tensile: R::new(m) },
+        "dv_i/dt += -Σ m_j (p_i/ρ_i² + p_j/ρ_j²) ∇W_ij";
     CauchyStress<E, R> [E: FromMedium, R: FromMedium] (; R) =
-        |m| Self { eos: E::new(m), tensile: R::new(m) };
+        |m| Self { eos: E::new(m), tensile: R::new(m) },
+        "dv_i/dt += Σ m_j (σ_i/ρ_i² + σ_j/ρ_j²)·∇W_ij";
     ConjugateStress<E, R> [E: FromMedium, R: FromMedium] (; R) =
-        |m| Self { eos: E::new(m), tensile: R::new(m) };
+        |m| Self { eos: E::new(m), tensile: R::new(m) },
+        "dv_i/dt += (∇·σ)/ρ, the sum that is conjugate to the corrected velocity gradient";
     Split<E, T> [E: FromMedium, T: FromMedium] (; E, T) =
-        |m| Self(E::new(m), T::new(m), m.explicit_limit());
-    FluidPairs<T> [T: FromMedium] (; T) = |m| Self(T::new(m));
-    (A, B) [A: FromMedium, B: FromMedium] (; A, B) = |m| (A::new(m), B::new(m));
+        |m| Self(E::new(m), T::new(m), m.explicit_limit()), "";
+    FluidPairs<T> [T: FromMedium] (; T) = |m| Self(T::new(m)),
+        "the next term without pairs of a moving particle and a particle of a wall";
+    (A, B) [A: FromMedium, B: FromMedium] (; A, B) = |m| (A::new(m), B::new(m)), "";
     (A, B, C) [A: FromMedium, B: FromMedium, C: FromMedium] (; A, B, C) =
-        |m| (A::new(m), B::new(m), C::new(m));
+        |m| (A::new(m), B::new(m), C::new(m)), "";
     (A, B, C, D) [A: FromMedium, B: FromMedium, C: FromMedium, D: FromMedium] (; A, B, C, D) =
-        |m| (A::new(m), B::new(m), C::new(m), D::new(m));
+        |m| (A::new(m), B::new(m), C::new(m), D::new(m)), "";
 }
 
 /// Where the first row of boundary particles lies.

@@ -16,7 +16,7 @@ mod tests;
 use harness::{
     composed::*,
     context::Context,
-    declare::{Declaration, Drawn, Draws},
+    declare::{Declaration, Drawn, Draws, Posed},
     method::*,
 };
 use schemes::lattice;
@@ -176,9 +176,13 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
             time, is the operator, which is compared with its exact value.",
     variants,
     declaration: |tier| Declaration {
+        posed: Posed {
+            further: Some(|_| vec![run::field(), run::guard()]),
+            ..Posed::new("There is no wall: x and y are periodic.", &[run::ALL])
+        },
         studies: Some(Box::new(move |runs| study::studies(tier, runs))),
         sealed: Some(SEALED),
-        of_all_digits: &[run::ERROR, run::GAIN, run::BIAS, run::NOISE, run::SYMBOL_ERROR],
+        of_all_digits: run::ALL,
         ..Declaration::default()
     },
     plan: plan::plan,

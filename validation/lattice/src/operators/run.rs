@@ -7,7 +7,7 @@ use base::{
     random::Random,
     record::*,
 };
-use harness::{case::*, context::Context, method::*, simulate};
+use harness::{case::*, context::Context, declare::Fact, method::*, simulate};
 use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
 use schemes::lattice::summing_step;
@@ -16,11 +16,16 @@ use solver::{Domain, EquationOfState, Particle, Stepper, Tait};
 use super::{Operator, OperatorSettings, Subject};
 
 base::metrics! {
+    all ALL;
     ERROR = "error" ["-"] "(sum |o - o_exact|^2/sum |o_exact|^2)^(1/2) over particles, o the operator";
     GAIN = "gain" ["-"] "sum o o_exact/sum o_exact^2";
     BIAS = "bias" ["-"] "|gain - 1|";
     NOISE = "noise" ["-"] "(sum |o - gain o_exact|^2/sum |o_exact|^2)^(1/2)";
     SYMBOL_ERROR = "symbol_error" ["-"] "|gain/(gain of theory) - 1| on a lattice";
+    SUM_ERROR = "sum_error" ["-"]
+        "(sum |o - s|^2/sum |s|^2)^(1/2), s the sum over pairs of the particles at the start: m_j W - 1 \
+         (density), -m_j (p_i/rho_i^2 + p_j/rho_j^2) grad W (gradient), 2 nu (m_j/rho_j) (v_i - v_j) r.grad \
+         W/(r^2 + eta^2) (laplacian), -(m_j/rho_i) (v_i - v_j).grad W (divergence)";
 }
 
 /// Wave number along each axis \[1/m\].
@@ -33,6 +38,21 @@ const SPEED: f64 = 0.1;
 const DENSITY: f64 = 0.5;
 /// η² of (6) \[h²\]: a guard against 0/0 and no more.
 const ETA2: f64 = 1e-6;
+
+/// The fields, and what is made of them, for other codes.
+pub(super) fn field() -> Fact {
+    let about = "wave number K of the fields; φ = sin Kx cos Ky, ψ = cos Kx sin Ky. The operator o and its \
+                 exact value: density: ρ/ρ0 - 1 after the step, φ/2; gradient: (v - v_start)/t, -∇p/ρ of p \
+                 = 1e-6 ρ0 c0² φ; laplacian: (v - v_start)/t, ν ∇²v of v = 0.1 c0 (φ, ψ); divergence: \
+                 (ρ_start - ρ)/t, ∇·v of the same v";
+    Fact { name: "K", value: K, unit: "1/m", about }
+}
+
+/// The guard of the Laplacian, for other codes.
+pub(super) fn guard() -> Fact {
+    let about = "η² over h² of the viscous sum, a guard against 0/0";
+    Fact { name: "eta2_over_h2", value: ETA2, unit: "-", about }
+}
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {
     let dx = 1.0 / s.n as f64;
@@ -126,6 +146,70 @@ impl Subject {
     }
 }
 
+/// The operator summed pair by pair, of which only the values of the kernel are those of the solver.
+struct Sums<'a> {
+    operator: Operator,
+    medium: &'a Medium,
+    /// Where the kernel ends \[m\].
+    reach: f64,
+    /// W \[1/m²\] of r² \[m²\].
+    weight: &'a dyn Fn(f64) -> f64,
+}
+
+impl Sums<'_> {
+    /// The distance of the operator of a run from its sum, over the sum, rms over particles. `None` if the
+    /// nearest image is not the only one in reach.
+    fn error(&self, start: &[Particle], end: &[Particle], time: f64) -> Option<f64> {
+        if self.reach >= 0.5 {
+            return None;
+        }
+        let strips = (1.0 / self.reach) as usize;
+        let strip = |x: f64| ((x - x.floor()) * strips as f64) as usize % strips;
+        let mut near = vec![Vec::new(); strips];
+        start.iter().for_each(|p| near[strip(p.position.x)].push(p));
+        let (mut off, mut scale) = (0.0, 0.0);
+        for (own, end) in start.iter().zip(end) {
+            let middle = strip(own.position.x);
+            let mut around = [middle + strips - 1, middle, middle + 1].map(|k| k % strips).to_vec();
+            around.sort_unstable();
+            around.dedup();
+            let others = around.into_iter().flat_map(|k| &near[k]);
+            let sum = others.fold(Vector2::zeros(), |sum, other| sum + self.pair(own, other));
+            let sum = if self.operator == Operator::Density { sum - Vector2::x() } else { sum };
+            let [found, _] = self.operator.values([own, end], self.medium, time);
+            off += (found - sum).norm_squared();
+            scale += sum.norm_squared();
+        }
+        Some((off / scale).sqrt())
+    }
+
+    /// What one particle, its own image included, adds.
+    fn pair(&self, own: &Particle, other: &Particle) -> Vector2<f64> {
+        let Medium { eos, density, nu, h, .. } = self.medium;
+        let r = (own.position - other.position).map(|x| x - x.round());
+        let (r2, v, mass) = (r.norm_squared(), own.velocity - other.velocity, other.mass);
+        if r2 >= self.reach * self.reach {
+            return Vector2::zeros();
+        }
+        if self.operator == Operator::Density {
+            return Vector2::new(mass * (self.weight)(r2), 0.0);
+        }
+        // ∇W is r times twice the slope of W over r².
+        const SHARE: f64 = 1e-5;
+        let rise = (self.weight)(r2 * (1.0 + SHARE)) - (self.weight)(r2 * (1.0 - SHARE));
+        let slope = if r2 > 0.0 { rise / (SHARE * r2) } else { 0.0 };
+        let share = |p: &Particle| eos.pressure(p.density) / (p.density * p.density);
+        match self.operator {
+            Operator::Gradient => r * (-mass * slope * (share(own) + share(other))),
+            Operator::Laplacian => {
+                let viscous = 2.0 * nu * density / (own.density * other.density);
+                v * (viscous * mass * slope * r2 / (r2 + ETA2 * h * h))
+            }
+            _ => Vector2::new(-mass / own.density * slope * v.dot(&r), 0.0),
+        }
+    }
+}
+
 /// One run of a variant.
 pub(super) fn run(
     of: &Subject,
@@ -147,6 +231,17 @@ pub(super) fn run(
         simulate::simulate(method, parts, [rules.dt(), rules.end], context, &mut record)?;
     if record.status == Status::Completed {
         measure(of, &start, &*simulation, &medium, &mut record);
+        if !of.is_corrected {
+            let reach = method.support * medium.h;
+            let sums = Sums {
+                operator: of.operator,
+                medium: &medium,
+                reach,
+                weight: &|r2| simulation.weight(r2),
+            };
+            let error = sums.error(&start, &simulation.particles(), simulation.time());
+            record.put_or(SUM_ERROR, error, "the support reaches half of the period");
+        }
         if s.disorder == 0.0 {
             let symbol = of.symbol(method, s, &|r2| simulation.weight(r2));
             let gain = record.value(GAIN).unwrap_or(f64::NAN);

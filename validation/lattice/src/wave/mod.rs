@@ -19,7 +19,7 @@ use harness::{
     case::*,
     composed::*,
     context::Context,
-    declare::Declaration,
+    declare::{Declaration, Posed},
     table::{Row, Table},
 };
 
@@ -84,7 +84,7 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             are known exactly. A correct program has the frequency and decay that follow from them, \
             whatever the kernel.",
     variants: || variants(Polarisation::Sound),
-    declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
+    declaration: |_| declaration(),
     plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
 };
 
@@ -97,7 +97,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
             a lattice, the symbol lambda(k) of the viscous sum is known exactly. Sound and pressure stay \
             exactly zero to first order.",
     variants: || variants(Polarisation::Shear),
-    declaration: |_| Declaration { stepwise: STEPWISE, ..Declaration::default() },
+    declaration: |_| declaration(),
     plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
 };
 
@@ -109,6 +109,7 @@ const RECOMMENDED: Recommended = Recommended {
 };
 
 base::metrics! {
+    all ALL;
     // Error of the frequency of a sound wave.
     FREQUENCY_ERROR = "frequency_error" ["-"]
         "|omega - c0 |g(k)||/(c0 |g(k)|), time error divided out";
@@ -121,6 +122,12 @@ base::metrics! {
     // Change of momentum.
     MOMENTUM_ERROR = "momentum_error" ["-"]
         "|change of sum m v after the first step|/(sum m times the velocity amplitude)";
+}
+
+/// What is measured after every step, and what another code must know.
+fn declaration() -> Declaration {
+    let posed = Posed::new("There is no wall: x and y are periodic.", &[ALL, run::FACTORS]);
+    Declaration { posed, stepwise: STEPWISE, ..Declaration::default() }
 }
 
 /// All are fits to every step, or differences between steps.

@@ -230,6 +230,7 @@ pub(super) fn run(
 }
 
 base::metrics! {
+    all FACTORS;
     SOUND_FACTOR = "sound_factor" ["-"] "omega/(c0 k), 1 in the continuum";
     VISCOUS_FACTOR = "viscous_factor" ["-"] "gamma/(nu k^2)";
 }

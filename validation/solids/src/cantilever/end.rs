@@ -8,7 +8,7 @@ const SAMPLES: f64 = 1600.0;
 /// Samples between those of the energy.
 const ENERGY_EVERY: usize = 10;
 /// Fewer points of a path, such as that of another code, do not determine what is read from it.
-const LEAST_POINTS: usize = 400;
+pub const LEAST_POINTS: usize = 400;
 
 /// The motion of the end.
 pub struct End {
@@ -119,6 +119,24 @@ mod tests {
     use crate::solid::Problem;
     use approx::assert_relative_eq;
     use harness::{context::Context, method::Parts};
+
+    /// The frequency goes with the root of the stiffness, the sag with its inverse.
+    #[test]
+    fn a_bar_of_the_stiffness_of_theory_has_no_distance_from_theory() {
+        let s = CantileverSettings { n: 5, ..CantileverSettings::default() };
+        let stiffness = lagrangian::bending(5, s.poisson);
+        assert!(stiffness < 0.98, "5 layers are softer than a bar: {stiffness}");
+        for (more, frequency, sag) in [(1.0, 0.0, 0.0), (1.21, 0.1, -0.21 / 1.21)] {
+            let mut record =
+                Record::new("cantilever", lagrangian::LAGRANGIAN, serde_json::json!({}), 1);
+            record.put(FREQUENCY_ERROR, (more * stiffness).sqrt() - 1.0);
+            record.put(AVERAGE_Y_ERROR, 1.0 / (more * stiffness) - 1.0);
+            compare_with_theory(&s, &mut record);
+            let value = |metric| record.value(metric).expect("a metric");
+            assert_relative_eq!(value(BENDING_FREQUENCY_ERROR), frequency, epsilon = 1e-12);
+            assert_relative_eq!(value(BENDING_SAG_ERROR), sag, epsilon = 1e-12);
+        }
+    }
 
     /// Stretched and turned: the end is where the line through the last columns ends.
     #[test]

@@ -55,6 +55,7 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
 };
 
 base::metrics! {
+    all ALL;
     ENERGY_CHANGE = "energy_change" ["-"]
         "kinetic and strain energy and that of the weight: the greatest change from the start, over the \
          greatest kinetic energy";

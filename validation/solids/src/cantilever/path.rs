@@ -6,6 +6,7 @@ use maths::metrics::history::passes;
 use super::*;
 
 base::metrics! {
+    all OF_PATH;
     MEAN_X = "mean_x" ["m"]
         "half the sum of the greatest and the least displacement of the end along the bar";
     MEAN_Y = "mean_y" ["m"] "the same upwards";

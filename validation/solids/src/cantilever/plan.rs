@@ -118,7 +118,11 @@ pub fn declaration(tier: Tier) -> Declaration {
     let (accuracy, curve) = (vec![accuracy], Some(path_of_end()));
     let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
     let sealed = Some(SEALED);
+    let held = "Clamped at x = 0: there the displacement is 0 at all times, along x and y. No force acts on \
+                the other faces. Weight acts from t = 0 on, on a bar without stress.";
+    let posed = Posed::new(held, &[ALL, path::OF_PATH, &COMPARED.map(|(_, error)| error)]);
     Declaration {
+        posed,
         accuracy,
         sensitivity,
         stepwise,
@@ -134,6 +138,8 @@ fn path_of_end() -> Curve {
     let compared = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
     Curve {
         columns: &[("x", "m"), ("y", "m")],
+        about: "x and y are the displacement of the middle of the free end since the start",
+        least: end::LEAST_POINTS,
         rows: |_| 1,
         place: |settings, at, starts| {
             let length = settings["length"].as_f64().unwrap_or(f64::NAN);

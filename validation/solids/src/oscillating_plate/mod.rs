@@ -58,6 +58,7 @@ fn variants() -> Compositions<PlateSettings> {
 }
 
 base::metrics! {
+    all ALL;
     PERIOD = "period" ["s"]
         "time to the second passage of the tip through its height of rest, twice that to the first if \
          there is one only";

@@ -180,8 +180,11 @@ fn locked(row: &Row<PlateSettings, For>) -> Gate {
 /// Order in the full tier; the quick tier has one resolution.
 pub fn declaration(tier: Tier) -> Declaration {
     let (table, stepwise, of_methods) = (table(tier), STEPWISE, OF_METHODS);
+    let held = "Clamped at x = 0: there the displacement is 0 at all times, along x and y. No force acts on \
+                the other faces. At the start the plate is straight and without stress, and moves.";
+    let posed = Posed::new(held, &[ALL]);
     if tier == Tier::Quick {
-        return Declaration { stepwise, of_methods, ..Declaration::default() };
+        return Declaration { posed, stepwise, of_methods, ..Declaration::default() };
     }
     let error = PERIOD_ERROR;
     let level = |s: &PlateSettings| (1.0 / s.n as f64, format!("{} layers", s.n));
@@ -197,5 +200,5 @@ pub fn declaration(tier: Tier) -> Declaration {
         ..Accuracy::new("oscillating-plate", error, "difference of the period from finite elements [-]")
     };
     let accuracy = vec![accuracy];
-    Declaration { accuracy, stepwise, of_methods, ..Declaration::default() }
+    Declaration { posed, accuracy, stepwise, of_methods, ..Declaration::default() }
 }

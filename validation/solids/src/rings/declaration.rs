@@ -29,6 +29,9 @@ fn path_and_extents() -> Curve {
     let extents = [WIDTH_MIN, WIDTH_MIN_ERROR, HEIGHT_MAX, HEIGHT_MAX_ERROR];
     Curve {
         columns: &[("x_c", "m"), ("v_c", "m/s"), ("width", "m"), ("height", "m")],
+        about: "of the ring on the right: place and velocity of its centre of mass along the line of flight, \
+                and its extents along that line and across it, from surface to surface",
+        least: 0,
         rows: |_| 1,
         place: |settings, at, starts| {
             let Ok(settings) = base::settings::of_json::<RingSettings>(settings) else {
@@ -69,7 +72,10 @@ const SEALED: Draws = Draws {
 
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
+    let free = "No force acts on the faces of a ring but that of the other ring where they touch: it is \
+                normal to the faces, which slide without friction, do not pass each other and do not stick.";
     Declaration {
+        posed: Posed::new(free, &[metrics::ALL]),
         card: Some(card(&accuracy)),
         curves: vec![histories(tier)],
         comparisons: comparisons(&accuracy),

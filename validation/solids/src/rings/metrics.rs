@@ -3,6 +3,7 @@
 use super::*;
 
 base::metrics! {
+    all ALL;
     RESTITUTION = "restitution" ["-"]
         "velocity of the centre of mass at the end/V, of rings that have touched and parted";
     PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";

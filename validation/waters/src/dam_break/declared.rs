@@ -29,7 +29,12 @@ const SEALED: Draws = Draws {
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     let comparisons = comparisons(tier);
+    let boundary = "Water slips along floor and walls without friction, and nothing passes them below their \
+                    rim. The surface is free: no pressure acts on it. At the start the water is at rest; no \
+                    wall holds it on its right.";
+    let posed = Posed { metrics: metrics::every(), ..Posed::new(boundary, &[]) };
     Declaration {
+        posed,
         card: Some(card(&accuracy)),
         ensembles: ensembles::ensembles(tier),
         comparisons,
@@ -126,6 +131,9 @@ fn picture(tier: Tier) -> Picture {
 fn front() -> Curve {
     Curve {
         columns: &[("front", "m")],
+        about: "front is the x of the foremost water below H/4, from the back wall: of particles that of the \
+                foremost one plus what it lacks of the width of the column at the start, which is dx/2",
+        least: 0,
         rows: |_| 1,
         place: |settings, at, starts| {
             let width = settings["width"].as_f64().unwrap_or(f64::NAN);

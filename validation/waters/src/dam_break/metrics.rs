@@ -34,6 +34,7 @@ pub const HEIGHT: Distance = distance!("height");
 pub const LEVELS: Distance = distance!("levels");
 
 base::metrics! {
+    all ALL;
     REACHED = "reached" ["-"] "time at which the run ended over that at which it was to end";
     OUTSIDE = "outside" ["1"]
         "most particles more than dx/2 behind bottom and sides at any time, without those that left over \
@@ -45,7 +46,9 @@ base::metrics! {
         "max |change of momentum - impulse of walls and gravity|/(M (g H)^(1/2))";
     MASS_ERROR = "mass_error" ["-"]
         "|mass of the water at the end/that at the start - 1|, of all particles, lost ones too";
-    Z = "z" ["-"] "Z = front from the back wall/a at T = t (2g/a)^(1/2)";
+    Z = "z" ["-"]
+        "Z = front from the back wall/a at T = t (2g/a)^(1/2), front = x of the foremost particle below H/4, \
+         plus a, less that x at the start";
     FRONT_AWAY = "front_away" ["-"]
         "front less that of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank in H \
          at t (g/H)^(1/2)";
@@ -88,3 +91,20 @@ pub const IMPULSE: [MetricKey; 4] = four(
     "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, less 1",
     ["impulse_P1", "impulse_P2", "impulse_P3", "impulse_P4"],
 );
+
+/// Every metric of the case, with what formulas leave open.
+pub fn every() -> Vec<MetricName> {
+    let column = "M g H/2, the potential energy of the column";
+    let mut all: Vec<MetricName> = ALL.iter().copied().map(MetricName::from).collect();
+    all.extend(ledger::METRICS.map(|metric| metric.of(column)));
+    for (distance, what) in [
+        (FRONT, "Z at equal T, or of x of the tip from the gate/H,"),
+        (HEIGHT, "the depth at 0.2 a over H at equal t (g/a)^(1/2)"),
+        (LEVELS, "all four levels/H"),
+    ] {
+        all.extend([distance.rms.of(what), distance.rms_shifted.into(), distance.shift.into()]);
+    }
+    let of_probes = [LEVEL_AWAY, IMPULSE_AWAY, IMPULSE].concat();
+    all.extend(of_probes.into_iter().map(MetricName::from));
+    all
+}
