@@ -260,8 +260,8 @@ fn nothing_judged_ends_with_2_and_names_what_is() {
     let words = said.text.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in [
         "Nothing was judged",
-        "the nearest that is judged is couette --variant plain --set rows=10",
-        "touchstone export couette --variant plain --set rows=10",
+        "the nearest that is judged is couette --variant",
+        "next touchstone export couette --variant",
         "error ",
     ] {
         assert!(words.contains(part), "no {part:?}: {words}");
@@ -359,9 +359,7 @@ fn no_absurd_number_evades_its_verdict() {
             assert_eq!(judged(&said), judged(&honest), "{problem}, {what}: {}", said.text);
             let fails = said.gates.values().filter(|verdict| *verdict == "FAIL").count();
             assert_eq!(said.code, i32::from(fails > 0), "{problem}, {what}: {}", said.text);
-            let mut numbers = record.profiles.values().flat_map(|of| &of.columns);
-            let is_whole =
-                numbers.all(|column| column.values.iter().all(|value| value.is_finite()));
+            let is_whole = record.profiles.values().all(|curve| curve.check_finite().is_ok());
             assert!(is_whole || fails > 0, "{problem}, {what}: a curve has a hole");
             let is_measured = record.metrics.values().all(|metric| metric.value.is_finite());
             let ended = match &record.status {
@@ -372,8 +370,10 @@ fn no_absurd_number_evades_its_verdict() {
                 Status::Completed => "fails",
                 _ => {
                     assert_eq!(fails, honest.gates.len(), "{problem}, {what}: {}", said.text);
-                    assert!(said.text.contains(" of particle "), "{what}: {}", said.text);
-                    "diverged, and all gates fail"
+                    let names = [" of particle ", "value of the curve"];
+                    let is_named = names.iter().any(|name| said.text.contains(name));
+                    assert!(is_named, "{what}: {}", said.text);
+                    "diverged or determines no curve, and all gates fail"
                 }
             };
             if tries.is_some() && ended.starts_with("passes") {

@@ -71,11 +71,6 @@ fn our_own_results_are_measured_as_the_run_was() {
         assert!(made.status.success(), "{line}: {}", said(&made));
         let case = line.split(' ').next().unwrap();
         let submitted = touchstone(folder.path(), &format!("submit {case} own --store store"));
-        assert!(
-            submitted.stderr.is_empty() || submitted.status.code() < Some(2),
-            "{}",
-            said(&submitted)
-        );
         let file = fs::read_dir(folder.path().join("store")).unwrap().flatten().next();
         let file = file.unwrap_or_else(|| panic!("{line}: {}", said(&submitted)));
         let found = Record::from_json(&read(&file.path())).unwrap();

@@ -246,6 +246,14 @@ fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, Strin
     wrong
 }
 
+/// The first number of a curve of a record that is not finite, in words.
+fn hole(record: &Record) -> Option<String> {
+    record.profiles.iter().find_map(|(name, curve)| {
+        let why = curve.check_finite().err()?;
+        Some(format!("the particles determine no value of the curve {name}: {why}"))
+    })
+}
+
 /// A particle with a coordinate beyond this is lost \[m\].
 fn reach(problem: &Problem) -> f64 {
     let Outline { particles, medium, .. } = &problem.outline;
@@ -340,6 +348,12 @@ impl Entry {
         };
         let why = Absent::OfParticles;
         record.take_out(&|name, _| !record::is_of(&curve.metrics, name), &why);
+        let is_to_be_told = |(name, why): &(&String, &mut Absent)| {
+            matches!(why, Absent::NotGiven(_)) && !record::is_of(&curve.metrics, name)
+        };
+        for (_, reason) in record.absent.iter_mut().filter(is_to_be_told) {
+            *reason = why.clone();
+        }
         for name in problem.gates.iter().map(|gate| &gate.metric) {
             if !record::is_of(&curve.metrics, name) {
                 record.absent.entry(name.clone()).or_insert_with(|| why.clone());
@@ -559,6 +573,9 @@ impl Entry {
         record.cost = self.cost(&record);
         if !matches!(record.status, Status::Diverged { .. }) {
             record.status = Status::Completed;
+        }
+        if let (Status::Completed, Some(reason)) = (&record.status, hole(&record)) {
+            record.status = Status::Refused { reason };
         }
         Ok(record)
     }

@@ -241,7 +241,8 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     let study = study.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
              the bounds of the same gates; known limitations of our own method are no excuse. A gate is not \
-             applicable if the results do not determine its metric. A record proves nothing that its results \
+             applicable if its metric needs what no file holds or what was not handed in, or if its bound \
+             follows from our own kernel, support and step. A record proves nothing that its results \
              do not: `touchstone submit` measures them again, and refuses a record in the store that says \
              something else of them. Versions, seconds and steps are as submitted, for this program cannot \
              check them.",
