@@ -869,7 +869,7 @@ fn ends(case: &dyn Case) -> Vec<String> {
 }
 
 /// Runs that are estimated to take less processor time than this are made to their end \[s\].
-const TO_THE_END: f64 = 0.01;
+const TO_THE_END: f64 = 0.005;
 
 /// Was a run of these settings begun, after its size was told, or was it refused in words that name a setting?
 /// A long one is stopped after its first step. Each metric of a record is a finite number.

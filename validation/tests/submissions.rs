@@ -936,6 +936,19 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     };
     assert_eq!([1000, 1].map(of_steps), [Some(0), Some(1)]);
     fs::write(&system, &stated).unwrap();
+    set(&other, last, 2, row[2]);
+    // Each quantity, whichever of the observers has more of it.
+    for (column, quantity) in [(3, "place"), (4, "velocity"), (5, "velocity"), (6, "density")] {
+        for by in [1e-9, -1e-9] {
+            let changed = row[column].parse::<f64>().unwrap() * (1.0 + by);
+            set(&other, last, column, &changed.to_string());
+            let related = of("relate elliptic_drop same other");
+            let told = String::from_utf8_lossy(&related.stdout);
+            let is_found = related.status.code() == Some(1) && told.contains(quantity);
+            assert!(is_found, "{quantity} {by}: {told}");
+        }
+        set(&other, last, column, row[column]);
+    }
     set(&other, last, 2, &(x + 1e-9).to_string());
     let related = of("relate elliptic_drop same other");
     let told = String::from_utf8_lossy(&related.stdout);
