@@ -349,7 +349,7 @@ impl Entry {
         let why = Absent::OfParticles;
         record.take_out(&|name, _| !record::is_of(&curve.metrics, name), &why);
         let is_to_be_told = |(name, why): &(&String, &mut Absent)| {
-            matches!(why, Absent::NotGiven(_)) && !record::is_of(&curve.metrics, name)
+            **why != Absent::OwnTheory && !record::is_of(&curve.metrics, name)
         };
         for (_, reason) in record.absent.iter_mut().filter(is_to_be_told) {
             *reason = why.clone();
