@@ -245,10 +245,11 @@ fn documents() -> Vec<(&'static str, Value)> {
     fs::write(at.join("method.json"), method.to_string()).unwrap();
     of("export dam_break --relation turned --out fluid");
     of("export elastic_bar --out solid");
+    of("export periodic_hill --set n=6 --out driven");
     of("challenge couette --seed 1 --method method.json --out sealed");
     let problem =
         |name: &str| parsed(&fs::read_to_string(at.join(name).join("problem.json")).unwrap());
-    let problems = ["fluid", "solid", "sealed"].map(problem);
+    let problems = ["fluid", "solid", "driven", "sealed"].map(problem);
 
     fs::create_dir(at.join("empty")).unwrap();
     let mut verdicts = parsed(&of("judge couette hydrostatic --store empty --json"));

