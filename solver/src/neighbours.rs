@@ -3,7 +3,8 @@
 //!
 //! Particles are stored in tiles 64 spacings wide, so that what a group sees is in the nearest caches, and
 //! in a tile along strips two spacings high, every other strip backwards, so that a group is compact: four by
-//! two on a square lattice, where 60 columns are within three spacings of one of the eight, 28 others of each.
+//! two on a square lattice, where 60 columns are within three spacings of one of the eight, 28 others of
+//! each.
 //!
 //! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel,
 //! which stands for the particles that a group lacks. Two particles farther apart than support + skin when

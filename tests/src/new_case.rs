@@ -65,11 +65,7 @@ fn declaration(tier: Tier) -> Declaration {
 pub const DECAY: Composed<Decay> = Composed {
     name: "decay",
     problem: "A shear wave decays in a periodic box",
-    recommended: Recommended {
-        variant: "quintic",
-        because: "a smoother kernel is less wrong",
-        papers: None,
-    },
+    recommended: Recommended { variant: "quintic", because: "its error is smaller", papers: None },
     about: "A shear wave in a periodic box decays as exp(-ν(2π)²t).",
     variants: || {
         Variants::of(run, rules)

@@ -101,8 +101,8 @@ impl Solver for Other {
     }
 }
 
-/// Finite differences with an error of 0.002 % failed a window around the error of our own kernel and step; who
-/// states these is judged by it, and a kernel whose norm is off by 2 %, as a viscosity, leaves it.
+/// Finite differences with an error of 0.002 % failed a window around the error of our own kernel and step;
+/// who states these is judged by it, and a kernel whose norm is off by 2 %, as a viscosity, leaves it.
 #[test]
 fn a_better_method_passes_and_one_that_states_ours_must_have_our_error() {
     for (case, gate) in

@@ -871,8 +871,8 @@ fn ends(case: &dyn Case) -> Vec<String> {
 /// Runs that are estimated to take less processor time than this are made to their end \[s\].
 const TO_THE_END: f64 = 0.005;
 
-/// Was a run of these settings begun, after its size was told, or was it refused in words that name a setting?
-/// A long one is stopped after its first step. Each metric of a record is a finite number.
+/// Was a run of these settings begun, after its size was told, or was it refused in words that name a
+/// setting? A long one is stopped after its first step. Each metric of a record is a finite number.
 fn is_begun(case: &dyn Case, variant: &str, set: &[String]) -> bool {
     let run = format!("{} {variant} {}", case.name(), set.join(" "));
     let (stop, told) = (AtomicBool::new(false), AtomicUsize::new(0));

@@ -160,7 +160,8 @@ fn mocked(folder: &Path, arguments: &[&str]) -> Option<i32> {
     command.env("PATH", path).output().unwrap().status.code()
 }
 
-/// Tasks executed `$(…)` in the path of the plan; blank lines made a task too many; an empty plan said nothing.
+/// Tasks executed `$(…)` in the path of the plan; blank lines made a task too many; an empty plan said
+/// nothing.
 #[test]
 fn a_path_is_no_command_and_a_plan_without_runs_is_told() {
     use std::os::unix::fs::PermissionsExt;

@@ -92,8 +92,8 @@ fn what_is_too_large_for_a_run_is_too_large_for_every_command() {
     }
 }
 
-/// `export` of another case left the scripts and the results of the first one beside its problem, and replaced
-/// what somebody else had written.
+/// `export` of another case left the scripts and the results of the first one beside its problem, and
+/// replaced what somebody else had written.
 #[test]
 fn an_export_neither_mixes_problems_nor_replaces_what_is_not_its_own() {
     let folder = tempfile::tempdir().unwrap();

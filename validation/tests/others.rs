@@ -269,7 +269,8 @@ fn nothing_judged_ends_with_2_and_names_what_is() {
     assert_eq!(said.record.expect("a record").status, Status::Completed);
 }
 
-/// Our own run with a quarter of its step failed, for the error of the step cancels a part of that of the sums.
+/// Our own run with a quarter of its step failed, for the error of the step cancels a part of that of the
+/// sums.
 #[test]
 fn a_window_of_our_own_step_judges_only_what_states_it() {
     let at_once = |flow: &str| {

@@ -207,7 +207,8 @@ fn a_forged_record_is_refused_by_its_results() {
     assert!(code == 2 && words.contains("l2@0.1 (1e-5 there"), "{words}");
 }
 
-/// Equal results of two codes have equal digests, and the machine of the other code is not that of this program.
+/// Equal results of two codes have equal digests, and the machine of the other code is not that of this
+/// program.
 #[test]
 fn results_have_a_digest_and_machines_are_not_mixed() {
     let folder = tempfile::tempdir().unwrap();

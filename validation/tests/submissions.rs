@@ -905,6 +905,22 @@ fn a_problem_states_the_law_of_its_own_method() {
     }
 }
 
+/// Each quantity of the last row, whichever of the observers has more of it.
+fn each_quantity_is_compared(folder: &tempfile::TempDir, last: usize, row: &[&str]) {
+    let other = folder.path().join("other");
+    for (column, quantity) in [(3, "place"), (4, "velocity"), (5, "velocity"), (6, "density")] {
+        for by in [1e-9, -1e-9] {
+            let changed = row[column].parse::<f64>().unwrap() * (1.0 + by);
+            set(&other, last, column, &changed.to_string());
+            let related = touchstone(folder.path(), "relate elliptic_drop same other");
+            let told = String::from_utf8_lossy(&related.stdout);
+            let is_found = related.status.code() == Some(1) && told.contains(quantity);
+            assert!(is_found, "{quantity} {by}: {told}");
+        }
+        set(&other, last, column, row[column]);
+    }
+}
+
 /// Two observers of one problem, as files: our own solver tells both the same; where one number differs by a
 /// billionth, the particle is named; what is no pair of observers is refused.
 #[test]
@@ -937,18 +953,7 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     assert_eq!([1000, 1].map(of_steps), [Some(0), Some(1)]);
     fs::write(&system, &stated).unwrap();
     set(&other, last, 2, row[2]);
-    // Each quantity, whichever of the observers has more of it.
-    for (column, quantity) in [(3, "place"), (4, "velocity"), (5, "velocity"), (6, "density")] {
-        for by in [1e-9, -1e-9] {
-            let changed = row[column].parse::<f64>().unwrap() * (1.0 + by);
-            set(&other, last, column, &changed.to_string());
-            let related = of("relate elliptic_drop same other");
-            let told = String::from_utf8_lossy(&related.stdout);
-            let is_found = related.status.code() == Some(1) && told.contains(quantity);
-            assert!(is_found, "{quantity} {by}: {told}");
-        }
-        set(&other, last, column, row[column]);
-    }
+    each_quantity_is_compared(&folder, last, &row);
     set(&other, last, 2, &(x + 1e-9).to_string());
     let related = of("relate elliptic_drop same other");
     let told = String::from_utf8_lossy(&related.stdout);

@@ -4,6 +4,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+/// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
+pub const NOT_ASKED: &str = "not asked for: --metrics all";
+
 /// Why a metric is absent; in documents a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
@@ -26,7 +29,7 @@ pub enum Absent {
 
 /// The sentences that say the same of every run.
 const FIXED: [(Absent, &str); 5] = [
-    (Absent::NotAsked, crate::record::NOT_ASKED),
+    (Absent::NotAsked, NOT_ASKED),
     (Absent::EveryStep, "it is measured after every step"),
     (Absent::OwnTerms, "it needs the sums of this program's own terms"),
     (Absent::OwnTheory, "it compares with the theory of this program's own method"),

@@ -193,8 +193,8 @@ pub struct Gate {
     pub control: bool,
     /// is a run that ends early the limitation or the failure that is expected?
     pub may_end_early: bool,
-    /// the bound for a code that does not state our own kernel, support and step, and why, if this bound rests
-    /// on them
+    /// the bound for a code that does not state our own kernel, support and step, and why, if this bound
+    /// rests on them
     #[serde(skip)]
     pub of_others: Option<(Bound, String)>,
 }

@@ -8,6 +8,11 @@
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+/// Whether a field is left out of a document.
+pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
 /// An `f64` whose JSON form is never `null`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Form", into = "Form")]

@@ -26,13 +26,11 @@ use thiserror::Error;
 use crate::absent::Absent;
 use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
+use crate::number::is_default;
 use crate::reference::sha256;
 use crate::settings::{self, Settings};
-use crate::spec::{Measure, RunSpec, is_default};
+use crate::spec::{Measure, RunSpec};
 use crate::text::unseen;
-
-/// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
-pub const NOT_ASKED: &str = "not asked for: --metrics all";
 
 /// Version of the document; raised with every change that an older reader would misread.
 pub const SCHEMA: u32 = 3;

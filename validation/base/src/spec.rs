@@ -22,6 +22,7 @@ use thiserror::Error;
 
 use crate::{
     mutation::{Constant, Detect, Disorder, Mutation},
+    number::is_default,
     reference::sha256,
     submission::Submission,
     text::short,
@@ -61,11 +62,6 @@ pub struct RunSpec {
     /// how much is measured, which is no part of the key
     #[serde(default, skip_serializing_if = "is_default")]
     pub measure: Measure,
-}
-
-/// Whether a field is left out of a document.
-pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }
 
 /// Longest name of a case or of a variant.

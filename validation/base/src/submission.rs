@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::spec::is_default;
+use crate::number::is_default;
 
 /// The code of a submission that this program wrote itself, as `export --solve` does.
 pub const OURS: &str = "touchstone";
@@ -33,8 +33,8 @@ pub struct Submission {
     /// the seed from which a sealed problem was drawn
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Does it state the kernel, the support and the step of our own method? Then gates on the theory of these
-    /// apply.
+    /// Does it state the kernel, the support and the step of our own method? Then gates on the theory of
+    /// these apply.
     #[serde(default, skip_serializing_if = "is_default")]
     pub states_our_method: bool,
 }

@@ -39,8 +39,9 @@ pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The first character that nobody sees or that XML lacks, with its number: one of control or of the direction
-/// of writing, or one without width. It could make two names look the same, or hide what a line says.
+/// The first character that nobody sees or that XML lacks, with its number: one of control or of the
+/// direction of writing, or one without width. It could make two names look the same, or hide what a line
+/// says.
 pub fn unseen(text: &str) -> Option<String> {
     let is_unseen = |char: char| match char {
         ' '..='~' => false,

@@ -70,8 +70,8 @@ pub fn check(
 ) -> Result<(), String> {
     if sealed.method != method.digest() {
         return Err(format!(
-            "{METHOD}: the SHA-256 of its code, version, scheme, division and settings is {}; the problem was \
-             sealed for {}, so the method was changed afterwards",
+            "{METHOD}: the SHA-256 of its code, version, scheme, division and settings is {}; the problem \
+             was sealed for {}, so the method was changed afterwards",
             method.digest(),
             sealed.method
         ));

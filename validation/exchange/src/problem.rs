@@ -22,13 +22,14 @@ use serde_json::{Map, Value, json};
 
 use crate::flaw::Flaw;
 
-use crate::read::curve::CURVE;
-
 /// Version of `problem.json`; raised with every change that an older reader would misread.
 pub const SCHEMA: u32 = 1;
 
 /// Name of the document in the folder of a problem.
 pub const PROBLEM: &str = "problem.json";
+
+/// Name of the table of a profile or series that a code may hand in.
+pub const CURVE: &str = "curve.csv";
 /// The field that lists its gates.
 const JUDGED_BY: &str = "judged_by";
 /// Name of the table of its particles.
@@ -104,8 +105,8 @@ pub struct Asked {
 }
 
 impl Asked {
-    /// Are the numbers of the document those that its spec gives? Its prose may be that of another version, and
-    /// it may have keys that ours lacks.
+    /// Are the numbers of the document those that its spec gives? Its prose may be that of another version,
+    /// and it may have keys that ours lacks.
     ///
     /// # Errors
     /// The first field that says something else.
@@ -182,7 +183,8 @@ impl Problem {
     /// The problem at a few early times as another observer sees it, if there is a relation.
     ///
     /// # Errors
-    /// As [`Problem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the problem.
+    /// As [`Problem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the
+    /// problem.
     pub fn seen(
         case: &dyn Case,
         spec: RunSpec,

@@ -31,11 +31,8 @@ use solver::Role;
 use crate::{
     digits::{self, ROUND_OFF},
     flaw::Flaw,
-    problem::{Asked, PROBLEM, Problem, SCHEMA},
-    read::{
-        self, RESULTS, Renamed, Results, SAME_MASS,
-        curve::{self, CURVE},
-    },
+    problem::{Asked, CURVE, PROBLEM, Problem, SCHEMA},
+    read::{self, RESULTS, Renamed, Results, SAME_MASS, curve},
 };
 
 /// Name of the document that describes the method.
@@ -533,9 +530,9 @@ impl Entry {
             .collect()
     }
 
-    /// Measures the particles in a scene as those of a run of the problem. What rests on a column that was not
-    /// handed in is absent, by the name of the column: it is measured once more with other numbers in place of
-    /// this column, and differs.
+    /// Measures the particles in a scene as those of a run of the problem. What rests on a column that was
+    /// not handed in is absent, by the name of the column: it is measured once more with other numbers in
+    /// place of this column, and differs.
     ///
     /// # Errors
     /// If the case refuses the run, or a frame cannot be put in place of its particles.
@@ -580,7 +577,8 @@ impl Entry {
         Ok(record)
     }
 
-    /// The digits that were not handed in, in words, if there are few: rounding of a file is no flaw of a method.
+    /// The digits that were not handed in, in words, if there are few: rounding of a file is no flaw of a
+    /// method.
     pub fn few_digits(&self, problem: &Problem) -> Option<String> {
         let Results { frames, own, .. } = &self.results;
         let (last, particles) = (frames.last()?, &problem.outline.particles);
@@ -599,8 +597,8 @@ impl Entry {
         digits::few(last, &start).filter(|_| self.curve.is_none())
     }
 
-    /// Leaves out what few digits do not determine: what the case measures over a very short time, and what is
-    /// compared with round-off.
+    /// Leaves out what few digits do not determine: what the case measures over a very short time, and what
+    /// is compared with round-off.
     fn leave_out_rounded(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
         let Some(few) = self.few_digits(problem) else { return };
         let rates = case.declaration(Tier::Quick).of_all_digits;

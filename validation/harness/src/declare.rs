@@ -13,7 +13,6 @@ use nalgebra::Vector2;
 use report::{Axis, Colour, ColourMap};
 use serde_json::Value;
 
-pub use crate::sealed::{Drawn, Draws};
 use crate::{
     rules::Rules,
     runs::{Planned, Runs, Tier},
@@ -121,6 +120,37 @@ pub struct Curve {
     pub coarsen: Option<fn(&mut Value)>,
     /// How the names of the profiles of a record begin that show it, and their columns.
     pub shown: (&'static str, &'static [&'static str]),
+}
+
+/// What the sealed problems of a case draw, and by what they are judged.
+#[derive(Clone, Copy)]
+pub struct Draws {
+    /// The variants whose errors change with the order below; all if none is named.
+    pub variants: &'static [&'static str],
+    /// The setting of the resolution, a number of spacings or a spacing of which a whole number is a length
+    /// of 1, and the ends between which it is drawn.
+    pub resolution: (&'static str, [f64; 2]),
+    /// The formal order of the errors in the spacing.
+    pub order: f64,
+    /// The errors that may be judged; those that the plans judge of the variant are.
+    pub metrics: &'static [&'static str],
+    /// `key=value` of settings that all have.
+    pub set: &'static [&'static str],
+    /// Other settings that are drawn.
+    pub others: &'static [(&'static str, Drawn)],
+    /// Settings in which judged runs may differ, for they change none of the errors.
+    pub free: &'static [&'static str],
+}
+
+/// How a setting is drawn that is not the resolution.
+#[derive(Clone, Copy)]
+pub enum Drawn {
+    /// Evenly in the logarithm between these ends, within the values of judged runs.
+    Between(f64, f64),
+    /// One of the values of judged runs.
+    Judged,
+    /// Evenly between these ends: the reference and the error are the same for all.
+    Any(f64, f64),
 }
 
 /// What the report says first of a case: its error with the recommended variant and with the paper's.

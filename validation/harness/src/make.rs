@@ -643,8 +643,8 @@ mod tests {
     static CHEAP: Named = Named("cheap", true);
     static SIDE: Named = Named("side", false);
 
-    /// Who waits for a page sees the cheapest of the main cases first, that of the least sum of times, and not
-    /// one without a card, whatever it takes.
+    /// Who waits for a page sees the cheapest of the main cases first, that of the least sum of times, and
+    /// not one without a card, whatever it takes.
     #[test]
     fn the_cheapest_of_the_main_cases_is_made_first() {
         let of = |case: &'static Named, k: &str, seconds: f64| {

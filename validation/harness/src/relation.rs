@@ -275,8 +275,8 @@ mod tests {
 
     use super::*;
 
-    /// The force on a cut of a stressed body turns with the body and the cut: S' Q n = Q S n, with the unit of
-    /// a pressure, and stays as large as it was. No scene starts with a stress.
+    /// The force on a cut of a stressed body turns with the body and the cut: S' Q n = Q S n, with the unit
+    /// of a pressure, and stays as large as it was. No scene starts with a stress.
     #[test]
     fn the_stress_of_a_particle_is_turned_with_it() {
         let (c, s) = (0.8, 0.6);

@@ -81,8 +81,8 @@ const NOT_OF_OTHERS: &str = "its bound follows from our own kernel, support and 
 
 impl JudgedRun {
     /// Of a run of another code: the gates that apply, and the names of the others, each with the reason. All
-    /// apply but those of which it was known before its numbers were read that they cannot: a gate whose metric
-    /// the numbers do not determine fails.
+    /// apply but those of which it was known before its numbers were read that they cannot: a gate whose
+    /// metric the numbers do not determine fails.
     pub fn applicable(&self) -> (Vec<&Judged>, Vec<(&str, String)>) {
         let absent = |judged: &Judged| {
             let absent = self.record.absent_as(&judged.gate.metric)?;

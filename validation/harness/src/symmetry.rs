@@ -113,8 +113,8 @@ pub fn far_away((outline, frames): Seen) -> Option<(usize, usize, String)> {
         };
         let axis = [0, 1].into_iter().find(is_far)?;
         let what = format!(
-            "particle {} is at {} = {:e} m at t = {time} s; at most {MOST_PERIODS} periods from its box, a place \
-             has the digits to be compared",
+            "particle {} is at {} = {:e} m at t = {time} s; at most {MOST_PERIODS} periods from its box, a \
+             place has the digits to be compared",
             placed.id,
             ["x", "y"][axis],
             placed.position[axis]

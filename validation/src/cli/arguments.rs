@@ -246,8 +246,8 @@ pub struct Written {
     /// The folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Write into the folder even if it holds another problem, whose files and results then go, or other files
-    /// of the names that are written
+    /// Write into the folder even if it holds another problem, whose files and results then go, or other
+    /// files of the names that are written
     #[arg(long)]
     pub overwrite: bool,
 }
@@ -303,8 +303,8 @@ pub struct Relate {
 pub struct Challenge {
     #[command(flatten)]
     pub of: Written,
-    /// The number from which settings are drawn: public, and known only after the method was published, such as
-    /// the first digits of a lottery or of a random beacon at a stated time
+    /// The number from which settings are drawn: public, and known only after the method was published, such
+    /// as the first digits of a lottery or of a random beacon at a stated time
     #[arg(long, value_name = "N")]
     pub seed: u64,
     /// The method.json that the submission will have; if its code, version, scheme, division or settings are

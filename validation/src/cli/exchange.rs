@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 use ::exchange::{
     challenge,
     flaw::{Flaw, lines},
-    problem::{Asked, PROBLEM, Problem, Sealed},
-    read::{COLUMNS, Head, RESULTS, Renamed, curve::CURVE},
+    problem::{Asked, CURVE, PROBLEM, Problem, Sealed},
+    read::{COLUMNS, Head, RESULTS, Renamed},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
 };
@@ -78,8 +78,8 @@ fn estimate(case: &dyn Case, spec: &RunSpec, of: &arguments::Export) -> Result<(
 /// What a run adds to its problem and to the description of its method.
 const RESULTING: [&str; 3] = [RESULTS, CURVE, SYSTEM];
 
-/// The folder of a problem, if nothing of another one is in it and no file of somebody else would be replaced.
-/// Results beside the same description of the method are those of an earlier export.
+/// The folder of a problem, if nothing of another one is in it and no file of somebody else would be
+/// replaced. Results beside the same description of the method are those of an earlier export.
 fn prepare(
     of: &arguments::Written,
     files: &[write::File],
@@ -388,8 +388,8 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         steps = steps.max(entry.system.steps.unwrap_or(end / problem.outline.dt));
         if steps > most {
             return Err(Failure::usage(format!(
-                "{}: steps of {SYSTEM} is {steps}, after which round-off would explain any error; a comparison \
-                 is a test after at most {most} steps",
+                "{}: steps of {SYSTEM} is {steps}, after which round-off would explain any error; a \
+                 comparison is a test after at most {most} steps",
                 folder.display()
             )));
         }

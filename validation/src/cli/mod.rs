@@ -23,6 +23,7 @@ mod judged;
 mod list;
 mod man;
 mod output;
+mod partial;
 mod plan;
 mod profile;
 mod progress;

@@ -1,5 +1,5 @@
-//! What `submit` says of a submission: its gates, why others have no number or do not apply, and a few lines that
-//! are of use to a submitter.
+//! What `submit` says of a submission: its gates, why others have no number or do not apply, and a few lines
+//! that are of use to a submitter.
 
 use base::{gate::Gate, record::Status, spec::RunSpec};
 use harness::{

@@ -31,7 +31,7 @@ use validation::{cases, page};
 
 use super::{
     Exit, World, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,
-    judged::Verdicts, report,
+    judged::Verdicts, partial,
 };
 
 /// A case whose variants are the ways in which a run can end.
@@ -300,7 +300,7 @@ fn a_run_that_fails_keeps_no_case_from_being_shown() {
     let (plans, store) = (suite::plans(&CASES, Tier::Quick), Store::open(folder.path()));
     let (store, told) = (store.expect("a store"), Mutex::new(Vec::new()));
     let early = |made: Made| {
-        let (_, words) = report::of_made(plans.clone(), Tier::Quick, folder.path(), made);
+        let (_, words) = partial::of_made(plans.clone(), Tier::Quick, folder.path(), made);
         told.lock().expect("sound").push(words);
         None
     };

@@ -14,7 +14,7 @@ use harness::{
 use validation::peers;
 
 use super::{
-    Early, Exit, Failure, Outcome, World, arguments, judged, output, report::partial,
+    Early, Exit, Failure, Outcome, World, arguments, judged, output, partial::partial,
     summary::summary, tell_trouble, trouble,
 };
 

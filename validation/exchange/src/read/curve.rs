@@ -12,10 +12,10 @@ use harness::{
 use nalgebra::Vector2;
 
 use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, Rows, table};
-use crate::{flaw::Flaw, problem::Problem};
-
-/// Name of the table.
-pub const CURVE: &str = "curve.csv";
+use crate::{
+    flaw::Flaw,
+    problem::{CURVE, Problem},
+};
 
 /// The frames that a table stands for.
 ///

@@ -36,8 +36,8 @@ pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
     }
 }
 
-/// The series is exact at any Reynolds number; judged are 20 rows, between which and those drawn errors change
-/// with the second order of walls and kernel.
+/// The series is exact at any Reynolds number; judged are 20 rows, between which and those drawn errors
+/// change with the second order of walls and kernel.
 const SEALED: Draws = Draws {
     variants: &["modern", "curved"],
     resolution: ("rows", [14.0, 32.0]),

@@ -27,11 +27,11 @@ pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
     (Flow::Poiseuille, 40, [5.064e-4, 1.196e-3]),
 ];
 
-/// The gate for a code with another kernel or step: `most` holds for our own steps alone, whose error cancels a
-/// part of that of the sums.
+/// The gate for a code with another kernel or step: `most` holds for our own steps alone, whose error cancels
+/// a part of that of the sums.
 fn of_others(gate: Gate, most: f64) -> Gate {
-    let because = "The exact solution has the error 0. Allowed is 2 %, by which sums over a lattice may change \
-                   the viscosity, and beside it the error of our own walls.";
+    let because = "The exact solution has the error 0. Allowed is 2 %, by which sums over a lattice may \
+                   change the viscosity, and beside it the error of our own walls.";
     gate.of_others(Bound::Below(0.02 + most), because)
 }
 

@@ -380,7 +380,8 @@ mod tests {
         );
     }
 
-    /// The metrics that a comparison of these samples (t, front, height, levels, potential energy) and pressures puts.
+    /// The metrics that a comparison of these samples (t, front, height, levels, potential energy) and
+    /// pressures puts.
     fn compared(
         dam: &Dam,
         samples: impl Iterator<Item = [f64; 8]>,

@@ -1,5 +1,7 @@
 //! One run of the collapse: scene, stepping, record.
 
+use base::absent::NOT_ASKED;
+
 use super::{
     measure::{Gauge, Samples},
     *,
@@ -124,7 +126,8 @@ mod tests {
         assert!(others(&plain).iter().all(|name| plain.metrics[name] == all.metrics[name]));
     }
 
-    /// Water that had left over the rim fell for 1.5 s, and the run was said to diverge at the speed of sound.
+    /// Water that had left over the rim fell for 1.5 s, and the run was said to diverge at the speed of
+    /// sound.
     #[test]
     fn water_that_falls_beside_the_tank_is_no_divergence() {
         let run = |end: f64| {

@@ -1,0 +1,119 @@
+//! What is said of a store that lacks records: the complete cases judged, and the missing runs listed.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use base::spec::RunKey;
+use harness::{
+    case::{self, Tier},
+    make::{self, Job, Made, Stored},
+    runs,
+    store::{Pending, Store},
+    study::Study,
+    suite::{self, Plans, Suite},
+};
+use report::counted;
+
+/// A run without a record, and why it has none.
+type Lacking = (Job, Pending);
+
+/// What is told of runs that are lacking: how many, and of which cases; empty if all are there.
+type Told = Option<[String; 2]>;
+
+/// The suite of the cases that are complete, and what is told of the others: to draw these too would take
+/// seconds each time.
+pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, Told) {
+    let mut missing = make::jobs(plans.clone());
+    missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
+    let lacking = lacking(missing, path, &made);
+    let told = tell(&plans, &lacking);
+    let lacks = |name: &str| lacking.values().any(|(job, _)| job.case.name() == name);
+    plans.retain(|(case, _)| !lacks(case.name()));
+    (suite::judge(plans, tier, made), told)
+}
+
+/// The suite of what a store has, a list of what it lacks, and what is told of that.
+pub fn partial(plans: Plans, tier: Tier, store: &Path, stored: Stored) -> (Suite, String, Told) {
+    let Stored { made, missing, .. } = stored;
+    let lacking = lacking(missing, store, &made);
+    let told = tell(&plans, &lacking);
+    (judge(plans, tier, made, &lacking), list(lacking.values().collect()), told)
+}
+
+fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
+    let why = |job: &Job| match runs::find(&made.unsound, &job.planned.spec.key()) {
+        Some(error) => Pending::Failed(error.to_string()),
+        None => Store::to_read(path).pending(&job.planned.spec),
+    };
+    let lack = |job: Job| (job.planned.spec.key(), (job.clone(), why(&job)));
+    missing.into_iter().map(lack).collect()
+}
+
+/// Runs without a record are not judged, and neither are the studies of a case that lacks one: of half its
+/// runs a study has a number too, which says nothing.
+fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, Lacking>) -> Suite {
+    let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
+    let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
+    without.for_each(|planned| planned.gates.clear());
+    let mut suite = suite::judge(plans, tier, made);
+    for results in &mut suite.cases {
+        let name = results.case.name();
+        let of_case: Vec<&Lacking> =
+            lacking.values().filter(|(job, _)| job.case.name() == name).collect();
+        if of_case.is_empty() {
+            continue;
+        }
+        let open: usize =
+            results.studies.iter_mut().map(|study| study.judged.drain(..).len()).sum();
+        let words = format!(
+            "This report is not complete. Of the runs of this case are without a record: {}. They are not \
+             judged. The {open} gates of its studies are open until every run has a record.",
+            counts(&of_case)
+        );
+        let id = format!("{}-lacking", name.replace('_', "-"));
+        results.studies.insert(0, Study::new(&id, "Runs without a record").prose(words));
+    }
+    suite
+}
+
+fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> Told {
+    let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
+    let names: Vec<&str> =
+        plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();
+    let (all, complete) = (plans.len(), plans.len() - names.len());
+    let runs = counted(lacking.len(), "run without a record", "runs without a record");
+    let each = counts(&lacking.values().collect::<Vec<_>>());
+    let words = format!("{complete} of {all} cases complete; {runs}: {each}");
+    (!names.is_empty()).then(|| [words, names.join(", ")])
+}
+
+/// What became of a run, in a word, and the reason for a failure.
+fn word(why: &Pending) -> (&'static str, &str) {
+    match why {
+        Pending::Missing => ("missing", ""),
+        Pending::Running => ("running", ""),
+        Pending::Stopped => ("stopped", ""),
+        Pending::Failed(reason) => ("failed", reason),
+    }
+}
+
+/// Runs by what became of them, as `3 missing, 1 running`.
+fn counts(lacking: &[&Lacking]) -> String {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    lacking.iter().for_each(|(_, why)| *counts.entry(word(why).0).or_default() += 1);
+    counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
+}
+
+/// A line a run, those that failed last, with the reasons, and then how many there are of each kind.
+fn list(mut lacking: Vec<&Lacking>) -> String {
+    lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
+    let line = |(job, why): &&Lacking| {
+        let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec).join(" "));
+        let (word, reason) = word(why);
+        let words = format!("{word} {} {} {} {set} {reason}", spec.key(), spec.case, spec.variant);
+        words.trim_end().to_string() + "\n"
+    };
+    let lines: String = lacking.iter().map(line).collect();
+    let all = counted(lacking.len(), "run without a record", "runs without a record");
+    if lacking.is_empty() { all + "\n" } else { format!("{lines}{all}: {}\n", counts(&lacking)) }
+}
