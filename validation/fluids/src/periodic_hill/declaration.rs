@@ -52,9 +52,9 @@ pub fn declaration(tier: Tier) -> Declaration {
 /// What drives the flow: the flux that is asked for.
 fn drive(settings: &serde_json::Value) -> Vec<Fact> {
     let setting = |name: &str| settings[name].as_f64().unwrap_or(f64::NAN);
-    let flux = "the flux of volume through every section, the integral of u over y from the hill to the lid, \
-                that the force keeps; where u is 0 it is 2.035 U_b H times the setting `flux`, U_b = 1 m/s \
-                the mean velocity over the crest and H = 1 m the height of the hill";
+    let flux = "the flux of volume through every section, the integral of u over y from the hill to the \
+                lid, that the force keeps: 2.035 U_b H times the setting `flux`, U_b = 1 m/s the mean \
+                velocity over the crest and H = 1 m the height of the hill";
     let force = "at the start, of the acceleration f(t) along x, uniform over the fluid: dv/dt = -(1/ρ) ∇p + \
                  ν ∇²v + (f, 0). Any f(t) that leads to this flux will do, for the steady flow has one force";
     let response = "T of our controller: f' = ((u* - u)/T - u')/(T/4), u the mean of the velocity along x \
