@@ -57,8 +57,8 @@ pub const READING: &str = "\
     needs damping as well. Motion is the time h/V, body force (h/F)^(1/2), contact the time in which \
     bodies approach each other by h. *Together* is the limit of all waves, beyond which a step is \
     refused; for particles that move at most 0.8 of it is advised. *Bound by* names the stiffest \
-    mechanism; super-time-stepping takes viscosity out of the contest. The slowest mechanism is the slowest of the problem (waves, viscosity, motion, force, \
-    contact) that acts within the run, else the run itself. *Slowest/stiffest* is the ratio of their \
+    mechanism; super-time-stepping takes viscosity out of the contest. The slowest mechanism is the \
+    slowest of the problem (waves, viscosity, motion, force, contact) that acts within the run, else the run itself. *Slowest/stiffest* is the ratio of their \
     limits, *steps/slowest* the number of steps over that which the slowest alone would need. *Sweeps* \
     are the pair sweeps of the run, which count the stages of super-time-stepping.";
 

@@ -187,7 +187,8 @@ const FREE_POTENTIAL: f64 = 0.003;
 /// The gate on the potential energy, by which heights and gravity are seen.
 fn potential(run: &str, most: f64) -> Gate {
     let because = "By the slope of the curve by volume of fluid, which is known to 0.003 M g H/2, in the \
-                   tank to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The bound is half of this, \
+                   tank to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The \
+                   bound is half of this, \
                    so that either sign of it is outside.";
     against(run, POTENTIAL_AWAY, Bound::Below(most), because)
 }
