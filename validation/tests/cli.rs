@@ -85,7 +85,12 @@ fn help_version_and_lists_are_results() {
         assert!(!output.stdout.is_empty() && output.stderr.is_empty(), "{arguments:?}");
     }
     let text = stdout(&touchstone(&["list", "couette"]));
-    for word in ["`modern` runs by default", "h_over_dx", "0.8 to 5.0 [-]", "Reynolds number"] {
+    for word in [
+        "`modern` is recommended and runs by default",
+        "h_over_dx",
+        "0.8 to 5.0 [-]",
+        "Reynolds number",
+    ] {
         assert!(text.contains(word), "{word}: {text}");
     }
     let json = |arguments: &[&str]| -> Value {

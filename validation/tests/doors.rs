@@ -175,11 +175,10 @@ fn a_pipe_in_place_of_what_a_run_or_a_report_left_is_not_waited_for() {
         ("explain couette --reports .", 2, not_regular),
         ("explain --status fail --reports .", 2, not_regular),
         ("run --resume .", 2, not_regular),
-        // The checkpoint is given up, and the record takes the place of the pipe.
         (
             "run couette --variant seed --rows 8 --set end=0.01 --out . --overwrite",
-            0,
-            "profile.csv",
+            2,
+            "there is no regular file of this name",
         ),
     ] {
         let mut command = Command::new(TOUCHSTONE);

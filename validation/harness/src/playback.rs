@@ -73,7 +73,7 @@ pub struct Playback<'a> {
 pub struct Fill {
     /// Density \[kg/m³\].
     pub density: f64,
-    /// By which share of it the densities of particles differ at most.
+    /// The share of it by which a density is higher at most; each particle has some of it.
     pub spread: f64,
     /// What a method integrates beside position, velocity and density, such as stress.
     pub extra: f64,
@@ -82,7 +82,7 @@ pub struct Fill {
 impl Fill {
     /// The density of a particle that has none.
     fn density(&self, id: u32) -> f64 {
-        self.density * (1.0 + self.spread * f64::from(id % 7) / 7.0)
+        self.density * (1.0 + self.spread * f64::from(1 + id % 7) / 7.0)
     }
 }
 

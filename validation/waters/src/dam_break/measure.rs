@@ -49,11 +49,11 @@ fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, height:
     low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// The floor under water at rest \[m\]: half a spacing below its lowest particle, whose area states the
-/// spacing. Variants place their lowest row half a spacing or a whole one above the surface of the wall.
-fn floor(water: &[Particle]) -> f64 {
+/// The floor under water at rest \[m\]: half a spacing below its lowest particle, whose area at rest states
+/// the spacing. Variants place their lowest row half a spacing or a whole one above the surface of the wall.
+fn floor(water: &[Particle], density: f64) -> f64 {
     let lowest = water.iter().min_by(|a, b| a.position.y.total_cmp(&b.position.y));
-    lowest.map_or(f64::NAN, |p| p.position.y - 0.5 * (p.mass / p.density).sqrt())
+    lowest.map_or(f64::NAN, |p| p.position.y - 0.5 * (p.mass / density).sqrt())
 }
 
 /// Mean height of the mass of all particles \[m\].
@@ -107,7 +107,7 @@ impl<'a> Samples<'a> {
         let centre = centre(&water);
         let half = 0.5 * s.height;
         if self.rows.is_empty() {
-            self.start = [foremost, floor(&water)];
+            self.start = [foremost, floor(&water, self.dam.medium.eos.density)];
             self.released = centre / half - 1.0;
         }
         let [first, floor] = self.start;
