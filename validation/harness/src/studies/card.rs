@@ -121,8 +121,11 @@ fn breaks(card: &declare::Card, runs: &Runs) -> Option<String> {
             None => {
                 let low = least(&mut answers.iter().map(|(value, _)| *value))?;
                 let high = answers.iter().map(|(value, _)| *value).fold(low, f64::max);
-                let [low, high] = [low, high].map(exact);
-                format!("in no run at {before}{low} to {high}{after}")
+                let values = match low == high {
+                    true => exact(low),
+                    false => format!("{} to {}", exact(low), exact(high)),
+                };
+                format!("in no run at {before}{values}{after}")
             }
         };
         Some(format!("`{}` {text}", spec.variant))
@@ -191,6 +194,8 @@ mod tests {
         let both = all(vec![of("bad", 5, 2.0), diverged]);
         assert_eq!(breaks(&made_up(), &both), Some(at(4)));
         assert_eq!(breaks(&made_up(), &all(Vec::new())), Some(whole.into()));
+        let one = Runs::new(vec![of("good", 2, 0.5)]);
+        assert_eq!(breaks(&made_up(), &one).as_deref(), Some("`good` in no run at n = 2"));
     }
 
     /// An error has the unit and the words of the run that has it.

@@ -90,7 +90,7 @@ impl Said {
         (Self::NotDistinguishable, "not-distinguishable", "not distinguishable from the reference"),
         (Self::ModelError, "model-error", "with an error beyond the uncertainty"),
         (Self::TooUncertain, "too-uncertain", "too uncertain"),
-        (Self::LadderDoesNotTell, "ladder-does-not-tell", "of which the ladder does not tell"),
+        (Self::LadderDoesNotTell, "ladder-does-not-tell", "where the ladder does not tell"),
         (Self::Unknown, "unknown", "without a run"),
     ];
 
@@ -512,7 +512,7 @@ mod tests {
         ];
         let expected = "\
             1 converging to the exact solution, 1 stopping at an error, 1 not distinguishable from the \
-            reference, 1 with an error beyond the uncertainty, 1 too uncertain, 1 of which the ladder \
+            reference, 1 with an error beyond the uncertainty, 1 too uncertain, 1 where the ladder \
             does not tell, 2 without a run";
         assert_eq!(line(&compared, &runs).as_deref(), Some(expected));
     }
