@@ -7,8 +7,9 @@ for name in '[our paper](javascript:alert%281%29)' '[x](https://a.example/)' '[x
     test $code = 0 || test $code = 2 || { cat out; exit 1; }
 done
 if test -d st; then
-    touchstone report couette --store st --partial --out page >out 2>&1
-    test $? != 4 || { cat out; exit 1; }
+    touchstone report --store st --partial --out page >out 2>&1
+    code=$?
+    { test $code -lt 2 && test -f page/index.html; } || { cat out; exit 1; }
     ! grep -E 'href="(javascript|https://a\.example|#nowhere)' page/index.html || exit 1
     ! grep -F '<b>z</b>' page/index.html || exit 1
 fi
