@@ -162,11 +162,14 @@ impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Completed => f.write_str("completed"),
-            Self::Diverged { step, time, particle, field, value_text } => write!(
-                f,
-                "diverged after step {step}, at t = {time:.4e} s: {field} of particle {particle} \
-                 is {value_text}"
-            ),
+            Self::Diverged { step, time, particle, field, value_text } => {
+                // The steps of another code are not known.
+                let after = if *step > 0 { format!(" after step {step},") } else { String::new() };
+                write!(
+                    f,
+                    "diverged{after} at t = {time:.4e} s: {field} of particle {particle} is {value_text}"
+                )
+            }
             Self::Refused { reason } => write!(f, "refused: {reason}"),
             Self::Interrupted { step, time } => {
                 write!(f, "interrupted after step {step}, at t = {time:.4e} s")

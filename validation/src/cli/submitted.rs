@@ -41,7 +41,8 @@ fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit
     let nearest = if verdicts.is_empty() { nearest(case, &declared, run) } else { None };
     let judged = worst(verdicts.iter()).map(|judged| &judged.gate);
     let other = judged.or(nearest.as_ref().map(|(_, gate)| gate));
-    if let (false, Some(gate)) = (record.metrics.contains_key(&metric), other)
+    let has_error = record.metrics.contains_key(&metric) || record.status != Status::Completed;
+    if let (false, Some(gate)) = (has_error, other)
         && let Some(found) = record.metrics.get(&gate.metric)
     {
         (error, metric) = (in_words(&gate.metric, found), gate.metric.clone());

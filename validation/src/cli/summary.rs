@@ -4,7 +4,7 @@
 
 use base::{
     gate::Verdict,
-    record::{self, Record},
+    record::{self, Record, Status},
     spec::RunSpec,
 };
 use harness::{
@@ -137,9 +137,11 @@ pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
     };
     let measured = record.metrics.get(&metric.name);
     let words = match (&declared.card, measured) {
+        // Its name speaks of times that the run did not reach.
+        _ if record.status != Status::Completed => format!("none: {}", record.status),
         (_, None) => {
             let reason = record.absent.get(&metric.name).map(ToString::to_string);
-            let none = "no reference has these settings, or the run ended early";
+            let none = "no reference has these settings, or the run ends before it is compared";
             let reason = reason.unwrap_or_else(|| none.into());
             format!("{} was not measured: {reason}", metric.name)
         }
