@@ -946,8 +946,7 @@ fn a_given_step_is_taken_in_every_case() {
         let number = |name: &str| record.numerics[name].as_f64().unwrap();
         Some((case.name(), number("dt [s]") / number("dt [s] planned")))
     };
-    let found: Vec<(&str, f64)> =
-        cases::CASES.par_iter().filter_map(|case| of_case(case)).collect();
+    let found: Vec<(&str, f64)> = cases::CASES.par_iter().filter_map(of_case).collect();
     assert!(found.len() > 8, "{found:?}");
     let cut: Vec<_> = found.iter().filter(|(_, share)| *share < 0.9).collect();
     assert!(cut.is_empty(), "{cut:?}");

@@ -273,11 +273,12 @@ impl Gate {
     pub fn for_submission(self, states: bool) -> Option<Self> {
         let Gate { id, metric, bound, evidence, because, of_others, .. } = self;
         match of_others {
+            _ if evidence == Evidence::Regression => None,
             _ if states => Some(Gate::new(id, metric, bound, evidence, because)),
             Some((bound, because)) => {
                 Some(Gate::new(id, metric, bound, Evidence::Analytic, because))
             }
-            None if matches!(evidence, Evidence::Theory | Evidence::Regression) => None,
+            None if evidence == Evidence::Theory => None,
             None => Some(Gate::new(id, metric, bound, evidence, because)),
         }
     }

@@ -258,6 +258,22 @@ fn reach(problem: &Problem) -> f64 {
     FAR * places.fold(problem.method.support * medium.h, |most, x| most.max(x.abs()))
 }
 
+/// The densities and speeds that no run of a problem has which did not diverge: a fluid is compressed by less
+/// than 30 %, a solid by less than a half; twice the sum of the speeds of sound, of the start and of a fall
+/// until the end is never reached.
+fn limits(problem: &Problem) -> solver::Limits {
+    let Outline { particles, medium, times, .. } = &problem.outline;
+    let share = if problem.is_solid() { 0.5 } else { 0.7 };
+    let start = particles.column("density").iter().copied();
+    let [low, high] = [f64::min, f64::max].map(|end| start.clone().fold(medium.eos.density, end));
+    let speeds = particles.column("u").iter().zip(particles.column("v"));
+    let fastest = speeds.map(|(u, v)| (u * u + v * v).sqrt()).fold(0.0, f64::max);
+    let fall = medium.acceleration.norm() * times.last().copied().unwrap_or_default();
+    let speed = 2.0 * (medium.eos.sound_speed + fastest + fall);
+    let most = if problem.is_solid() { 2.0 * high } else { 1.3 * high };
+    solver::Limits { density: [share * low, most], speed }
+}
+
 /// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.
 fn crowded(frame: &Frame, support: f64, problem: &Problem) -> Option<String> {
     let (domain, reach) = (&problem.outline.domain, reach(problem));
@@ -512,8 +528,8 @@ impl Entry {
             Division::Closed => Vec::new(),
         };
         own.sort_by_key(|own| own.start.id);
-        let (domain, reach) = (problem.outline.domain, reach(problem));
-        Playback { frames: &self.results.frames, own, domain, reach, fill }
+        let (domain, reach, limits) = (problem.outline.domain, reach(problem), limits(problem));
+        Playback { frames: &self.results.frames, own, domain, reach, limits, fill }
     }
 
     /// What a submission does not state: each by its name, and another number in its place.

@@ -63,6 +63,8 @@ pub struct Playback<'a> {
     pub domain: Domain,
     /// A coordinate beyond this is of a particle that the code has lost \[m\].
     pub reach: f64,
+    /// Densities and speeds beyond these are of a run that diverged, whatever its case looks at.
+    pub limits: solver::Limits,
     /// What stands in place of numbers that were not handed in.
     pub fill: Fill,
 }
@@ -129,12 +131,15 @@ impl Playback<'_> {
     fn lost(&self, frame: &Frame) -> Option<Fault> {
         frame.particles.iter().find_map(|placed| {
             let fault = |field, value| Some(Fault { particle: placed.id, field, value });
-            let (far, density) = (placed.position.amax(), placed.density.unwrap_or(1.0));
-            let (is_near, has_density) = (far <= self.reach, density > 0.0);
-            match (is_near, has_density) {
-                (false, _) => fault("position", far),
-                (true, false) => fault("density", density),
-                (true, true) => None,
+            let (far, speed) = (placed.position.amax(), placed.velocity.norm());
+            let [least, most] = self.limits.density;
+            match placed.density {
+                _ if far > self.reach => fault("position", far),
+                Some(density) if !(least <= density && density <= most) => {
+                    fault("density", density)
+                }
+                _ if speed > self.limits.speed => fault("velocity", speed),
+                _ => None,
             }
         })
     }

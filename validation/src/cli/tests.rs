@@ -694,7 +694,8 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
 #[test]
 fn a_run_states_the_error_by_its_own_settings() {
     let tank = ["width=0.6", "height=0.3", "tank=1.61", "rim=2", "end=6"];
-    let runs: [(&str, &[&str], &[&str], &[&str]); 5] = [
+    type Of<'a> = (&'a str, &'a [&'a str], &'a [&'a str], &'a [&'a str]);
+    let runs: [Of; 5] = [
         ("periodic_hill", &["re=50"], &["Re 50"], &["Re 10"]),
         ("poiseuille", &["re=5", "rows=10"], &["Re 5,", "10 rows"], &["Re 0.5"]),
         ("rubber_rings", &["speed=0.03"], &["0.03 c0"], &["0.059"]),
