@@ -263,8 +263,8 @@ fn results_at_the_times_that_are_asked_for_are_judged_by_every_gate_that_is_list
     assert_eq!(number(&problem, "curve/least_times"), 400.0);
     let path = |time: &Value| {
         let t = time.as_f64().unwrap();
-        let [x, y] =
-            [(0.0143, 2.0), (0.0649, 1.0)].map(|(size, _)| size * ((6.86 * t).cos() - 1.0));
+        let [x, y] = [(0.0143, 2.0), (0.0649, 1.0)]
+            .map(|(size, _)| size * (base::functions::cos(6.86 * t) - 1.0));
         format!("{t},{x},{y}\n")
     };
     let rows: String = times.iter().map(path).collect();
