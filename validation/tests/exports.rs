@@ -365,6 +365,7 @@ fn files_for_lammps_have_the_numbers_of_the_problem() {
         ("taylor_couette --set layers=8", true),
         ("dam_break --set n=6 --set end=0.2", false),
         ("poiseuille --variant interface-wall --set rows=8", true),
+        ("taylor_green --variant plain --set n=16 --set re=1", true),
     ] {
         done(folder.path(), &format!("export {line} --format lammps --out out"));
         let file = |name: &str| read(&folder.path().join("out").join(name));
@@ -480,6 +481,7 @@ fn is_of_times(line: &str, script: &str, problem: &Value, mass: f64) {
         number(problem, "our_method/smoothing_length/value"),
         number(problem, "material/sound_speed/value"),
     );
+    let nu = at(problem, "material").get("kinematic_viscosity").map(|of| number(of, "value"));
     for row in script.lines() {
         let words: Vec<&str> = row.split_whitespace().collect();
         match words[..] {
@@ -489,6 +491,11 @@ fn is_of_times(line: &str, script: &str, problem: &Value, mass: f64) {
                 time += step * steps.parse::<f64>().unwrap();
                 times.push(time);
                 assert!(step * c0 < h, "{line}: a step of {step} s");
+                let of_viscosity = nu.map_or(f64::INFINITY, |nu| 0.125 * h * h / nu);
+                assert!(
+                    step < of_viscosity,
+                    "{line}: {step} s, against {of_viscosity} s of Morris"
+                );
             }
             _ => {}
         }

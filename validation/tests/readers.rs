@@ -184,26 +184,30 @@ fn results_of_one_run_have_the_same_metrics_in_every_format() {
     assert!(error.contains("there is no ITEM: TIME"), "{error}");
 }
 
-/// Another version is another method, and has a problem of its own.
+/// Another version is another method, and so is another truth value among its settings, wherever it stands:
+/// each has a problem of its own.
 #[test]
-fn another_version_draws_another_sealed_problem() {
+fn another_version_or_truth_value_draws_another_sealed_problem() {
     let folder = tempfile::tempdir().unwrap();
-    let mut drawn = Vec::new();
-    for version in ["1", "2", "3", "4"] {
+    let of = |version: &str, settings: &str| {
         let method = format!(
             "{{\"code\": \"c\", \"version\": \"{version}\", \"scheme\": \"s\", \"division\": \"closed\", \
-             \"settings\": {{}}, \"changed\": \"nothing\"}}"
+             \"settings\": {{{settings}}}, \"changed\": \"nothing\"}}"
         );
         fs::write(folder.path().join("method.json"), method).unwrap();
-        let line =
-            format!("challenge taylor_green --seed 3 --method method.json --out out{version}");
-        let made = touchstone(folder.path(), &line);
+        let line = "challenge taylor_green --seed 3 --method method.json --overwrite --out out";
+        let made = touchstone(folder.path(), line);
         assert!(made.status.success(), "{}", said(&made));
-        let problem =
-            fs::read_to_string(folder.path().join(format!("out{version}/problem.json"))).unwrap();
+        let problem = fs::read_to_string(folder.path().join("out/problem.json")).unwrap();
         let problem: serde_json::Value = serde_json::from_str(&problem).unwrap();
-        drawn.push(problem["spec"]["settings"].to_string());
+        problem["spec"]["settings"].to_string()
+    };
+    for mut drawn in [
+        ["1", "2", "3", "4"].map(|version| of(version, "")),
+        ["[true, true]", "[true, false]", "[false, true]", "[false, false]"]
+            .map(|settings| of("1", &format!("\"shifting\": {settings}"))),
+    ] {
+        drawn.sort();
+        assert!(drawn.windows(2).any(|two| two[0] != two[1]), "{drawn:?}");
     }
-    drawn.dedup();
-    assert!(drawn.len() > 1, "{drawn:?}");
 }

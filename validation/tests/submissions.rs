@@ -553,6 +553,12 @@ fn unknown_costs_have_no_keys_and_columns_that_are_not_read_are_told() {
     assert!(words.contains("columns that are not read: temperature"), "{words}");
     let record = submitted(folder.path(), "couette copy", "store");
     assert_eq!(record["cost"], serde_json::json!({"particles": 40}));
+    // Each of the threads takes the seconds of the time loop.
+    let known = r#""threads": 4, "seconds": 1.5, "steps": "unknown", "interactions": "unknown""#;
+    fs::write(copy.join("system.json"), format!("{{\"machine\": \"m\", {known}}}")).unwrap();
+    let cost = submitted(folder.path(), "couette copy", "known")["cost"].clone();
+    let of = |name: &str| cost[name].as_f64();
+    assert_eq!(["wall_s", "cpu_s", "threads"].map(of), [1.5, 6.0, 4.0].map(Some), "{cost}");
 }
 
 /// A problem whose document says of its settings something else than they give is not the one that is judged.
@@ -569,7 +575,6 @@ fn a_problem_that_contradicts_its_own_settings_is_refused_by_field() {
         fs::write(copy.join("problem.json"), document.to_string()).unwrap();
         said(&touchstone(folder.path(), "submit couette copy --check"))
     };
-    let bound = "/judged_by/0/bound";
     for (pointer, value, field) in [
         ("/material/kinematic_viscosity/value", 2e-6.into(), "material.kinematic_viscosity.value"),
         ("/particles/spacing/value", 1e-4.into(), "particles.spacing.value"),
@@ -588,10 +593,15 @@ fn a_problem_that_contradicts_its_own_settings_is_refused_by_field() {
         assert!(words.contains(&says), "{pointer}: expected {says} in {words}");
     }
     let gates: serde_json::Value = serde_json::from_str(&document).unwrap();
-    let (kind, was) = gates.pointer(bound).unwrap().as_object().unwrap().iter().next().unwrap();
-    let wider = if was.is_array() { serde_json::json!([0, 1]) } else { 1.into() };
-    let words = changed(&format!("{bound}/{kind}"), wider);
-    assert!(words.contains("problem.json, column judged_by couette.plain.20."), "{words}");
+    let gates = gates["judged_by"].as_array().unwrap();
+    assert!(gates.len() > 1, "{gates:?}");
+    for (k, gate) in gates.iter().enumerate() {
+        let (kind, was) = gate["bound"].as_object().unwrap().iter().next().unwrap();
+        let wider = if was.is_array() { serde_json::json!([0, 7]) } else { 7.into() };
+        let words = changed(&format!("/judged_by/{k}/bound/{kind}"), wider);
+        let says = format!("problem.json, column judged_by {}", gate["id"].as_str().unwrap());
+        assert!(words.contains(&says), "expected {says} in {words}");
+    }
     // The words of another version are no other problem; and these results are of other times.
     let words = changed("/about", "in other words".into());
     assert!(!words.contains("problem.json"), "{words}");
@@ -743,6 +753,14 @@ fn a_series_is_held_at_its_last_row() {
     assert_eq!(held, stated);
     rows.last_mut().unwrap().1 = 0.16;
     assert_ne!(of(&rows, "other"), stated, "what comes last counts");
+    // Its next row would have come long before the end.
+    rows.truncate(times.len() - 1);
+    let (last, front) = *rows.last().unwrap();
+    rows.push((last + 1e-3 * (end - last), front));
+    let rows: String = rows.iter().map(|(t, front)| format!("{t},{front}\n")).collect();
+    fs::write(own.join("curve.csv"), format!("t[s],front[m]\n{rows}")).unwrap();
+    let words = said(&touchstone(folder.path(), "submit dam_break own --check"));
+    assert!(words.contains(&format!("no particles at t = {end} s")), "{words}");
 }
 
 /// A method that was changed after the seed was known is refused, and so are settings that were not drawn.
@@ -951,8 +969,16 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
         of("relate elliptic_drop same other").status.code()
     };
     assert_eq!([1000, 1].map(of_steps), [Some(0), Some(1)]);
-    fs::write(&system, &stated).unwrap();
+    // Fewer steps were made until the first time than until the last: there it is an error.
+    let first: Vec<&str> = results.lines().nth(1).unwrap().split(',').collect();
+    let shift = |by: f64| (first[2].parse::<f64>().unwrap() + by).to_string();
+    set(&other, last, 2, &(x + 7e-11).to_string());
+    assert_eq!(of_steps(1000), Some(0), "at the end");
     set(&other, last, 2, row[2]);
+    set(&other, 2, 2, &shift(7e-11));
+    assert_eq!(of_steps(1000), Some(1), "at t = {} s of {} s", first[0], row[0]);
+    set(&other, 2, 2, first[2]);
+    fs::write(&system, &stated).unwrap();
     each_quantity_is_compared(&folder, last, &row);
     set(&other, last, 2, &(x + 1e-9).to_string());
     let related = of("relate elliptic_drop same other");

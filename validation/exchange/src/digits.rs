@@ -52,7 +52,28 @@ pub fn few(frame: &Frame, start: &dyn Fn(u32) -> Option<[f64; 5]>) -> Option<Str
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Vector2;
+
     use super::*;
+
+    /// Places of a lattice are round: they are no rounding of a file as long as nothing has moved.
+    #[test]
+    fn numbers_of_the_start_say_nothing_of_digits() {
+        let x = |id: u32| 0.25 * f64::from(id);
+        let start = |id: u32| Some([x(id), 0.0, 0.0, 0.0, 1000.0]);
+        let frame = |u: f64| {
+            let placed = |id: u32| Placed {
+                id,
+                position: Vector2::new(x(id), 0.0),
+                velocity: Vector2::new(f64::from(id) * u, 0.0),
+                density: Some(1000.0),
+            };
+            Frame { time: 1.0, particles: (0..9).map(placed).collect() }
+        };
+        assert_eq!(few(&frame(1.0 / 3.0), &start), None);
+        let of_halves = few(&frame(0.5), &start);
+        assert_eq!(of_halves.as_deref(), Some("all digits of u, which has at most 2"));
+    }
 
     #[test]
     fn digits_of_decimals_and_of_short_floats_are_counted() {

@@ -143,3 +143,18 @@ fn many_snapshots_are_read_in_no_time() {
     assert_eq!(read_text(&text, &[]).unwrap().len(), 100_000);
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
+
+/// Frame 10 comes after frame 9, whatever other numbers stand before theirs.
+#[test]
+fn files_are_in_the_order_of_the_last_number_of_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, time) in [("3d_run2_9", 1), ("3d_run2_10", 2), ("1d_run2_11", 3)] {
+        let head = format!("ITEM: TIME\n{time}\nITEM: NUMBER OF ATOMS\n1\n");
+        let text = format!("{head}ITEM: ATOMS id x y vx vy\n1 0 0 0 0\n");
+        std::fs::write(folder.path().join(format!("{name}.dump")), text).unwrap();
+    }
+    let results = read(folder.path(), &Renamed::new());
+    let results = results.unwrap_or_else(|flaws| panic!("{}", flaws[0]));
+    let times: Vec<f64> = results.frames.iter().map(|frame| frame.time).collect();
+    assert_eq!(times, [1.0, 2.0, 3.0]);
+}

@@ -81,6 +81,15 @@ fn an_archive_is_read_whole_or_not_at_all() {
     let place = changed.windows(4).position(|bytes| bytes == b"PK\x07\x08").unwrap();
     changed[place - 1] ^= 1; // the last byte of the first array
     assert!(said(&changed).contains("column t"), "{}", said(&changed));
+    // A sum that is not that of the array: the four bytes in its directory and after its data.
+    for method in [CompressionMethod::STORE, CompressionMethod::DEFLATE] {
+        let mut changed = archive("", &[], method);
+        for (mark, sum) in [(b"PK\x01\x02", 16), (b"PK\x07\x08", 4)] {
+            let place = changed.windows(4).position(|bytes| bytes == mark).unwrap();
+            changed[place + sum] ^= 1;
+        }
+        assert!(said(&changed).contains("column t"), "{method:?}: {}", said(&changed));
+    }
     let unknown = said(&archive("", &[], CompressionMethod::ZSTD));
     assert!(unknown.contains("expected none or deflate"), "{unknown}");
 }

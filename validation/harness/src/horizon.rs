@@ -205,6 +205,9 @@ mod tests {
         let mut shorter = members.clone();
         shorter[3].truncate(500);
         assert_eq!(refused(&shorter, 1.0), "members are not sampled at the same times");
+        let mut later = members.clone();
+        later[3][7].0 += 1e-3;
+        assert_eq!(refused(&later, 1.0), "members are not sampled at the same times");
         let mut damaged = members.clone();
         damaged[3][7].1 = f64::NAN;
         assert_eq!(refused(&damaged, 1.0), "a member has a value that is no number");

@@ -129,3 +129,48 @@ impl<'a, T> Columns<'a, T> {
             .text("label", label)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use approx::assert_relative_eq;
+    use base::gate::{Bound, Evidence};
+    use report::{Block, Layer};
+
+    use super::*;
+
+    fn levels(value: fn(f64) -> f64) -> Vec<Level> {
+        [0.4, 0.2, 0.1].map(|spacing| Level { spacing, value: value(spacing) }).into()
+    }
+
+    /// A grey line begins at the error of the coarsest level, and falls with its order to the finest spacing.
+    #[test]
+    fn a_grey_line_falls_from_the_coarsest_level_with_its_order() {
+        let levels = levels(|h| 2.0 * h);
+        let plot = plot("", ["dx", "error"], [("a", levels.as_slice())].into_iter(), &[2.0]);
+        let Some(Layer::Series(line)) = plot.layers.last() else { panic!("no line") };
+        let [(fine, end), (coarse, start)] = line.points[..] else { panic!("{:?}", line.points) };
+        assert_eq!((fine, coarse, start), (0.1, 0.4, 0.8));
+        assert_relative_eq!(end, 0.8 / 16.0, max_relative = 1e-14);
+    }
+
+    /// The label of each line compares its order with that of its own theory.
+    #[test]
+    fn the_order_of_a_line_is_held_against_that_of_its_theory() {
+        let gate = |name| {
+            let bound = Bound::Within(1.9, 2.1);
+            Gate::new(format!("case.{name}"), "order", bound, Evidence::Theory, "made up")
+        };
+        let line = |(name, formal)| Line {
+            name,
+            levels: levels(|h| 3.0 * h * h),
+            formal,
+            gate: gate(name),
+        };
+        let lines = [("second", 2.0), ("first", 1.0)].map(line).into();
+        let all = [Refinement { title: "dx", axes: ["dx", "error"], slopes: &[], lines }];
+        let study = study(Study::new("case-orders", "Orders"), ["", ""], &all, |_| true);
+        let [_, Block::Table(table)] = &study.blocks[..] else { panic!("a figure and a table") };
+        let labels: Vec<&str> = table.rows.iter().map(|row| &*row[row.len() - 1].text).collect();
+        assert_eq!(labels, ["asymptotic", "orders agree"]);
+    }
+}
