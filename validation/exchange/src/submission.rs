@@ -26,7 +26,7 @@ use serde::{
     de::{DeserializeOwned, Error},
 };
 use serde_json::{Map, Value};
-use solver::Role;
+use solver::{Domain, Role};
 
 use crate::{
     digits::{self, ROUND_OFF},
@@ -258,9 +258,8 @@ fn reach(problem: &Problem) -> f64 {
     FAR * places.fold(problem.method.support * medium.h, |most, x| most.max(x.abs()))
 }
 
-/// The densities and speeds that no run of a problem has which did not diverge: a fluid is compressed by less
-/// than 30 %, a solid by less than a half; twice the sum of the speeds of sound, of the start and of a fall
-/// until the end is never reached.
+/// Bounds beyond which a run of the problem has diverged: 30 % of the density of a fluid, a half of that of a
+/// solid, and twice the sum of the sound speed, the largest speed at the start and that of a fall to the end.
 fn limits(problem: &Problem) -> solver::Limits {
     let Outline { particles, medium, times, .. } = &problem.outline;
     let share = if problem.is_solid() { 0.5 } else { 0.7 };
@@ -275,8 +274,7 @@ fn limits(problem: &Problem) -> solver::Limits {
 }
 
 /// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.
-fn crowded(frame: &Frame, support: f64, problem: &Problem) -> Option<String> {
-    let (domain, reach) = (&problem.outline.domain, reach(problem));
+fn crowded(frame: &Frame, support: f64, domain: &Domain, reach: f64) -> Option<String> {
     let mut cells: BTreeMap<[i64; 2], usize> = BTreeMap::new();
     for placed in frame.particles.iter().filter(|placed| placed.position.amax() <= reach) {
         let cell = domain.wrap(placed.position) / support;
@@ -412,6 +410,7 @@ impl Entry {
             Division::Open => expected.len(),
         };
         let support = problem.method.support * problem.outline.medium.h;
+        let (domain, reach) = (&problem.outline.domain, reach(problem));
         for (frame, (file, line)) in frames.iter().zip(places) {
             if flaws.len() >= MOST_FLAWS {
                 flaws.push(Flaw::of(
@@ -421,7 +420,7 @@ impl Entry {
                 break;
             }
             let flaw = |what: String| Flaw::of(file, what).in_column("id");
-            flaws.extend(crowded(frame, support, problem).map(|what| flaw(what).at(*line)));
+            flaws.extend(crowded(frame, support, domain, reach).map(|what| flaw(what).at(*line)));
             let wrong = misnumbered(frame, &expected, all).into_iter();
             flaws.extend(wrong.map(|(row, what)| flaw(what).at(line + row as u64)));
         }
