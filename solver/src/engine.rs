@@ -46,7 +46,11 @@ pub(crate) struct Core<'a, X> {
 }
 
 impl<X: Numbers> Core<'_, X> {
-    fn begin(&mut self, state: &mut [Evolved<X>]) -> Result<(), Fault> {
+    fn begin(
+        &mut self,
+        state: &mut [Evolved<X>],
+        along: &mut dyn FnMut(usize, usize),
+    ) -> Result<(), Fault> {
         if self.data.slips {
             for wall in self.data.neighbours.mirrors() {
                 let fluid = &mut state[..self.data.counts[0]];
@@ -55,7 +59,7 @@ impl<X: Numbers> Core<'_, X> {
         }
         let mut extent = self.fill(state)?;
         if self.data.progress.built_inside_a_step || self.data.is_stale_soon(extent) {
-            self.data.sort(state);
+            self.data.sort(state, along);
             self.build_lists(&mut places(state));
             self.data.progress.built_inside_a_step = false;
             extent = self.fill(state)?;
@@ -84,7 +88,7 @@ impl<X: Numbers> Core<'_, X> {
         data.neighbours.place(positions);
         data.neighbours.build(data.counts, data.extrapolates, data.parallel);
         data.progress.work.list_builds += 1;
-        data.still = None;
+        data.buffers.still = None;
         let columns = data.fixed.len() + data.neighbours.images.len();
         data.column_bytes = self.equations.make_room(columns + 1);
     }
@@ -109,18 +113,19 @@ impl<X: Numbers> Core<'_, X> {
         let data = &mut *self.data;
         data.enter(Phase::Refresh);
         let [fluid, walls] = data.counts;
-        let filled = if data.still.is_some() { fluid } else { state.len() };
+        let filled = if data.buffers.still.is_some() { fluid } else { state.len() };
         let count = filled.div_ceil(BLOCK);
-        let mut extents = take(&mut data.extents);
+        let mut extents = take(&mut data.buffers.extents);
         extents.resize(count + 1, Extent::NIL);
-        extents[count] = data.still.unwrap_or(Extent::NIL);
+        extents[count] = data.buffers.still.unwrap_or(Extent::NIL);
         self.equations.derive(data, &state[..filled], &mut extents);
         // Columns of interface particles, if there are any, are filled by nobody else.
-        if data.extrapolates && fluid + walls == state.len() && data.still.is_none() {
-            data.still = Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
+        if data.extrapolates && fluid + walls == state.len() && data.buffers.still.is_none() {
+            data.buffers.still =
+                Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
         }
         let checked = data.check(state, &extents);
-        data.extents = extents;
+        data.buffers.extents = extents;
         checked
     }
 
@@ -138,7 +143,7 @@ impl<X: Numbers> Core<'_, X> {
     fn extrapolate(&mut self, state: &[Evolved<X>], motion: f64) {
         let Self { data, equations } = self;
         let own = &state[data.neighbours.wall_lists.of.clone()];
-        let mut implied = take(&mut data.extrapolated);
+        let mut implied = take(&mut data.buffers.extrapolated);
         implied.clear();
         implied.extend_from_slice(own);
         // Sums are made at the foot of a wall particle, if it has one; its column is derived again below.
@@ -157,7 +162,7 @@ impl<X: Numbers> Core<'_, X> {
             wall.position = own.position;
         }
         equations.derive_walls(data, &implied);
-        data.extrapolated = implied;
+        data.buffers.extrapolated = implied;
         equations.fill_images(&data.neighbours, data.counts[0], motion);
     }
 }
@@ -311,7 +316,18 @@ impl<P: Physics> Engine<P> {
     /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
     /// that is derived from the state.
     pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
-        self.core().begin(state)
+        self.core().begin(state, &mut |_, _| ())
+    }
+
+    /// Starts a step likewise, with something `kept` of each of the first particles, or of none, which stays
+    /// in their order.
+    pub fn begin_with<T>(&mut self, state: &mut State<P>, kept: &mut [T]) -> Result<(), Fault> {
+        let mut along = |i, j| {
+            if !kept.is_empty() {
+                kept.swap(i, j);
+            }
+        };
+        self.core().begin(state, &mut along)
     }
 
     /// Refreshes everything that is derived from a state inside a step.

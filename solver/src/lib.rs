@@ -46,7 +46,8 @@ pub use domain::Domain;
 pub use engine::Engine;
 pub use eos::{EquationOfState, Linear, Tait};
 pub use integrator::{
-    Euler, ForwardKick, Integrator, Leapfrog, PredictorCorrector, Scheme, SingleSweep, SuperSteps,
+    Euler, ForwardKick, Integrator, Leapfrog, Memory, PredictorCorrector, Scheme, SingleSweep,
+    SuperSteps,
 };
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use lanes as lane;

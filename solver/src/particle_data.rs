@@ -114,8 +114,8 @@ pub struct Past<X> {
 pub struct Checkpoint<X = ()> {
     /// Time, work and the age of the neighbour lists.
     pub progress: Progress,
-    /// How far the velocities are behind the rest \[s\]; 0 after [`crate::Stepper::advance`] reached
-    /// a time.
+    /// How far the velocities are behind the rest \[s\]; 0 before the first step, and of integrators whose
+    /// quantities all have the same time.
     pub lag: f64,
     /// Particles as they are stored, with their numbers in the scene.
     pub particles: Vec<(u32, Particle<X>)>,
@@ -126,6 +126,15 @@ pub struct Checkpoint<X = ()> {
 }
 
 impl<X: Numbers> Checkpoint<X> {
+    /// Checks that it is one of an integrator whose velocities lag, or do not, and which keeps earlier steps,
+    /// or does not.
+    pub(crate) fn check_memory(&self, lags: bool, keeps: bool) -> Result<(), &'static str> {
+        let (lag, past) = (self.lag != 0.0, !self.past.is_empty());
+        // Before the first step there is neither.
+        let is_of_it = if lags && keeps { lag == past } else { lag <= lags && past <= keeps };
+        if is_of_it { Ok(()) } else { Err("memory of another integrator") }
+    }
+
     /// Checks that it is stored in the way in which a simulation stores it; else says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let Self { progress, lag, particles, built_at, past } = self;
@@ -174,6 +183,22 @@ impl Extent {
     }
 }
 
+/// What preparing pair sweeps uses again.
+pub(crate) struct SweepBuffers<X> {
+    /// Of each block of particles whose columns were filled, and of the particles whose columns were not.
+    pub extents: Vec<Extent>,
+    /// Of wall particles that extrapolate and do not move: their columns are filled once after lists are built.
+    pub still: Option<Extent>,
+    /// Wall particles with the velocities and densities that they extrapolate; empty where they do not.
+    pub extrapolated: Vec<Evolved<X>>,
+}
+
+impl<X> Default for SweepBuffers<X> {
+    fn default() -> Self {
+        Self { extents: Vec::new(), still: None, extrapolated: Vec::new() }
+    }
+}
+
 /// The particles of a simulation, their neighbour lists, the time, and the work done. A
 /// [`crate::Simulation`] and a [`crate::Stepper`] dereference to it.
 #[derive(Default)]
@@ -196,24 +221,10 @@ pub struct ParticleData<X = ()> {
     pub(crate) parallel: bool,
     pub(crate) progress: Progress,
     pub(crate) order: Vec<u32>,
-    /// The time by which the velocities of a staggered integrator lag behind the other quantities \[s\].
-    pub(crate) lag: f64,
-    /// Velocities of the fluid as they were before they were synchronised, until the next step \[m/s\].
-    pub(crate) held: Vec<Vector2<f64>>,
-    /// In the order of `state`; empty for integrators that keep nothing.
-    pub(crate) past: Vec<Past<X>>,
-    /// States inside a step, of integrators that have some.
-    pub(crate) stages: [Vec<Evolved<X>>; 3],
-    /// What was found in each block while filling columns, and of what was not filled.
-    pub(crate) extents: Vec<Extent>,
-    /// What was found of particles that need not be filled again until lists are built: those of walls that
-    /// extrapolate, which do not move.
-    pub(crate) still: Option<Extent>,
-    /// What wall particles extrapolate: empty where they do not.
-    pub(crate) extrapolated: Vec<Evolved<X>>,
+    pub(crate) buffers: SweepBuffers<X>,
     /// Memory of the columns that a pair sweep reads \[bytes\].
     pub column_bytes: usize,
-    /// Who is told of phases; `None` is nobody.
+    /// Called at the start of each phase.
     pub watch: Option<PhaseWatch>,
 }
 
@@ -249,23 +260,6 @@ impl<X: Numbers> ParticleData<X> {
     /// Number of fluid particles.
     pub fn fluid_count(&self) -> usize {
         self.counts[0]
-    }
-
-    /// Whether velocities lag behind the other quantities.
-    pub(crate) fn is_staggered(&self) -> bool {
-        self.lag != 0.0 && self.held.is_empty()
-    }
-
-    /// Keeps the velocities that lag, which a staggered integrator then synchronises.
-    pub(crate) fn hold(&mut self, state: &[Evolved<X>]) {
-        self.held.extend(state[..self.counts[0]].iter().map(|evolved| evolved.velocity));
-    }
-
-    /// Gives a state back the velocities that were held, if any were.
-    pub(crate) fn stagger(&mut self, state: &mut [Evolved<X>]) {
-        for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
-            evolved.velocity = velocity;
-        }
     }
 
     /// Mass \[kg/m\] and state of the fluid particles as they are stored, without order; for observers
@@ -325,14 +319,11 @@ impl<X: Numbers> ParticleData<X> {
         images.iter().map(|image| (image.source as usize, &maps[image.map as usize]))
     }
 
-    /// Takes over all of a checkpoint but its progress, for which neighbour lists are to be built first; else
+    /// Takes over the particles of a checkpoint, for which neighbour lists are to be built first; else
     /// says what is wrong, and has changed nothing.
     pub(crate) fn replace(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
         from.check()?;
         self.put(&from.particles);
-        self.lag = from.lag;
-        self.held.clear();
-        self.past.clone_from(&from.past);
         Ok(())
     }
 
@@ -344,6 +335,7 @@ impl<X: Numbers> ParticleData<X> {
         if from.built_at != self.neighbours.built_at || !ids.eq(self.fixed.iter().map(|f| f.id)) {
             return Err("particles of another reference");
         }
+        from.check_memory(false, false)?;
         self.put(&from.particles);
         self.progress = from.progress;
         Ok(())
@@ -355,18 +347,15 @@ impl<X: Numbers> ParticleData<X> {
         self.check(&self.state, &[extent]).map(|_| ())
     }
 
-    /// Everything that is needed to continue from here with bitwise equal results.
-    pub fn checkpoint(&self) -> Checkpoint<X> {
-        let mut particles: Vec<_> = self.stored().collect();
-        for ((_, particle), velocity) in particles.iter_mut().zip(&self.held) {
-            particle.velocity = *velocity;
-        }
+    /// Everything on which later steps of an integrator without memory depend.
+    pub fn without_memory(&self) -> Checkpoint<X> {
+        let (progress, built_at) = (self.progress, self.neighbours.built_at.to_vec());
         Checkpoint {
-            progress: self.progress,
-            lag: self.lag,
-            particles,
-            built_at: self.neighbours.built_at.to_vec(),
-            past: self.past.clone(),
+            progress,
+            lag: 0.0,
+            particles: self.stored().collect(),
+            built_at,
+            past: vec![],
         }
     }
 
@@ -375,16 +364,14 @@ impl<X: Numbers> ParticleData<X> {
         self.state.capacity() * size_of::<Evolved<X>>()
             + self.fixed.capacity() * size_of::<Fixed>()
             + self.order.capacity() * size_of::<u32>()
-            + self.held.capacity() * size_of::<Vector2<f64>>()
-            + self.past.capacity() * size_of::<Past<X>>()
-            + self.stages.iter().map(Vec::capacity).sum::<usize>() * size_of::<Evolved<X>>()
-            + self.extents.capacity() * size_of::<Extent>()
-            + self.extrapolated.capacity() * size_of::<Evolved<X>>()
+            + self.buffers.extents.capacity() * size_of::<Extent>()
+            + self.buffers.extrapolated.capacity() * size_of::<Evolved<X>>()
             + self.neighbours.bytes()
     }
 
-    /// Puts fluid particles in order along strips, and all inside the period.
-    pub(crate) fn sort(&mut self, state: &mut [Evolved<X>]) {
+    /// Puts fluid particles in order along strips, and all inside the period. `along` swaps whatever else is
+    /// in the order of the particles.
+    pub(crate) fn sort(&mut self, state: &mut [Evolved<X>], along: &mut dyn FnMut(usize, usize)) {
         self.enter(Phase::Sorting);
         for evolved in &mut *state {
             evolved.position = self.neighbours.domain.wrap(evolved.position);
@@ -392,13 +379,11 @@ impl<X: Numbers> ParticleData<X> {
         let fluid = self.counts[0];
         self.neighbours.place(&mut state[..fluid].iter().map(|e| e.position));
         self.neighbours.order(&mut self.order);
-        let Self { fixed, past, order, .. } = self;
+        let Self { fixed, order, .. } = self;
         apply_order(order, &mut |i, j| {
             state.swap(i, j);
             fixed.swap(i, j);
-            if !past.is_empty() {
-                past.swap(i, j);
-            }
+            along(i, j);
         });
     }
 

@@ -98,7 +98,7 @@ impl<S: Scheme> Scene<S> {
         let (h, mirrors) = (self.setting.h, self.walls.mirrors());
         let data = self.setting.ready(S::Kernel::SUPPORT, mirrors, S::Walls::FEET)?;
         let engine = Engine::new(h, (self.forces, self.drift), &self.walls, data);
-        Ok(Simulation { engine })
+        Ok(Simulation { engine, memory: Default::default() })
     }
 }
 
@@ -152,7 +152,7 @@ impl<X: Numbers> Setting<X> {
         check_feet(reads, &data.neighbours.feet, data.counts[1])?;
         [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];
         let mut state = std::mem::take(&mut data.state);
-        data.sort(&mut state);
+        data.sort(&mut state, &mut |_, _| ());
         data.state = state;
         Ok(data)
     }

@@ -4,7 +4,7 @@ use std::{mem::take, ops::Deref};
 
 use crate::{
     engine::Engine,
-    integrator::{Integrator, PhysicsOf, Scheme, Stepped},
+    integrator::{Integrator, Memory, PhysicsOf, Scheme, Stepped},
     numbers::Numbers,
     particle_data::{Checkpoint, Fault, ParticleData},
     particles::{Column, Rate},
@@ -87,7 +87,9 @@ pub trait Stepper<X: Numbers>: Deref<Target = ParticleData<X>> {
     fn step(&mut self, dt: f64) -> Stepped;
     /// Brings every quantity to the same time, and refreshes the derived data, for [`Stepper::advance`].
     fn synchronise(&mut self) -> Stepped;
-    /// Goes back or on to a [`ParticleData::checkpoint`] of a simulation of the same scene: its particles
+    /// Everything that is needed to continue from here with bitwise equal results.
+    fn checkpoint(&self) -> Checkpoint<X>;
+    /// Goes back or on to a [`Stepper::checkpoint`] of a simulation of the same scene: its particles
     /// replace the present ones, and what follows has the bits of that simulation.
     ///
     /// # Errors
@@ -178,16 +180,16 @@ fn diverged<X: Numbers>(data: &ParticleData<X>, fault: Fault) -> Outcome {
 
 impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn step(&mut self, dt: f64) -> Stepped {
-        let mut state = take(&mut self.engine.data.state);
-        let stepped = S::Integrator::step(&mut self.engine, &mut state, dt);
-        self.engine.data.state = state;
+        let Self { engine, memory } = self;
+        let mut state = take(&mut engine.data.state);
+        let stepped = S::Integrator::step(engine, memory, &mut state, dt);
+        engine.data.state = state;
         stepped
     }
     fn synchronise(&mut self) -> Stepped {
-        let Self { engine } = self;
+        let Self { engine, memory } = self;
         let mut state = take(&mut engine.data.state);
-        let synchronised =
-            S::Integrator::synchronise(engine, &mut state).and_then(|()| engine.begin(&mut state));
+        let synchronised = S::Integrator::synchronise(engine, memory, &mut state);
         engine.normalise();
         engine.data.state = state;
         synchronised
@@ -195,8 +197,16 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn stepper(&mut self) -> &mut dyn Stepper<S::Extra> {
         self
     }
+    fn checkpoint(&self) -> Checkpoint<S::Extra> {
+        let mut checkpoint = self.engine.data.without_memory();
+        self.memory.save(&mut checkpoint);
+        checkpoint
+    }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
-        self.engine.core().restore(from)
+        let memory = MemoryOf::<S>::at(from)?;
+        self.engine.core().restore(from)?;
+        self.memory = memory;
+        Ok(())
     }
     fn weight(&self, r2: f64) -> f64 {
         self.engine.typed.kernel.w(r2)
@@ -211,7 +221,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         self.engine.data.wall_rates(&self.engine.typed)
     }
     fn bytes(&self) -> usize {
-        self.engine.bytes()
+        self.engine.bytes() + self.memory.bytes()
     }
     fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
         &mut self.engine.data
@@ -221,7 +231,10 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
 /// A scene that advances in time. It dereferences to [`ParticleData`], which gives time, work and particles.
 pub struct Simulation<S: Scheme> {
     pub(crate) engine: Engine<PhysicsOf<S>>,
+    pub(crate) memory: MemoryOf<S>,
 }
+
+type MemoryOf<S> = <<S as Scheme>::Integrator as Integrator<PhysicsOf<S>>>::Memory;
 
 impl<S: Scheme> Deref for Simulation<S> {
     type Target = ParticleData<S::Extra>;

@@ -83,8 +83,9 @@ struct NoStep;
 
 impl<P: Physics> Integrator<P> for NoStep {
     const NAME: &'static str = "none";
+    type Memory = ();
 
-    fn step(_: &mut Engine<P>, _: &mut State<P>, _: f64) -> Stepped {
+    fn step(_: &mut Engine<P>, (): &mut (), _: &mut State<P>, _: f64) -> Stepped {
         Ok(())
     }
 }

@@ -236,6 +236,33 @@ fn checkpoints_that_no_run_can_have_made_are_refused() {
     }
 }
 
+/// Part of the state would be ignored, or missing.
+#[test]
+fn a_checkpoint_of_another_integrator_is_refused() {
+    fn after_steps<I: Integrator<Method<()>>>() -> Simulation<Method<I>> {
+        let mut simulation = scene::<I>().build().unwrap();
+        assert_eq!(simulation.advance(20.0 * DT, DT, &mut ()), Outcome::Reached);
+        simulation
+    }
+    let mut all: [Box<dyn Stepper<()>>; 3] = [
+        Box::new(after_steps::<PredictorCorrector>()),
+        Box::new(after_steps::<Leapfrog>()),
+        Box::new(after_steps::<SingleSweep>()),
+    ];
+    let checkpoints = all.each_ref().map(|simulation| simulation.checkpoint());
+    for (k, simulation) in all.iter_mut().enumerate() {
+        for (j, checkpoint) in checkpoints.iter().enumerate() {
+            // Particles whose quantities have the same time begin a run of any integrator.
+            let is_sound = j == k || j == 0;
+            let restored = simulation.restore(checkpoint);
+            assert_eq!(restored.is_ok(), is_sound, "{j} to {k}: {restored:?}");
+            let holds = if is_sound { j } else { k };
+            assert_eq!(simulation.checkpoint(), checkpoints[holds], "{j} to {k}");
+            simulation.restore(&checkpoints[k]).unwrap();
+        }
+    }
+}
+
 /// The simulations of a run that was interrupted after so many steps.
 fn interrupted_after(steps: u64, case: &dyn Case, spec: &RunSpec) -> Vec<Vec<u8>> {
     let (interrupt, made, last) = (AtomicBool::new(false), AtomicU64::new(0), Mutex::default());

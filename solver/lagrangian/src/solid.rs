@@ -57,7 +57,7 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
         (frame.setting.skin, frame.setting.limits) = (1e-9 * h, limits);
         let data = frame.build()?.into_particles();
         let of = |(id, _): &(u32, _)| bodies.get(*id as usize).copied().unwrap_or(0);
-        let bodies: Vec<u32> = data.checkpoint().particles.iter().map(of).collect();
+        let bodies: Vec<u32> = data.without_memory().particles.iter().map(of).collect();
         let kernel = Smoothing::<K>::new(h);
         let accelerations = vec![Vector2::zeros(); bodies.len()];
         let reference = Reference::new(&data, &kernel, bodies, domain, W::SLIPS)?;
@@ -141,6 +141,9 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     }
     fn stepper(&mut self) -> &mut dyn Stepper<Symmetric> {
         self
+    }
+    fn checkpoint(&self) -> Checkpoint<Symmetric> {
+        self.data.without_memory()
     }
     fn restore(&mut self, from: &Checkpoint<Symmetric>) -> Result<(), &'static str> {
         self.data.resume(from)?;

@@ -45,8 +45,9 @@ pub struct Rebuilding;
 
 impl<P: Physics> Integrator<P> for Rebuilding {
     const NAME: &'static str = "rebuilding";
+    type Memory = ();
 
-    fn step(engine: &mut Engine<P>, state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, (): &mut (), state: &mut State<P>, dt: f64) -> Stepped {
         state.iter_mut().for_each(|evolved| evolved.position.x += dt);
         engine.begin(state)
     }

@@ -1,0 +1,115 @@
+//! Time integration, one file for each integrator. A physics together with an integrator is a scheme.
+
+mod euler;
+mod leapfrog;
+mod predictor_corrector;
+mod single_sweep;
+mod super_steps;
+
+pub use euler::Euler;
+pub use leapfrog::{ForwardKick, Kick, KickTimes, Leapfrog};
+pub use predictor_corrector::PredictorCorrector;
+pub use single_sweep::SingleSweep;
+pub use super_steps::{SuperSteps, stages};
+
+use crate::{
+    engine::{Engine, Update},
+    kernel::Kernel,
+    numbers::Numbers,
+    particle_data::{Checkpoint, Fault},
+    particles::{Evolved, Rate},
+    physics::{Compose, Physics, State},
+    terms::Term,
+    walls::Walls,
+};
+
+/// Whether a step stayed within the bounds of its scene.
+pub type Stepped = Result<(), Fault>;
+
+/// An explicit time integration of (x, v, ρ) of the physics `P`.
+pub trait Integrator<P: Physics>: 'static {
+    /// Its name in settings and reports.
+    const NAME: &'static str;
+    /// What it keeps from one step to the next, and buffers that steps use again; `()` for nothing.
+    type Memory: Memory<P::Extra>;
+
+    /// Advances the state by dt \[s\].
+    fn step(
+        engine: &mut Engine<P>,
+        memory: &mut Self::Memory,
+        state: &mut State<P>,
+        dt: f64,
+    ) -> Stepped;
+
+    /// Brings every quantity to the same time, until the next step, and refreshes the derived data.
+    fn synchronise(
+        engine: &mut Engine<P>,
+        _memory: &mut Self::Memory,
+        state: &mut State<P>,
+    ) -> Stepped {
+        engine.begin(state)
+    }
+
+    /// Rates of each fluid particle in the state that was synchronised last, where dx/dt does not include v.
+    /// They are computed by the same pair sweeps that a step uses.
+    fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
+        engine.rates_in_one_sweep()
+    }
+}
+
+/// The memory of an integrator. A checkpoint holds the part of it on which later steps depend.
+pub trait Memory<X: Numbers>: Default + Send + Sync {
+    /// Writes that part to a checkpoint, which holds the particles as they are at the end of a step.
+    fn save(&self, _to: &mut Checkpoint<X>) {}
+
+    /// The memory at a checkpoint.
+    ///
+    /// # Errors
+    /// If the checkpoint is one of another integrator.
+    fn at(from: &Checkpoint<X>) -> Result<Self, &'static str> {
+        from.check_memory(false, false).map(|()| Self::default())
+    }
+
+    /// Memory held \[bytes\].
+    fn bytes(&self) -> usize {
+        0
+    }
+}
+
+impl<X: Numbers> Memory<X> for () {}
+
+/// States inside a step.
+impl<X: Numbers> Memory<X> for Vec<Evolved<X>> {
+    fn bytes(&self) -> usize {
+        self.capacity() * size_of::<Evolved<X>>()
+    }
+}
+
+/// A physics with its time integration: the complete method. [`Compose`] names one in a line of types.
+pub trait Scheme: Physics {
+    /// Time integration.
+    type Integrator: Integrator<PhysicsOf<Self>>;
+}
+
+impl<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, I, X: Numbers> Scheme
+    for Compose<K, F, D, W, I, X>
+where
+    I: Integrator<Compose<K, F, D, W, (), X>>,
+{
+    type Integrator = I;
+}
+
+/// The physics of the scheme `S`, the same type for all schemes that differ only in their integrator.
+pub type PhysicsOf<S> = Compose<
+    <S as Physics>::Kernel,
+    <S as Physics>::Forces,
+    <S as Physics>::Drift,
+    <S as Physics>::Walls,
+    (),
+    <S as Physics>::Extra,
+>;
+
+/// Advances a particle by dt \[s\]. Like all updates it does not depend on the scheme, and is compiled once.
+fn advance<X: Numbers>(dt: f64) -> impl Update<X> {
+    move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| *evolved = evolved.advanced(dt, rate)
+}

@@ -1,0 +1,113 @@
+//! One pair sweep a step, with an extrapolated density.
+
+use super::{
+    Integrator, Memory, Stepped,
+    leapfrog::{ForwardKick, Kick, Staggered},
+};
+use crate::{
+    engine::{Engine, each},
+    numbers::Numbers,
+    particle_data::{Checkpoint, Past},
+    particles::{Evolved, Rate},
+    physics::{Physics, State},
+};
+
+/// Forces and drift from one pair sweep at (xⁿ, vⁿ⁻½, ρ̃ⁿ): with a the forces and D the drift of it,
+///
+/// ρⁿ = ρⁿ⁻¹ + dt Dⁿ, ρ̃ⁿ⁺¹ = ρⁿ + dt (2 Dⁿ − Dⁿ⁻¹), vⁿ⁺½ = vⁿ⁻½ + dt a, xⁿ⁺¹ = xⁿ + dt vⁿ⁺½,
+///
+/// and the same for what terms integrate of their own. The density ρ̃ from which forces follow is
+/// extrapolated, because the drift of a step becomes known only in the sweep of the next one. At the end of a
+/// step it is replaced, so that no error of extrapolation accumulates.
+///
+/// A step costs about 0.7 of that of [`super::Leapfrog`], which sweeps twice. Viscous forces have the same
+/// limit. Sound has about a third of it: stable up to ω dt = 1/√2, where the leapfrog is up to 2; below, it
+/// is damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
+/// velocities.
+#[derive(Debug)]
+pub struct SingleSweep;
+
+/// The memory of [`SingleSweep`].
+#[derive(Default)]
+pub struct SingleSweepMemory<X> {
+    staggered: Staggered,
+    /// Of the particles that have rates, in the order of storage; empty before the first step.
+    past: Vec<Past<X>>,
+}
+
+impl<X: Numbers> Memory<X> for SingleSweepMemory<X> {
+    fn save(&self, to: &mut Checkpoint<X>) {
+        self.staggered.save(to);
+        to.past.clone_from(&self.past);
+    }
+
+    fn at(from: &Checkpoint<X>) -> Result<Self, &'static str> {
+        from.check_memory(true, true)?;
+        Ok(Self { staggered: Staggered::by(from.lag), past: from.past.clone() })
+    }
+
+    fn bytes(&self) -> usize {
+        self.staggered.bytes() + self.past.capacity() * size_of::<Past<X>>()
+    }
+}
+
+impl<P: Physics> Integrator<P> for SingleSweep {
+    const NAME: &'static str = "single-sweep";
+    type Memory = SingleSweepMemory<P::Extra>;
+
+    fn step(
+        engine: &mut Engine<P>,
+        memory: &mut Self::Memory,
+        state: &mut State<P>,
+        dt: f64,
+    ) -> Stepped {
+        let SingleSweepMemory { staggered, past } = memory;
+        staggered.release(state);
+        engine.begin_with(state, past)?;
+        let (half, fluid) = (0.5 * dt, engine.data.fluid_count());
+        let (kick, known) = (staggered.lag + half, 2.0 * staggered.lag);
+        if known == 0.0 {
+            let start = |e: &Evolved<P::Extra>| Past {
+                drifted: (e.density, e.extra),
+                rate: Default::default(),
+            };
+            past.clear();
+            past.extend(state[..engine.swept()].iter().map(start));
+        }
+        let update = |i: usize, evolved: &mut Evolved<_>, rate: &Rate<_>| {
+            if i < fluid {
+                // Beyond v, which the sweep has added as it was before.
+                let shift = rate.position - evolved.velocity;
+                evolved.kick(kick, rate);
+                evolved.position += (evolved.velocity + shift) * dt;
+            }
+            (evolved.density, evolved.extra) = (rate.density, rate.extra);
+        };
+        engine.sweep_all(state, &each(update));
+        // A rate is that of the middle of the last step; it is extrapolated to the middle of this one.
+        let ahead = if known > 0.0 { kick / known } else { 0.0 };
+        for (evolved, past) in state.iter_mut().zip(past) {
+            let rate = (evolved.density, evolved.extra);
+            past.drifted = past.drifted.advanced(known, rate);
+            let next = past.drifted.advanced(dt * (1.0 + ahead), rate);
+            (evolved.density, evolved.extra) = next.advanced(-dt * ahead, past.rate);
+            past.rate = rate;
+        }
+        staggered.lag = half;
+        Ok(())
+    }
+
+    fn synchronise(
+        engine: &mut Engine<P>,
+        memory: &mut Self::Memory,
+        state: &mut State<P>,
+    ) -> Stepped {
+        let SingleSweepMemory { staggered, past } = memory;
+        if staggered.is_behind() {
+            engine.begin_with(state, past)?;
+            let times = staggered.hold(&state[..engine.data.fluid_count()]);
+            ForwardKick::kick(engine, &mut (), state, times)?;
+        }
+        engine.begin_with(state, past)
+    }
+}
