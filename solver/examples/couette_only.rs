@@ -42,10 +42,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err(divergence.into());
     }
     let error = |(_, p): (f64, &solver::Evolved<()>)| p.velocity.x / speed - p.position.y / width;
-    let largest = flow.fluid().map(error).fold(0.0, |a: f64, e| a.max(e.abs()));
-    println!("{} particles, {} steps", flow.fluid_count(), flow.work().steps);
+    let largest = flow.data().fluid().map(error).fold(0.0, |a: f64, e| a.max(e.abs()));
+    println!("{} particles, {} steps", flow.data().fluid_count(), flow.work().steps);
     println!("largest error {largest:.1e} of the speed of the plate");
-    println!("{} bytes a particle", flow.bytes() / flow.fluid_count());
+    println!("{} bytes a particle", flow.bytes() / flow.data().fluid_count());
     Ok(())
 }
 

@@ -11,7 +11,7 @@ use crate::{
     neighbours::{BLOCK, Lists, Neighbours},
     numbers::{Numbers, Symmetric},
     parallel,
-    particle_data::{Checkpoint, Extent, Fault, ParticleData, Phase},
+    particle_data::{Checkpoint, Counts, Extent, Fault, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
     sweep::{self, BlockUpdate, PairSweep, Select, Sweep, first, nothing, second, whole},
@@ -53,7 +53,7 @@ impl<X: Numbers> Core<'_, X> {
     ) -> Result<(), Fault> {
         if self.data.slips {
             for wall in self.data.neighbours.mirrors() {
-                let fluid = &mut state[..self.data.counts[0]];
+                let fluid = &mut state[..self.data.counts.fluid];
                 fluid.iter_mut().for_each(|particle| wall.put_back(particle));
             }
         }
@@ -86,7 +86,12 @@ impl<X: Numbers> Core<'_, X> {
         let data = &mut *self.data;
         data.enter(Phase::Search);
         data.neighbours.place(positions);
-        data.neighbours.build(data.counts, data.extrapolates, data.parallel);
+        data.neighbours.build(
+            data.counts.fluid,
+            data.counts.walls,
+            data.extrapolates,
+            data.parallel,
+        );
         data.progress.work.list_builds += 1;
         data.buffers.still = None;
         let columns = data.fixed.len() + data.neighbours.images.len();
@@ -112,7 +117,7 @@ impl<X: Numbers> Core<'_, X> {
     fn fill(&mut self, state: &[Evolved<X>]) -> Result<Extent, Fault> {
         let data = &mut *self.data;
         data.enter(Phase::Refresh);
-        let [fluid, walls] = data.counts;
+        let Counts { fluid, walls } = data.counts;
         let filled = if data.buffers.still.is_some() { fluid } else { state.len() };
         let count = filled.div_ceil(BLOCK);
         let mut extents = take(&mut data.buffers.extents);
@@ -132,7 +137,7 @@ impl<X: Numbers> Core<'_, X> {
     /// Refreshes images, and what wall particles extrapolate, with this share of the walls' own motion.
     fn refresh_walls(&mut self, state: &[Evolved<X>], motion: f64) {
         self.equations.fill_images(&self.data.neighbours, 0, motion);
-        if self.data.extrapolates && self.data.counts[1] > 0 {
+        if self.data.extrapolates && self.data.counts.walls > 0 {
             self.extrapolate(state, motion);
         }
         self.data.enter(Phase::Rest);
@@ -163,7 +168,7 @@ impl<X: Numbers> Core<'_, X> {
         }
         equations.derive_walls(data, &implied);
         data.buffers.extrapolated = implied;
-        equations.fill_images(&data.neighbours, data.counts[0], motion);
+        equations.fill_images(&data.neighbours, data.counts.fluid, motion);
     }
 }
 
@@ -181,7 +186,7 @@ impl<X: Numbers> ParticleData<X> {
         self.count(phase);
         sweep::run(sweep, &self.neighbours.lists, targets, update);
         if phase != Phase::Forces && !self.extrapolates {
-            self.sweep_walls(equations, &mut targets[self.counts[0]..], update);
+            self.sweep_walls(equations, &mut targets[self.counts.fluid..], update);
         }
         self.enter(Phase::Rest);
     }
@@ -192,7 +197,7 @@ impl<X: Numbers> ParticleData<X> {
         targets: &mut [Evolved<X>],
         update: &BlockUpdate<X>,
     ) {
-        if self.counts[1] > 0 {
+        if self.counts.walls > 0 {
             equations.wall_sweep(self, &mut |sweep| {
                 self.enter(Phase::Walls);
                 sweep::run(sweep, &self.neighbours.wall_lists, targets, update);
@@ -270,7 +275,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for Typed<P> {
 
     fn wall_sweep(&self, of: &ParticleData<X>, show: &mut dyn FnMut(&dyn PairSweep<X>)) {
         if !<P::Walls as Walls<X>>::Terms::IS_EMPTY {
-            let select = at_feet::<X, P::Walls, _>(of.counts[0], &of.neighbours.feet);
+            let select = at_feet::<X, P::Walls, _>(of.counts.fluid, &of.neighbours.feet);
             show(&self.sweep(&self.wall_terms, select, false));
         }
     }
@@ -302,7 +307,8 @@ impl<P: Physics> Engine<P> {
     ) -> Self {
         let (kernel, wall_terms) = (Smoothing::new(h), walls.terms());
         let typed = Typed { kernel, terms, wall_terms, columns: vec![], inverses: vec![] };
-        [data.slips, data.extrapolates] = [P::Walls::SLIPS, P::Walls::EXTRAPOLATES];
+        data.slips = P::Walls::SLIPS;
+        data.extrapolates = P::Walls::EXTRAPOLATES;
         let mut engine = Self { typed, data };
         engine.core().build_first_lists();
         engine
@@ -412,7 +418,7 @@ impl<P: Physics> Engine<P> {
     /// Number of particles that have rates, the first of a state: those of the fluid, and of walls whose
     /// terms give rates.
     pub(crate) fn swept(&self) -> usize {
-        let [fluid, walls] = self.data.counts;
+        let Counts { fluid, walls } = self.data.counts;
         let only = P::Walls::EXTRAPOLATES || <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
         if only { fluid } else { fluid + walls }
     }

@@ -54,7 +54,7 @@ pub use lanes as lane;
 pub use neighbours::GROUP;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
-    Checkpoint, Fault, Limits, ParticleData, Past, Phase, PhaseWatch, Progress, Work,
+    Checkpoint, Fault, Interval, Limits, ParticleData, Past, Phase, PhaseWatch, Progress, Work,
 };
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};

@@ -46,8 +46,10 @@ pub(crate) struct Block {
     /// The list of group g of the block is `columns[starts[g]..starts[g + 1]]`.
     starts: Vec<u32>,
     columns: Vec<u32>,
-    /// Scratch: what may be in one list, and what is beyond the support in it.
-    found: [Vec<u32>; 2],
+    /// Scratch: columns that may be in one list.
+    found: Vec<u32>,
+    /// Scratch: columns of one list that are beyond the support.
+    beyond: Vec<u32>,
     /// Neighbours of particles inside the support when the lists were built.
     pub pairs: u64,
 }
@@ -64,8 +66,8 @@ impl Block {
     }
 
     fn bytes(&self) -> usize {
-        let all = self.found.iter().chain([&self.starts, &self.columns]);
-        all.map(Vec::capacity).sum::<usize>() * size_of::<u32>()
+        let Self { starts, columns, found, beyond, .. } = self;
+        [starts, columns, found, beyond].map(Vec::capacity).iter().sum::<usize>() * size_of::<u32>()
     }
 }
 
@@ -154,10 +156,20 @@ pub(crate) struct Neighbours {
     cell_points: Vec<Vector2<f64>>,
 }
 
+/// Lengths from which neighbour lists are built \[m\].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    pub support: f64,
+    /// How far lists reach beyond the support.
+    pub skin: f64,
+    /// About how far particles stand apart.
+    pub spacing: f64,
+}
+
 impl Neighbours {
-    /// Lists that reach as far as the support and a skin \[m\], of particles that stand about this spacing
-    /// apart \[m\]; empty until built.
-    pub fn new([support, skin, spacing]: [f64; 3], domain: Domain, mirrors: &[PlaneWall]) -> Self {
+    /// Lists that are empty until they are built.
+    pub fn new(reach: Reach, domain: Domain, mirrors: &[PlaneWall]) -> Self {
+        let Reach { support, skin, spacing } = reach;
         let radius = support + skin;
         let mut maps: Vec<_> = mirrors.iter().copied().map(Map::Mirror).collect();
         maps.extend(corners(mirrors).map(Map::corner));
@@ -231,7 +243,7 @@ impl Neighbours {
 
     /// Builds the lists of the first `fluid` placed particles and of the `wall` ones after them. With
     /// `fluid_only` the lists of the latter list fluid particles and their images alone.
-    pub fn build(&mut self, [fluid, wall]: [usize; 2], fluid_only: bool, parallel: bool) {
+    pub fn build(&mut self, fluid: usize, wall: usize, fluid_only: bool, parallel: bool) {
         self.built_at.clear();
         self.built_at.extend_from_slice(&self.points);
         self.make_images();
@@ -405,7 +417,7 @@ impl OnLanes for FillLists<'_> {
         let [support2, radius2] =
             [neighbours.support, neighbours.radius].map(|reach| reach * reach);
         let points = &neighbours.points;
-        let Block { starts, columns, found: [found, beyond], .. } = block;
+        let Block { starts, columns, found, beyond, .. } = block;
         starts.clear();
         starts.push(0);
         columns.clear();
@@ -549,7 +561,7 @@ mod tests {
     }
 
     fn check(points: &[Vector2<f64>], radius: f64, domain: &Domain, mirrors: &[PlaneWall]) -> u64 {
-        let reaches = [0.75 * radius, 0.25 * radius, 0.1];
+        let reaches = Reach { support: 0.75 * radius, skin: 0.25 * radius, spacing: 0.1 };
         let mut neighbours = Neighbours::new(reaches, *domain, mirrors);
         let n = points.len();
         let all: Vec<_> = (0..n).map(|i| brute_force(points, i, radius, domain, mirrors)).collect();
@@ -557,7 +569,7 @@ mod tests {
         // The last ones are walls that see all, walls that see no walls, or not there.
         for (fluid, fluid_only) in [(n / 2, false), (n / 2, true), (n, false)] {
             neighbours.place(&mut points.iter().copied());
-            neighbours.build([fluid, n - fluid], fluid_only, false);
+            neighbours.build(fluid, n - fluid, fluid_only, false);
             pairs = 0;
             let mut inside = 0;
             for (i, expected) in all.iter().enumerate() {
@@ -579,12 +591,12 @@ mod tests {
                 };
                 let others = &found[lead..];
                 assert!(
-                    others.is_sorted_by_key(|e| to_group(e) >= reaches[0]),
+                    others.is_sorted_by_key(|e| to_group(e) >= reaches.support),
                     "the near ones first"
                 );
                 assert!(others.iter().all(|e| to_group(e) < radius), "no one that none can see");
                 found.retain(|e| (e.1 - points[i]).norm() < radius);
-                let near = found.iter().filter(|e| (e.1 - points[i]).norm() < reaches[0]);
+                let near = found.iter().filter(|e| (e.1 - points[i]).norm() < reaches.support);
                 inside += near.count() as u64;
                 assert!(
                     same(found, expected, 1e-9),
@@ -596,7 +608,7 @@ mod tests {
         // The parallel path builds the same lists in the same order.
         let mut parallel = Neighbours::new(reaches, *domain, mirrors);
         parallel.place(&mut points.iter().copied());
-        parallel.build([n, 0], false, true);
+        parallel.build(n, 0, false, true);
         for (a, b) in neighbours.lists.blocks.iter().zip(&parallel.lists.blocks) {
             assert_eq!((&a.starts, &a.columns), (&b.starts, &b.columns));
         }
@@ -608,9 +620,10 @@ mod tests {
     fn lists_are_the_same_in_portable_lanes() {
         let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
         let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
-        let mut neighbours = Neighbours::new([0.5, 0.1, 0.15], domain, &[]);
+        let mut neighbours =
+            Neighbours::new(Reach { support: 0.5, skin: 0.1, spacing: 0.15 }, domain, &[]);
         neighbours.place(&mut points.into_iter());
-        neighbours.build([250, 250], true, false);
+        neighbours.build(250, 250, true, false);
         let [fluid, wall] =
             [&neighbours.lists, &neighbours.wall_lists].map(|lists| &lists.blocks[..]);
         for (built, of, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
@@ -700,11 +713,12 @@ mod tests {
         let mirrors = [horizontal(0.0, 1.0), horizontal(2.0, -1.0)];
         let mut random = Random(77);
         let mut points: Vec<_> = (0..200).map(|_| random.point([3.0, 2.0])).collect();
-        let mut neighbours = Neighbours::new([support, skin, 0.17], domain, &mirrors);
+        let mut neighbours =
+            Neighbours::new(Reach { support, skin, spacing: 0.17 }, domain, &mirrors);
         let mut lost = 0;
         let n = points.len();
         neighbours.place(&mut points.iter().copied());
-        neighbours.build([n, 0], false, false);
+        neighbours.build(n, 0, false, false);
         for _ in 0..60 {
             for point in &mut points {
                 *point += (random.point([1.0, 1.0]) - Vector2::repeat(0.5)) * 0.03;
@@ -713,7 +727,7 @@ mod tests {
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
             if moved.fold(0.0, f64::max) > share * skin {
                 neighbours.place(&mut points.iter().copied());
-                neighbours.build([n, 0], false, false);
+                neighbours.build(n, 0, false, false);
                 *builds += 1;
             }
             for i in 0..n {
@@ -747,7 +761,8 @@ mod tests {
         let at = |n: usize| (n as f64 + 0.5) * dx;
         let place = |k: usize| Vector2::new(at(k % columns), at(k / columns));
         let points: Vec<_> = (0..columns * rows).map(place).collect();
-        let mut neighbours = Neighbours::new([3.1, 0.0, 1.0], Domain::open(), &[]);
+        let mut neighbours =
+            Neighbours::new(Reach { support: 3.1, skin: 0.0, spacing: 1.0 }, Domain::open(), &[]);
         neighbours.place(&mut points.iter().copied());
         let mut order = Vec::new();
         neighbours.order(&mut order);
@@ -772,9 +787,10 @@ mod tests {
         let steps = middles.windows(2).map(|ends| (ends[1] - ends[0]).norm());
         let far: Vec<f64> = steps.filter(|step| *step > 4.0).collect();
         assert!(far.len() <= 1, "from the end of the first tile to the second one alone: {far:?}");
-        let mut neighbours = Neighbours::new([3.1, 0.0, 1.0], Domain::open(), &[]);
+        let mut neighbours =
+            Neighbours::new(Reach { support: 3.1, skin: 0.0, spacing: 1.0 }, Domain::open(), &[]);
         neighbours.place(&mut groups.iter().flatten().copied());
-        neighbours.build([96 * 12, 0], false, false);
+        neighbours.build(96 * 12, 0, false, false);
         for (k, middle) in middles.iter().enumerate() {
             let inside = [(middle.x, 96.0), (middle.y, 12.0)];
             if inside.iter().all(|(at, end)| at.min(end - at) > 4.9) {
@@ -799,7 +815,11 @@ mod tests {
         let mut points: Vec<_> = (0..300).map(|_| random.point([2.0, 5.0])).collect();
         let sorted = |points: &[Vector2<f64>]| {
             let mut order = Vec::new();
-            let mut neighbours = Neighbours::new([0.3, 0.0, 0.18], Domain::open(), &[]);
+            let mut neighbours = Neighbours::new(
+                Reach { support: 0.3, skin: 0.0, spacing: 0.18 },
+                Domain::open(),
+                &[],
+            );
             neighbours.place(&mut points.iter().copied());
             neighbours.order(&mut order);
             order.iter().map(|&k| points[k as usize]).collect::<Vec<_>>()

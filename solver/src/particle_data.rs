@@ -75,6 +75,17 @@ impl Default for Limits {
     }
 }
 
+/// A call of [`crate::Stepper::advance`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Interval {
+    /// Where it began \[s\].
+    pub start: f64,
+    /// Where it ends \[s\].
+    pub until: f64,
+    /// Its largest step \[s\].
+    pub dt_max: f64,
+}
+
 /// How far a run is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
@@ -89,9 +100,8 @@ pub struct Progress {
     pub last_approach: f64,
     /// Whether the lists were built inside a step, for particles neither sorted nor wrapped.
     pub built_inside_a_step: bool,
-    /// Where the present call of [`crate::Stepper::advance`] began, where it ends and its largest step
-    /// \[s\]; zeros once it has reached its end.
-    pub call: [f64; 3],
+    /// The present call of [`crate::Stepper::advance`]; zeros once it has reached its end.
+    pub call: Interval,
     /// Steps that this call has made.
     pub made: u64,
 }
@@ -155,31 +165,55 @@ impl<X: Numbers> Checkpoint<X> {
     }
 }
 
-/// What is largest in a state, of numbers that are not below 0.
+/// Numbers of particles, which are stored in this order; interface particles follow them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Counts {
+    pub fluid: usize,
+    pub walls: usize,
+}
+
+/// The largest speed and displacements in a state. Displacements are those since lists were built, along an
+/// axis and against it.
 #[derive(Clone, Copy)]
 pub(crate) struct Extent {
-    /// Squares of displacement and speed, then the displacement along x, against it, along y, and against it.
-    largest: [f64; 6],
+    displacement2: f64,
+    speed2: f64,
+    right: f64,
+    left: f64,
+    up: f64,
+    down: f64,
     within_limits: bool,
 }
 
 impl Extent {
-    pub const NIL: Self = Self { largest: [0.0; 6], within_limits: true };
+    pub const NIL: Self = Self {
+        displacement2: 0.0,
+        speed2: 0.0,
+        right: 0.0,
+        left: 0.0,
+        up: 0.0,
+        down: 0.0,
+        within_limits: true,
+    };
 
-    /// Exact, so it does not matter in which order. What is not a number is beyond limits.
+    /// The larger of each. Exact, so the order does not matter. A number that is NaN is beyond limits.
     #[inline(always)]
-    fn and(mut self, other: Self) -> Self {
-        for a in 0..self.largest.len() {
-            let [one, two] = [self.largest[a], other.largest[a]];
-            self.largest[a] = if two > one { two } else { one };
+    fn and(self, other: Self) -> Self {
+        let larger = |one: f64, two: f64| if two > one { two } else { one };
+        Self {
+            displacement2: larger(self.displacement2, other.displacement2),
+            speed2: larger(self.speed2, other.speed2),
+            right: larger(self.right, other.right),
+            left: larger(self.left, other.left),
+            up: larger(self.up, other.up),
+            down: larger(self.down, other.down),
+            within_limits: self.within_limits & other.within_limits,
         }
-        self.within_limits &= other.within_limits;
-        self
     }
 
     /// Largest speed \[m/s\].
     pub fn speed(&self) -> f64 {
-        self.largest[1].sqrt()
+        self.speed2.sqrt()
     }
 }
 
@@ -199,15 +233,13 @@ impl<X> Default for SweepBuffers<X> {
     }
 }
 
-/// The particles of a simulation, their neighbour lists, the time, and the work done. A
-/// [`crate::Simulation`] and a [`crate::Stepper`] dereference to it.
+/// The particles of a simulation, their neighbour lists, the time, and the work done.
 #[derive(Default)]
 pub struct ParticleData<X = ()> {
     /// Empty while a step is under way, which has it.
     pub(crate) state: Vec<Evolved<X>>,
     pub(crate) fixed: Vec<Fixed>,
-    /// Fluid and wall particles; interface particles follow them.
-    pub(crate) counts: [usize; 2],
+    pub(crate) counts: Counts,
     /// Those of the walls, [`crate::Walls::SLIPS`] and [`crate::Walls::EXTRAPOLATES`].
     pub(crate) slips: bool,
     pub(crate) extrapolates: bool,
@@ -239,33 +271,18 @@ impl<X: Numbers> ParticleData<X> {
         let fixed = |(id, p): &(u32, Particle<X>)| Fixed { mass: p.mass, id: *id, role: p.role };
         self.state = particles.iter().map(evolved).collect();
         self.fixed = particles.iter().map(fixed).collect();
-        self.counts = [count(Role::Fluid), count(Role::Wall)];
-    }
-
-    /// Simulated time \[s\].
-    pub fn time(&self) -> f64 {
-        self.progress.time
-    }
-
-    /// Length of the last step \[s\].
-    pub fn dt(&self) -> f64 {
-        self.progress.dt
-    }
-
-    /// What was done so far.
-    pub fn work(&self) -> Work {
-        self.progress.work
+        self.counts = Counts { fluid: count(Role::Fluid), walls: count(Role::Wall) };
     }
 
     /// Number of fluid particles.
     pub fn fluid_count(&self) -> usize {
-        self.counts[0]
+        self.counts.fluid
     }
 
     /// Mass \[kg/m\] and state of the fluid particles as they are stored, without order; for observers
     /// that sum.
     pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
-        let fluid = self.counts[0];
+        let fluid = self.counts.fluid;
         self.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
     }
 
@@ -305,12 +322,12 @@ impl<X: Numbers> ParticleData<X> {
 
     /// The moving particles as they are stored.
     pub fn fluid_state(&self) -> &[Evolved<X>] {
-        &self.state[..self.counts[0]]
+        &self.state[..self.counts.fluid]
     }
 
     /// The same, to be advanced.
     pub fn fluid_mut(&mut self) -> &mut [Evolved<X>] {
-        &mut self.state[..self.counts[0]]
+        &mut self.state[..self.counts.fluid]
     }
 
     /// The images as they follow the particles: which earlier column each copies, and by which map.
@@ -376,7 +393,7 @@ impl<X: Numbers> ParticleData<X> {
         for evolved in &mut *state {
             evolved.position = self.neighbours.domain.wrap(evolved.position);
         }
-        let fluid = self.counts[0];
+        let fluid = self.counts.fluid;
         self.neighbours.place(&mut state[..fluid].iter().map(|e| e.position));
         self.neighbours.order(&mut self.order);
         let Self { fixed, order, .. } = self;
@@ -404,7 +421,7 @@ impl<X: Numbers> ParticleData<X> {
         self.enter(phase);
         self.progress.work.pair_interactions += neighbours;
         if phase != Phase::Forces {
-            self.progress.work.right_hand_sides += self.counts[0] as u64;
+            self.progress.work.right_hand_sides += self.counts.fluid as u64;
         }
     }
 
@@ -416,8 +433,10 @@ impl<X: Numbers> ParticleData<X> {
             let excess = self.excess(evolved, d.norm_squared());
             let within_limits = excess.is_none() && evolved.extra.is_finite();
             let speed2 = evolved.velocity.norm_squared();
-            let largest = [d.norm_squared(), speed2, d.x, -d.x, d.y, -d.y];
-            extent = extent.and(Extent { largest, within_limits });
+            let (displacement2, [right, left, up, down]) =
+                (d.norm_squared(), [d.x, -d.x, d.y, -d.y]);
+            extent =
+                extent.and(Extent { displacement2, speed2, right, left, up, down, within_limits });
         }
         extent
     }
@@ -432,10 +451,9 @@ impl<X: Numbers> ParticleData<X> {
     /// were built \[m\]: not more than half the diagonal of the box of all displacements and 0, for a period
     /// moves all images alike; nor than the largest displacement, which a mirror turns.
     fn approach(&self, extent: Extent) -> f64 {
-        let [displacement2, _, right, left, up, down] = extent.largest;
-        let diagonal = Vector2::new(right + left, up + down).norm();
+        let diagonal = Vector2::new(extent.right + extent.left, extent.up + extent.down).norm();
         let has_mirrors = self.neighbours.maps.iter().any(|map| !map.walls().is_empty());
-        displacement2.sqrt().min(if has_mirrors { f64::MAX } else { 0.5 * diagonal })
+        extent.displacement2.sqrt().min(if has_mirrors { f64::MAX } else { 0.5 * diagonal })
     }
 
     /// Whether neighbour lists are not exact any more.

@@ -8,7 +8,7 @@ use crate::{
     engine::Engine,
     integrator::Scheme,
     kernel::Kernel,
-    neighbours::Neighbours,
+    neighbours::{Neighbours, Reach},
     numbers::Numbers,
     particle_data::{Limits, ParticleData},
     particles::{Particle, Role},
@@ -144,13 +144,15 @@ impl<X: Numbers> Setting<X> {
         let parallel = particles.len() >= parallel_from;
         let mut stored: Vec<_> = (0..).zip(particles).collect();
         stored.sort_by_key(|(_, particle)| particle.role);
-        let mut neighbours = Neighbours::new([support * h, skin, spacing], domain, mirrors);
+        let mut neighbours =
+            Neighbours::new(Reach { support: support * h, skin, spacing }, domain, mirrors);
         neighbours.feet = feet;
         let data = ParticleData { neighbours, limits, parallel, ..Default::default() };
         let mut data = Box::new(data);
         data.put(&stored);
-        check_feet(reads, &data.neighbours.feet, data.counts[1])?;
-        [data.slack, data.reach2] = [skin_share * skin, half_period * half_period];
+        check_feet(reads, &data.neighbours.feet, data.counts.walls)?;
+        data.slack = skin_share * skin;
+        data.reach2 = half_period * half_period;
         let mut state = std::mem::take(&mut data.state);
         data.sort(&mut state, &mut |_, _| ());
         data.state = state;

@@ -1,13 +1,13 @@
 //! A running simulation: stepping to a given time, observers, and the possible outcomes of a run.
 
-use std::{mem::take, ops::Deref};
+use std::mem::take;
 
 use crate::{
     engine::Engine,
     integrator::{Integrator, Memory, PhysicsOf, Scheme, Stepped},
     numbers::Numbers,
-    particle_data::{Checkpoint, Fault, ParticleData},
-    particles::{Column, Rate},
+    particle_data::{Checkpoint, Fault, Interval, ParticleData, Work},
+    particles::{Column, Particle, Rate},
     physics::Derived,
     terms::Term,
 };
@@ -66,9 +66,28 @@ impl<X: Numbers> Observer<X> for () {
 }
 
 /// A simulation without the type of its scheme, as a harness uses it: `&dyn Stepper<X>` is any simulation
-/// whose particles integrate the extra fields `X`. It dereferences to [`ParticleData`], which gives time,
-/// work and particles.
-pub trait Stepper<X: Numbers>: Deref<Target = ParticleData<X>> {
+/// whose particles integrate the extra fields `X`.
+pub trait Stepper<X: Numbers> {
+    /// Its particles as they are stored, and their neighbour lists.
+    fn data(&self) -> &ParticleData<X>;
+    /// Its particles, and [`ParticleData::watch`].
+    fn data_mut(&mut self) -> &mut ParticleData<X>;
+    /// Simulated time \[s\].
+    fn time(&self) -> f64 {
+        self.data().progress.time
+    }
+    /// Length of the last step \[s\].
+    fn dt(&self) -> f64 {
+        self.data().progress.dt
+    }
+    /// The work done so far.
+    fn work(&self) -> Work {
+        self.data().progress.work
+    }
+    /// All particles in the order of the scene.
+    fn particles(&self) -> Vec<Particle<X>> {
+        self.data().particles()
+    }
     /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
     /// quantity to that time, unless the observer does without. The next step undoes that, so the times at
     /// which a run is observed do not change it, but for the length of equal steps between them.
@@ -111,8 +130,6 @@ pub trait Stepper<X: Numbers>: Deref<Target = ParticleData<X>> {
     }
     /// Memory that the simulation occupies \[bytes\].
     fn bytes(&self) -> usize;
-    /// Its particles, and [`ParticleData::watch`], who is told of the phases of steps from now on.
-    fn data_mut(&mut self) -> &mut ParticleData<X>;
     /// The simulation without the type by which it is known.
     fn stepper(&mut self) -> &mut dyn Stepper<X>;
     /// The energies that its forces derive from, if they do \[J/m\].
@@ -138,15 +155,15 @@ pub struct Potential {
 fn advance<X: Numbers>(
     simulation: &mut dyn Stepper<X>,
     until: f64,
-    dt: f64,
+    dt_max: f64,
     observer: &mut dyn Observer<X>,
 ) -> Outcome {
     let now = &mut simulation.data_mut().progress;
-    if now.call[1..] != [until, dt] {
-        (now.call, now.made) = ([now.time, until, dt], 0);
+    if (now.call.until, now.call.dt_max) != (until, dt_max) {
+        (now.call, now.made) = (Interval { start: now.time, until, dt_max }, 0);
     }
-    let (start, made) = (now.call[0], now.made);
-    let (span, steps) = (until - start, count_steps(start, until, dt));
+    let (start, made) = (now.call.start, now.made);
+    let (span, steps) = (until - start, count_steps(start, until, dt_max));
     now.dt = if steps > 0 { span / steps as f64 } else { now.dt };
     let dt = now.dt;
     for k in made + 1..=steps {
@@ -160,7 +177,7 @@ fn advance<X: Numbers>(
             return Outcome::Stopped;
         }
     }
-    simulation.data_mut().progress.call = [0.0; 3];
+    simulation.data_mut().progress.call = Interval::default();
     if !observer.synchronises() {
         return Outcome::Reached;
     }
@@ -174,11 +191,18 @@ fn advance<X: Numbers>(
     }
 }
 
-fn diverged<X: Numbers>(data: &ParticleData<X>, fault: Fault) -> Outcome {
-    Outcome::Diverged(Divergence { step: data.work().steps, time: data.time(), fault })
+fn diverged<X: Numbers>(simulation: &dyn Stepper<X>, fault: Fault) -> Outcome {
+    let (step, time) = (simulation.work().steps, simulation.time());
+    Outcome::Diverged(Divergence { step, time, fault })
 }
 
 impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
+    fn data(&self) -> &ParticleData<S::Extra> {
+        &self.engine.data
+    }
+    fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
+        &mut self.engine.data
+    }
     fn step(&mut self, dt: f64) -> Stepped {
         let Self { engine, memory } = self;
         let mut state = take(&mut engine.data.state);
@@ -223,26 +247,15 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn bytes(&self) -> usize {
         self.engine.bytes() + self.memory.bytes()
     }
-    fn data_mut(&mut self) -> &mut ParticleData<S::Extra> {
-        &mut self.engine.data
-    }
 }
 
-/// A scene that advances in time. It dereferences to [`ParticleData`], which gives time, work and particles.
+/// A scene that advances in time.
 pub struct Simulation<S: Scheme> {
     pub(crate) engine: Engine<PhysicsOf<S>>,
     pub(crate) memory: MemoryOf<S>,
 }
 
 type MemoryOf<S> = <<S as Scheme>::Integrator as Integrator<PhysicsOf<S>>>::Memory;
-
-impl<S: Scheme> Deref for Simulation<S> {
-    type Target = ParticleData<S::Extra>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.engine.data
-    }
-}
 
 /// The number of equal steps of at most `dt_max` \[s\] from `start` to `until` \[s\].
 fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {

@@ -225,7 +225,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity, neighbours::Neighbours,
+        Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity,
+        neighbours::{Neighbours, Reach},
     };
 
     const DX: f64 = 0.1;
@@ -247,9 +248,13 @@ mod tests {
     /// Lists of all columns but the last, the sentinel, as far as the quintic spline reaches.
     fn listed<S: Numbers>(columns: &[Column<S>]) -> Neighbours {
         let count = columns.len() - 1;
-        let mut neighbours = Neighbours::new([3.0 * DX, 0.0, DX], Domain::open(), &[]);
+        let mut neighbours = Neighbours::new(
+            Reach { support: 3.0 * DX, skin: 0.0, spacing: DX },
+            Domain::open(),
+            &[],
+        );
         neighbours.place(&mut columns[..count].iter().map(|column| column.position));
-        neighbours.build([count, 0], false, false);
+        neighbours.build(count, 0, false, false);
         neighbours
     }
 

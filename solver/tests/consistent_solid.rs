@@ -94,9 +94,10 @@ fn stored(mass: f64, p: &Evolved<Symmetric>, rate: &Rate<Symmetric>) -> f64 {
 
 /// Σ m v·a + Σ V σ:G of moving particles and of held ones.
 fn balance(simulation: &dyn Stepper<Symmetric>, rates: &[Rate<Symmetric>]) -> f64 {
-    let power = simulation.fluid().zip(rates).map(|((m, p), r)| m * p.velocity.dot(&r.velocity));
+    let power =
+        simulation.data().fluid().zip(rates).map(|((m, p), r)| m * p.velocity.dot(&r.velocity));
     let held = simulation.wall_rates();
-    let all = simulation.fluid().zip(rates).chain(simulation.walls().zip(&held));
+    let all = simulation.data().fluid().zip(rates).chain(simulation.data().walls().zip(&held));
     relative_sum(power.chain(all.map(|((m, p), r)| stored(m, p, r))))
 }
 
@@ -112,7 +113,7 @@ fn a_linear_velocity_has_its_exact_gradient_at_every_particle() {
         let (simulation, rates) = begun(scene::<Method>(particles, stress(()), Open));
         let mean = gradient.trace() / 3.0;
         let exact = Symmetric { xx: 0.3 - mean, yy: -0.2 - mean, xy: -0.4 };
-        for ((_, p), rate) in simulation.fluid().zip(&rates) {
+        for ((_, p), rate) in simulation.data().fluid().zip(&rates) {
             let found = [rate.extra.xx, rate.extra.yy, rate.extra.xy].map(|x| x / (2.0 * MU));
             for (found, exact) in found.iter().zip([exact.xx, exact.yy, exact.xy]) {
                 assert!((found - exact).abs() < 1e-12, "{found} {exact} at {}", p.position);
@@ -129,7 +130,7 @@ fn a_rigid_rotation_turns_the_stress_and_changes_it_in_no_other_way() {
     let mut particles = cloud(4);
     particles.iter_mut().for_each(|p| p.velocity = spin * p.position + Vector2::new(0.4, -0.1));
     let (simulation, rates) = begun(scene::<Method>(particles, stress(()), Open));
-    for ((_, p), rate) in simulation.fluid().zip(&rates) {
+    for ((_, p), rate) in simulation.data().fluid().zip(&rates) {
         let s = Matrix2::new(p.extra.xx, p.extra.xy, p.extra.xy, p.extra.yy);
         let turned = spin * s - s * spin;
         let found = Matrix2::new(rate.extra.xx, rate.extra.xy, rate.extra.xy, rate.extra.yy);
@@ -146,7 +147,7 @@ fn a_rigid_rotation_turns_the_stress_and_changes_it_in_no_other_way() {
 fn any_stress_on_any_particles_adds_up_to_no_force_and_no_torque() {
     for seed in 0..5 {
         let (simulation, rates) = begun(scene::<Method>(cloud(seed), stress(()), Open));
-        let found = force_and_torque(&simulation, &rates);
+        let found = force_and_torque(simulation.data(), &rates);
         let is_none = found.iter().all(|sum| sum.abs() < ROUND_OFF);
         assert!(
             is_none,
@@ -156,13 +157,13 @@ fn any_stress_on_any_particles_adds_up_to_no_force_and_no_torque() {
     // What shows that the test can fail: forces that are not corrected, and artificial stress.
     let (simulation, _) = begun(scene::<Method>(cloud(0), stress(()), Open));
     let uncorrected = simulation.rates(&CauchyStress { eos: EOS, tensile: () });
-    let [x, y, torque] = force_and_torque(&simulation, &uncorrected);
+    let [x, y, torque] = force_and_torque(simulation.data(), &uncorrected);
     assert!(
         x.abs().max(y.abs()) < ROUND_OFF && torque.abs() > 1e-4,
         "force along x {x:e} and y {y:e}: expected none; torque {torque:e}: expected above 1e-4"
     );
     let artificial = simulation.rates(&(stress(principal()), DRIFT));
-    let [x, y, torque] = force_and_torque(&simulation, &artificial);
+    let [x, y, torque] = force_and_torque(simulation.data(), &artificial);
     assert!(
         x.abs().max(y.abs()) < ROUND_OFF && torque.abs() > 1e-5,
         "force along x {x:e} and y {y:e}: expected none; torque {torque:e}: expected above 1e-5"
@@ -241,7 +242,7 @@ where
     scene.setting.parallel_from = parallel_from;
     let mut simulation = scene.build().expect("a scene");
     let sums = |simulation: &Simulation<S>| {
-        simulation.fluid().fold([0.0; 3], |[x, y, spin], (m, p)| {
+        simulation.data().fluid().fold([0.0; 3], |[x, y, spin], (m, p)| {
             let v = p.velocity * m;
             [x + v.x, y + v.y, spin + p.position.perp(&v)]
         })

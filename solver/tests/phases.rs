@@ -97,13 +97,13 @@ fn lists_are_those_that_sweeps_count() {
     assert_eq!(simulation.advance(1e-3, 1e-3, &mut ()), Outcome::Reached);
     let columns = simulation.plain_columns();
     let mut inside = 0;
-    for (own, list) in columns.iter().zip(simulation.lists()) {
+    for (own, list) in columns.iter().zip(simulation.data().lists()) {
         let distance = |place: usize| (own.position - columns[place].position).norm();
         let near = list.map(distance).filter(|distance| *distance < 2.0 * H).count();
         assert!(near >= 20, "expected 20 neighbours or more, not {near}");
         inside += near as u64;
     }
     assert_eq!(2 * inside, simulation.work().pair_interactions);
-    assert_eq!(simulation.lists().count(), 64);
-    assert_eq!(simulation.column_bytes, (columns.len() + 1) * 64);
+    assert_eq!(simulation.data().lists().count(), 64);
+    assert_eq!(simulation.data().column_bytes, (columns.len() + 1) * 64);
 }

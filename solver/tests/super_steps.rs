@@ -103,6 +103,7 @@ fn a_shear_wave_decays_by_the_stage_polynomial_of_its_eigenvalue() {
         let start = particles(wave(waves));
         let rest = advance(split(torus(), 0.0, start.clone()), 0.0, 1.0);
         let (fastest, rate) = rest
+            .data()
             .fluid()
             .zip(rest.rates(&viscosity()))
             .map(|((_, p), rate)| (p.velocity.x, rate.velocity.x))

@@ -144,7 +144,7 @@ fn division(span: f64, dt_max: f64) -> (usize, f64) {
 
 /// y and u of every particle of the fluid.
 fn fluid(simulation: &dyn Stepper<()>) -> Vec<(f64, f64)> {
-    simulation.fluid().map(|(_, e)| (e.position.y, e.velocity.x)).collect()
+    simulation.data().fluid().map(|(_, e)| (e.position.y, e.velocity.x)).collect()
 }
 
 /// Largest difference \[V\] of any particle from its row.

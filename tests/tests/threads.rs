@@ -154,12 +154,12 @@ fn a_step_goes_by_the_rates_of_its_terms() {
     let forces = simulation.terms_mut().0;
     let rates = simulation.rates(&forces);
     let drift = simulation.rates(&Continuity);
-    let before: Vec<_> = simulation.fluid().map(|(_, p)| *p).collect();
+    let before: Vec<_> = simulation.data().fluid().map(|(_, p)| *p).collect();
     let (builds, step) = (simulation.work().list_builds, 3.0 * dt - simulation.time());
     assert_eq!(simulation.advance(3.0 * dt, dt, &mut ()), Outcome::Reached);
     assert_eq!(simulation.work().list_builds, builds, "the particles kept their order");
     let mut changed = 0;
-    for (k, (_, after)) in simulation.fluid().enumerate() {
+    for (k, (_, after)) in simulation.data().fluid().enumerate() {
         let velocity = before[k].velocity + rates[k].velocity * step;
         let density = before[k].density + drift[k].density * step;
         assert_eq!((after.velocity, after.density), (velocity, density), "particle {k}");

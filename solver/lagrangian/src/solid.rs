@@ -89,8 +89,8 @@ fn check(
     require(Part::Scene, all)
 }
 
-/// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. It dereferences to [`ParticleData`],
-/// whose densities and extra fields (the deviator of the Cauchy stress) follow from the positions.
+/// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. The densities and the extra fields (the
+/// deviator of the Cauchy stress) follow from the positions.
 pub struct Solid<K, L, C> {
     data: ParticleData<Symmetric>,
     /// The body: its reference, and its deformation.
@@ -98,14 +98,6 @@ pub struct Solid<K, L, C> {
     kernel: Smoothing<K>,
     loads: C,
     accelerations: Vec<Vector2<f64>>,
-}
-
-impl<K, L, C> std::ops::Deref for Solid<K, L, C> {
-    type Target = ParticleData<Symmetric>;
-
-    fn deref(&self) -> &Self::Target {
-        &self.data
-    }
 }
 
 impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
@@ -123,6 +115,12 @@ impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
 }
 
 impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
+    fn data(&self) -> &ParticleData<Symmetric> {
+        &self.data
+    }
+    fn data_mut(&mut self) -> &mut ParticleData<Symmetric> {
+        &mut self.data
+    }
     fn step(&mut self, dt: f64) -> Stepped {
         let half = 0.5 * dt;
         for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
@@ -174,9 +172,6 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     }
     fn bytes(&self) -> usize {
         self.data.bytes() + self.body.bytes() + size_of_val(&self.accelerations[..])
-    }
-    fn data_mut(&mut self) -> &mut ParticleData<Symmetric> {
-        &mut self.data
     }
     fn potential(&self) -> Option<Potential> {
         let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };

@@ -23,7 +23,7 @@ fn a_linear_deformation_is_exact_at_every_particle_and_has_no_hourglass_energy()
     let gradient = Matrix2::new(0.3, -0.2, 0.5, -0.1);
     let mut solid = free::<Hencky>(block(7, 5, 0.2));
     put(&mut solid, |_, x| x + gradient * x + Vector2::new(3.0, -1.0), at_rest);
-    let count = solid.fluid_count();
+    let count = solid.data().fluid_count();
     for k in 0..count {
         let error = (solid.body.gradient(k) - gradient).norm();
         assert!(error < 3e-14, "particle {k}: {error:e}");
@@ -37,7 +37,7 @@ fn a_linear_deformation_is_exact_at_every_particle_and_has_no_hourglass_energy()
     );
     // The density of every particle is that of the deformation, and the stress is uniform.
     let ratio = (Matrix2::identity() + gradient).determinant();
-    assert!(solid.fluid().all(|(_, e)| (e.density * ratio / DENSITY - 1.0).abs() < 1e-13));
+    assert!(solid.data().fluid().all(|(_, e)| (e.density * ratio / DENSITY - 1.0).abs() < 1e-13));
 }
 
 #[test]
@@ -49,7 +49,7 @@ fn a_rotation_has_neither_stress_nor_force() {
         let largest = forces(&solid).iter().map(|(.., f)| f.norm()).fold(0.0, f64::max);
         assert!(largest < 1e-13, "{}: {largest:e}", L::NAME);
         assert!(stored(&solid).abs() < 1e-13);
-        assert!(solid.fluid().all(|(_, e)| e.extra.xx.abs() + e.extra.xy.abs() < 1e-13));
+        assert!(solid.data().fluid().all(|(_, e)| e.extra.xx.abs() + e.extra.xy.abs() < 1e-13));
     }
     check::<Hencky>();
     check::<SaintVenantKirchhoff>();
@@ -170,7 +170,7 @@ fn linear_and_angular_momentum_are_those_of_no_force_at_every_state() {
 fn contact_pushes_and_never_pulls() {
     for apart in [0.0, 0.3, 0.9, 1.3, 2.0, 9.0] {
         let mut solid = build::<Hencky, _, _>(two(contact()));
-        let half = solid.fluid_count() / 2;
+        let half = solid.data().fluid_count() / 2;
         let shift = move |k| if k >= half { Vector2::new(apart, 0.0) } else { Vector2::zeros() };
         put(&mut solid, |k, x| x + shift(k), at_rest);
         let ids: Vec<u32> = solid.checkpoint().particles.iter().map(|(id, _)| *id).collect();
@@ -226,7 +226,7 @@ fn the_stiffness_of_contact_is_a_quarter_of_the_modulus_of_longitudinal_waves() 
 #[test]
 fn bodies_that_collide_keep_momentum_and_energy_and_part() {
     let mut solid = build::<Hencky, _, _>(two(contact()));
-    let half = solid.fluid_count() / 2;
+    let half = solid.data().fluid_count() / 2;
     let sign = move |k: usize| if k >= half { 1.0 } else { -1.0 };
     let apart = move |k: usize, x: Vector2<f64>| x + Vector2::new(0.6 * sign(k), 0.0);
     put(&mut solid, apart, |k| Vector2::new(-0.1 * sign(k), 0.02));

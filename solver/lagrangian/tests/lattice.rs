@@ -128,7 +128,7 @@ fn the_step_limit_is_that_of_theory() {
         put(&mut solid, |_, x| x, noise);
         let dt = share * limit();
         solid.advance(1500.0 * dt, dt, &mut ()) != Outcome::Reached
-            || solid.fluid().any(|(_, e)| !(e.velocity.norm() < 1e-6))
+            || solid.data().fluid().any(|(_, e)| !(e.velocity.norm() < 1e-6))
     };
     assert!(!grows(0.99), "stable at 0.99 of {} s", limit());
     assert!(grows(1.01), "unstable at 1.01 of {} s", limit());
@@ -189,7 +189,7 @@ fn fastest(solid: &mut Block<Hencky, BetweenFaces>) -> f64 {
 #[test]
 fn the_step_limit_of_bodies_in_contact_is_that_of_their_fastest_mode() {
     let (mut solid, contact) = pressed();
-    let pressure = -solid.fluid().fold(0.0, |sum, (_, e)| {
+    let pressure = -solid.data().fluid().fold(0.0, |sum, (_, e)| {
         sum + (e.extra.xx - MODULI.bulk * (e.density / DENSITY - 1.0)) / 40.0
     });
     let strain = pressure / MODULI.longitudinal();
@@ -210,7 +210,7 @@ fn the_step_limit_of_bodies_in_contact_is_that_of_their_fastest_mode() {
         let dt = share * longest;
         let now = solid.time();
         solid.advance(now + 1500.0 * dt, dt, &mut ()) != Outcome::Reached
-            || solid.fluid().any(|(_, e)| !(e.velocity.norm() < 1e-6))
+            || solid.data().fluid().any(|(_, e)| !(e.velocity.norm() < 1e-6))
     };
     assert!(!grows(0.98), "stable below");
     assert!(grows(1.02), "unstable above");

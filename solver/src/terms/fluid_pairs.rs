@@ -98,7 +98,7 @@ mod tests {
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         let fluid: Vec<(f64, Vector2<f64>, Vector2<f64>)> =
-            simulation.fluid().map(|(mass, p)| (mass, p.position, p.velocity)).collect();
+            simulation.data().fluid().map(|(mass, p)| (mass, p.position, p.velocity)).collect();
         let rates = simulation.rates(term);
         let all = fluid.into_iter().zip(rates);
         all.map(|((mass, x, v), rate)| (mass, Particle::fluid(x, v, 2.0, mass), rate)).collect()

@@ -280,7 +280,7 @@ mod tests {
         fn rows<U: WallVelocity + Default>(of: fn(Vector2<f64>) -> Vector2<f64>) -> Vec<[f64; 2]> {
             let simulation = scene::<U>(Domain::channel(1.0), 12, 0.0, of).expect("a scene");
             let rates = simulation.rates(&Viscosity { mu: 1.0, eta2: 1e-9 });
-            let places = simulation.fluid().map(|(_, p)| p.position.y);
+            let places = simulation.data().fluid().map(|(_, p)| p.position.y);
             places.zip(rates).map(|(y, rate)| [y, rate.velocity.x / -18.0]).collect()
         }
         let rows = [rows::<CurvedNoSlip>(parabola), rows::<NoSlip>(parabola)];

@@ -142,7 +142,7 @@ mod tests {
         simulation.advance(0.0, 1.0, &mut ());
         let [pushed, squeezed] = [simulation.rates(&pressure), simulation.rates(&Continuity)];
         let (mut sum, mut all, mut fastest) = (0.0f64, 0.0f64, 0.0f64);
-        for (k, (mass, p)) in simulation.fluid().enumerate() {
+        for (k, (mass, p)) in simulation.data().fluid().enumerate() {
             let kinetic = mass * p.velocity.dot(&pushed[k].velocity);
             let stress = EOS.pressure(p.density) / (p.density * p.density);
             let compression = mass * stress * squeezed[k].density;
@@ -223,7 +223,8 @@ mod tests {
             let mut simulation = scene.build().expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
             let rates = simulation.rates(&pressure);
-            let mut all = simulation.fluid().zip(rates).filter(|((_, p), _)| p.position.y > 0.0);
+            let mut all =
+                simulation.data().fluid().zip(rates).filter(|((_, p), _)| p.position.y > 0.0);
             all.next().expect("the particle in the water").1.velocity
         };
         let behind = || Some(particle(0.55, -0.04));

@@ -16,7 +16,7 @@ use base::{
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Numbers, Particle, Past, Progress, Stepper, Work};
+use solver::{Checkpoint, Interval, Numbers, Particle, Past, Progress, Stepper, Work};
 
 use crate::{
     error::RunError,
@@ -61,7 +61,8 @@ fn state<X: Numbers>(of: &Checkpoint<X>) -> State {
         earlier.push([drifted.0, rate.0]);
         stresses.extend(stress(&drifted.1).into_iter().chain(stress(&rate.1)));
     }
-    let times = [time, dt, last_approach, *lag, call[0], call[1], call[2]];
+    let Interval { start, until, dt_max } = call;
+    let times = [time, dt, last_approach, *lag, start, until, dt_max];
     let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
     (times, counts, built_inside_a_step, (stored, earlier, stresses))
 }
@@ -69,7 +70,8 @@ fn state<X: Numbers>(of: &Checkpoint<X>) -> State {
 fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError> {
     let (times, counts, built_inside_a_step, (stored, earlier, stresses)) =
         bits::read::<State>(from)?;
-    let [time, dt, last_approach, lag, call @ ..] = times;
+    let [time, dt, last_approach, lag, start, until, dt_max] = times;
+    let call = Interval { start, until, dt_max };
     let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
     let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };

@@ -126,7 +126,7 @@ impl Profiler {
         }
         self.sampled = steps;
         let (columns, lists) = (simulation.plain_columns(), &mut self.lists);
-        for (own, list) in columns.iter().zip(simulation.lists()) {
+        for (own, list) in columns.iter().zip(simulation.data().lists()) {
             let (mut neighbours, mut inside) = (0, 0);
             for other in list.map(|place| &columns[place]) {
                 neighbours += 1;
@@ -136,10 +136,10 @@ impl Profiler {
             lists.neighbours += f64::from(neighbours);
             lists.inside += f64::from(inside);
         }
-        let particles = simulation.fluid_count() + simulation.walls().len();
+        let particles = simulation.data().fluid_count() + simulation.data().walls().len();
         lists.count += 1.0;
-        lists.particles += simulation.fluid_count() as f64;
-        lists.column_bytes += simulation.column_bytes as f64;
+        lists.particles += simulation.data().fluid_count() as f64;
+        lists.column_bytes += simulation.data().column_bytes as f64;
         lists.state_bytes += (particles * size_of::<Evolved<X>>()) as f64;
     }
 

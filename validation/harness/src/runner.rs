@@ -177,7 +177,7 @@ struct Watch<'a> {
 impl Watch<'_> {
     fn show<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, dt: f64) {
         if let Some(show) = self.context.progress {
-            let particle_steps = simulation.work().steps * simulation.fluid_count() as u64;
+            let particle_steps = simulation.work().steps * simulation.data().fluid_count() as u64;
             show(Progress { time: simulation.time(), end: self.end, dt, particle_steps });
             self.shown = Instant::now();
         }
@@ -194,7 +194,7 @@ impl Watch<'_> {
             largest_dt_s: self.cost.largest_dt_s.max(last),
             pair_interactions: work.pair_interactions,
             particle_rhs: work.right_hand_sides,
-            particles: simulation.fluid_count(),
+            particles: simulation.data().fluid_count(),
             solver_bytes: simulation.bytes() as u64,
             breakdown: self.profiler.as_ref().map(|profiler| profiler.breakdown(simulation)),
             ..self.cost.clone()
@@ -905,7 +905,7 @@ mod tests {
             .at("pause", &|_, _, _| std::thread::sleep(Duration::from_millis(20)))
             .run(&Context { profile, ..Context::default() })
             .unwrap();
-        (state(&*wave), wave.work(), cost, wave.column_bytes)
+        (state(&*wave), wave.work(), cost, wave.data().column_bytes)
     }
 
     #[test]

@@ -43,8 +43,8 @@ impl Size {
 
     /// So many steps of a simulation; its kernel tells how far it reaches.
     pub fn of<X: Numbers>(simulation: &dyn Stepper<X>, steps: f64) -> Self {
-        let particles = simulation.fluid_count() + simulation.walls().len();
-        let spacing = simulation.fluid().next().map_or(1.0, |(m, p)| (m / p.density).sqrt());
+        let particles = simulation.data().fluid_count() + simulation.data().walls().len();
+        let spacing = simulation.data().fluid().next().map_or(1.0, |(m, p)| (m / p.density).sqrt());
         let reaches =
             |tenths: &i32| simulation.weight((0.1 * f64::from(*tenths) * spacing).powi(2)) > 0.0;
         let reach = 0.1 * f64::from((1..300).take_while(reaches).count() as i32);

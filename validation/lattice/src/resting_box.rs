@@ -173,7 +173,7 @@ fn energy(simulation: &dyn Stepper<()>) -> f64 {
     let of = |(mass, e): (f64, &solver::Evolved<()>)| {
         0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
     };
-    simulation.fluid().map(of).sum()
+    simulation.data().fluid().map(of).sum()
 }
 
 /// Watches the energy, and ends the run if it grew beyond doubt.

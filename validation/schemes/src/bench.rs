@@ -89,7 +89,7 @@ pub struct Speed {
 /// Measures one scene on the current pool for about `budget` seconds.
 pub fn speed(side: usize, parallel: bool, budget: f64) -> Result<Speed, SceneError> {
     let mut simulation = scene::<Euler>(side, parallel).build()?;
-    let particles = simulation.fluid_count();
+    let particles = simulation.data().fluid_count();
     let rate = particles as f64 / seconds_per_step(&mut simulation, SHORT, 0.7 * budget);
     let work = simulation.work();
     let neighbours = work.pair_interactions as f64 / work.right_hand_sides as f64;

@@ -207,7 +207,7 @@ impl Motion {
 
     fn contact_stress(&self, simulation: &dyn Stepper<Symmetric>) -> f64 {
         let (eos, reach) = (self.settings.material().eos(), 0.5 * self.settings.length);
-        let near = simulation.fluid().filter(|(_, p)| p.position.x.abs() < reach);
+        let near = simulation.data().fluid().filter(|(_, p)| p.position.x.abs() < reach);
         let (count, sum) = near.fold((0.0, 0.0), |(count, sum), (_, p)| {
             (count + 1.0, sum + eos.pressure(p.density) - p.extra.xx)
         });
@@ -263,7 +263,7 @@ impl Motion {
 
 impl Watch for Motion {
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
-        let all = simulation.fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
+        let all = simulation.data().fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
         let row = row(simulation.time(), all);
         self.series.push(row);
         if self.settings.collide && self.stress.is_none() && row[2] <= 0.0 {
@@ -276,7 +276,7 @@ impl Watch for Motion {
             true => self.impact_metrics(record),
             false => {
                 self.pulse_metrics(record);
-                let all = simulation.fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
+                let all = simulation.data().fluid().map(|(m, p)| (m, p.position.x, p.velocity.x));
                 record.put(PULSE_RMS, self.pulse_rms(simulation.time(), all));
             }
         }

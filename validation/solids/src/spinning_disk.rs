@@ -117,7 +117,7 @@ impl History {
 
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let (mut mass, mut stress) = (0.0, 0.0);
-        for (m, p) in simulation.fluid() {
+        for (m, p) in simulation.data().fluid() {
             mass += m;
             stress += m * norm_squared(&p.extra);
         }
@@ -133,7 +133,7 @@ impl History {
 /// \[Pa²\]. A step along tangents dilates a rotation by (W dt)²/2, which is no shear.
 fn mistaken(simulation: &dyn Stepper<Symmetric>, radius: f64) -> [f64; 2] {
     let (mut inside, mut rim, mut count) = (0.0_f64, 0.0, 0.0);
-    for (_, p) in simulation.fluid() {
+    for (_, p) in simulation.data().fluid() {
         let Symmetric { xx, yy, xy } = p.extra;
         let square = 0.5 * (xx - yy) * (xx - yy) + 2.0 * xy * xy;
         if p.position.norm() < radius {

@@ -70,7 +70,7 @@ pub type State = (f64, Vector2<f64>, Vector2<f64>, Vector2<f64>);
 /// Of all particles in the order of storage.
 pub fn forces<L: Law, C: Load>(solid: &Block<L, C>) -> Vec<State> {
     let rates = solid.total_rates();
-    let all = solid.fluid().zip(&rates);
+    let all = solid.data().fluid().zip(&rates);
     all.map(|((m, e), r)| (m, e.position, e.velocity, r.velocity * m)).collect()
 }
 
@@ -83,5 +83,5 @@ pub fn stored<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
 /// All of the energy.
 pub fn energy<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
     let kinetic = |(m, e): (f64, &solver::Evolved<Symmetric>)| 0.5 * m * e.velocity.norm_squared();
-    stored(solid) + solid.fluid().map(kinetic).fold(0.0, |sum, one| sum + one)
+    stored(solid) + solid.data().fluid().map(kinetic).fold(0.0, |sum, one| sum + one)
 }

@@ -122,7 +122,7 @@ pub const MODE: &str = "mode";
 pub fn pressure_mode(setup: &Setup, simulation: &dyn Stepper<()>) -> f64 {
     let Setup { settings: s, medium, v, .. } = setup;
     let (mut mode, mut count) = (0.0, 0.0);
-    for (_, e) in simulation.fluid() {
+    for (_, e) in simulation.data().fluid() {
         let phase = std::f64::consts::PI * e.position.y / s.width;
         mode += 2.0 * medium.eos.pressure(e.density) / (s.rho * v * v) * cos(phase);
         count += 1.0;

@@ -223,7 +223,7 @@ fn wall(setup: &Setup, field: &Field, x: f64) -> [f64; 3] {
 
 /// Mean velocity along x over the fluid's area \[m/s\].
 pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
-    s.fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
+    s.data().fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
 }
 
 /// Metrics and profiles.

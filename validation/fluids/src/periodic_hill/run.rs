@@ -91,7 +91,7 @@ impl Monitor {
 
 /// Σ m v²/2 of the fluid.
 fn kinetic_energy(simulation: &dyn Driving) -> f64 {
-    simulation.fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum()
+    simulation.data().fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum()
 }
 
 /// One run of the flow over hills.

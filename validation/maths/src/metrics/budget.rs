@@ -121,14 +121,14 @@ where
         let (forces, drift) = self.terms_mut().clone();
         let all = self.rates(&(forces.pairs(), drift));
         let Sums { power: [velocity, density, position], force } =
-            sums(&mut self.fluid(), &all, slope);
+            sums(&mut self.data().fluid(), &all, slope);
         let pressure = forces.pressure();
         let bare = self.rates(&(Pressure::new(pressure.eos), Continuity));
-        let bare = sums(&mut self.fluid(), &bare, slope).power;
-        let walls = power(&mut self.walls(), &self.wall_rates(), slope);
+        let bare = sums(&mut self.data().fluid(), &bare, slope).power;
+        let walls = power(&mut self.data().walls(), &self.wall_rates(), slope);
         let stress = match size_of_val(&pressure.tensile) {
             0 => 0.0,
-            _ => power(&mut self.fluid(), &self.rates(&pressure), slope) - bare[0],
+            _ => power(&mut self.data().fluid(), &self.rates(&pressure), slope) - bare[0],
         };
         let viscosity = velocity - bare[0] - stress;
         ([viscosity, stress, density - bare[1], position, bare[0] + bare[1] + walls], force)
@@ -185,7 +185,7 @@ mod tests {
 
     /// The power of these terms together \[W/m\].
     fn power_of(simulation: &Simulation<Method>, terms: &impl Term<()>) -> f64 {
-        power(&mut simulation.fluid(), &simulation.rates(terms), &water_slope(&WATER))
+        power(&mut simulation.data().fluid(), &simulation.rates(terms), &water_slope(&WATER))
     }
 
     /// Total energy a time dt after the start \[J/m\].
@@ -203,7 +203,7 @@ mod tests {
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         let slope = water_slope(&WATER);
-        let of_walls = power(&mut simulation.walls(), &simulation.wall_rates(), &slope);
+        let of_walls = power(&mut simulation.data().walls(), &simulation.wall_rates(), &slope);
         let parts = [power_of(&simulation, &forces.0), power_of(&simulation, &drift.0), of_walls];
         let stress = parts[0] - power_of(&simulation, &Pressure::new(forces.0.eos));
         let sum = parts.iter().sum::<f64>() - stress;
@@ -222,7 +222,7 @@ mod tests {
         let slope = water_slope(&WATER);
         let (powers, force) = simulation.powers(&slope);
         let bare = power_of(&simulation, &Pressure::new(forces.0.eos));
-        let of_walls = power(&mut simulation.walls(), &simulation.wall_rates(), &slope);
+        let of_walls = power(&mut simulation.data().walls(), &simulation.wall_rates(), &slope);
         let alone = [
             power_of(&simulation, &forces.1),
             power_of(&simulation, &forces.0) - bare,
@@ -236,8 +236,8 @@ mod tests {
             assert!(k == 4 || power.abs() > 1e-6 * bare.abs(), "{k} shows something");
         }
         let total = simulation.total_rates();
-        let each = simulation.fluid().zip(&total);
-        let mass: f64 = simulation.fluid().map(|(mass, _)| mass).sum();
+        let each = simulation.data().fluid().zip(&total);
+        let mass: f64 = simulation.data().fluid().map(|(mass, _)| mass).sum();
         let all = each.fold(Vector2::zeros(), |sum, ((mass, _), rate)| sum + rate.velocity * mass);
         assert!((force + WATER.gravity * mass - all).norm() < 1e-12 * all.norm());
     }

@@ -42,12 +42,12 @@ impl Water {
     /// The energy of all particles.
     pub fn energy<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Energy {
         let mut sum = Energy::default();
-        for (mass, p) in simulation.fluid() {
+        for (mass, p) in simulation.data().fluid() {
             sum.kinetic += 0.5 * mass * p.velocity.norm_squared();
             sum.potential -= mass * self.gravity.dot(&p.position);
             sum.compression += mass * self.compression(p.density);
         }
-        for (mass, p) in simulation.walls() {
+        for (mass, p) in simulation.data().walls() {
             sum.compression += mass * self.compression(p.density);
         }
         sum

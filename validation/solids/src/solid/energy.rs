@@ -24,14 +24,14 @@ impl Energy {
         if let Some(known) = Self::known(simulation) {
             return known;
         }
-        simulation.fluid().fold(Self::default(), |sum, (mass, p)| sum.with(mass, p, of))
+        simulation.data().fluid().fold(Self::default(), |sum, (mass, p)| sum.with(mass, p, of))
     }
 
     /// Of a simulation whose forces derive from energies.
     pub fn known(simulation: &dyn Stepper<Symmetric>) -> Option<Self> {
         let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
         let half = |(mass, p): (f64, &Evolved<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
-        let kinetic = simulation.fluid().map(half).fold(0.0, |sum, one| sum + one);
+        let kinetic = simulation.data().fluid().map(half).fold(0.0, |sum, one| sum + one);
         Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
     }
 
@@ -76,7 +76,7 @@ pub fn norm_squared(s: &Symmetric) -> f64 {
 
 /// Angular momentum about the centre of mass \[kg m²/s per m\].
 pub fn angular_momentum<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
-    let sums = simulation.fluid().fold(
+    let sums = simulation.data().fluid().fold(
         (0.0, Vector2::zeros(), Vector2::zeros()),
         |(mass, first, momentum), (m, p)| {
             (mass + m, first + p.position * m, momentum + p.velocity * m)
@@ -84,7 +84,7 @@ pub fn angular_momentum<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
     );
     let (centre, drift) = (sums.1 / sums.0, sums.2 / sums.0);
     let spin = |(m, p): (f64, &Evolved<X>)| m * (p.position - centre).perp(&(p.velocity - drift));
-    simulation.fluid().map(spin).fold(0.0, |sum, one| sum + one)
+    simulation.data().fluid().map(spin).fold(0.0, |sum, one| sum + one)
 }
 
 #[cfg(test)]

@@ -155,7 +155,7 @@ mod tests {
         let parts = Parts::new(medium, domain, particles, &Context::default());
         let mut simulation = (method.build)(parts).expect("a scene");
         assert_eq!(simulation.advance(60.0 * dt, dt, &mut ()), Outcome::Reached);
-        simulation.fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max) / 1e-12
+        simulation.data().fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max) / 1e-12
     }
 
     #[test]

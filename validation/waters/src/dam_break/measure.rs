@@ -100,7 +100,7 @@ impl<'a> Samples<'a> {
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, simulation: &dyn Stepper<()>) {
         let (s, dx) = (&self.dam.settings, self.dam.medium.dx);
-        let foremost = foremost(simulation.fluid(), s.height);
+        let foremost = foremost(simulation.data().fluid(), s.height);
         // In the order of the scene: that of storage changes, and with it the last bits of a sum.
         let mut water = simulation.particles();
         water.retain(|p| p.role == Role::Fluid);
@@ -114,7 +114,7 @@ impl<'a> Samples<'a> {
         let width = self.dam.tank.width();
         let depth_at = |x: f64, spacings: f64| {
             let (place, w) = probe(x, spacings, dx, width);
-            depth(simulation.fluid(), place, w)
+            depth(simulation.data().fluid(), place, w)
         };
         let over = (HEIGHT_OVER * s.width / dx).round().max(2.0);
         // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
@@ -135,8 +135,8 @@ impl<'a> Samples<'a> {
         let is_lost =
             |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
         // Particles by their numbers are copies, which most samples do without.
-        if self.spilled.is_empty() && !simulation.fluid().any(|(_, p)| is_lost(p.position)) {
-            let speeds = simulation.fluid().map(|(_, p)| p.velocity.norm());
+        if self.spilled.is_empty() && !simulation.data().fluid().any(|(_, p)| is_lost(p.position)) {
+            let speeds = simulation.data().fluid().map(|(_, p)| p.velocity.norm());
             self.fastest = speeds.fold(self.fastest, f64::max);
             self.outside = [self.outside[0].max(0.0), 0.0];
             return;
@@ -210,6 +210,7 @@ impl Gauge {
 
     fn read(&self, simulation: &dyn Stepper<()>) -> Vec<f64> {
         let near: Vec<(Vector2<f64>, f64, f64)> = simulation
+            .data()
             .fluid()
             .filter(|(_, p)| p.position.x > self.reach)
             .map(|(mass, p)| (p.position, mass / p.density, self.eos.pressure(p.density)))

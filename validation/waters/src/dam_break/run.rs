@@ -49,7 +49,7 @@ pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<R
         .at_positions("picture", &|(.., record), s, k| {
             if context.spec.keep.particles && k == pictured {
                 let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
-                let fluid = s.fluid().map(|(_, p)| (p.position / settings.height, value(p)));
+                let fluid = s.data().fluid().map(|(_, p)| (p.position / settings.height, value(p)));
                 pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
             }
         })

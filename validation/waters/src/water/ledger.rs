@@ -78,7 +78,7 @@ impl Ledger {
     /// Adds the impulse since the last sample; `pairs` is the force of all pairs on the water \[N/m\].
     fn balance_momentum(&mut self, simulation: &dyn Stepper<()>, pairs: Vector2<f64>) {
         let (mut momentum, mut force) = (Vector2::zeros(), pairs);
-        for (mass, p) in simulation.fluid() {
+        for (mass, p) in simulation.data().fluid() {
             momentum += p.velocity * mass;
             force += self.water.gravity * mass;
         }
