@@ -153,7 +153,13 @@ impl<X: Numbers> Checkpoint<X> {
         let moving = particles.iter().filter(|(_, p)| p.role == Role::Fluid).count();
         let is_past = |past: &Past<X>| past.drifted.is_finite() && past.rate.is_finite();
         let has_past = past.is_empty() || (moving..=particles.len()).contains(&past.len());
+        let Interval { start, until, .. } = progress.call;
+        let is_under_way = (0.0..=progress.time).contains(&start) && progress.time <= until;
+        let Work { steps, pair_interactions, right_hand_sides, list_builds } = progress.work;
+        let counts = [steps, pair_interactions, right_hand_sides, list_builds, progress.made];
         let all = [
+            (is_under_way || progress.call == Interval::default(), "a time that is not on its way"),
+            (counts.into_iter().all(|count| count < 1 << 60), "a count that no run reaches"),
             (has_past && past.iter().all(is_past), "earlier steps of other particles"),
             (sum.is_finite(), "a time, a lag or a place that is not finite"),
             (built_at.len() == particles.len(), "a number of places that is not that of particles"),
@@ -340,6 +346,13 @@ impl<X: Numbers> ParticleData<X> {
     /// says what is wrong, and has changed nothing.
     pub(crate) fn replace(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
         from.check()?;
+        let mut own = vec![None; self.fixed.len()];
+        self.fixed.iter().for_each(|f| own[f.id as usize] = Some((f.mass, f.role)));
+        let is_own =
+            |(id, p): &(u32, Particle<X>)| own.get(*id as usize) == Some(&Some((p.mass, p.role)));
+        if own.len() != from.particles.len() || !from.particles.iter().all(is_own) {
+            return Err("particles of another scene");
+        }
         self.put(&from.particles);
         Ok(())
     }

@@ -624,6 +624,35 @@ fn told(folder: &Path) -> (String, u32) {
     (record.to_json().unwrap(), resumed)
 }
 
+/// Checkpoints with other numbers and the digest of these, and what is said of them. The numbers begin after
+/// two lines: seven times, of which the first is that of the state, and five counts, the first of steps.
+#[cfg(unix)]
+fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
+    let lines: Vec<&[u8]> = whole.splitn(3, |byte| *byte == b'\n').collect();
+    let [first, head, numbers] = lines[..] else { panic!("two lines and numbers") };
+    let first = String::from_utf8_lossy(first).into_owned();
+    let (format, _) = first.rsplit_once(' ').unwrap();
+    let head = String::from_utf8_lossy(head).into_owned();
+    let sealed = |head: &str, numbers: &[u8]| {
+        let rest = [head.as_bytes(), b"\n", numbers].concat();
+        [format!("{format} {}\n", base::reference::sha256(&rest)).as_bytes(), &rest].concat()
+    };
+    let with = |place: usize, number: [u8; 8]| {
+        let mut numbers = numbers.to_vec();
+        numbers[place..place + 8].copy_from_slice(&number);
+        sealed(&head, &numbers)
+    };
+    vec![
+        (sealed(&head.replace("\"n\":56", "\"n\":57"), numbers), "particles of another scene"),
+        (sealed(&head.replace("\"n\":56", "\"n\":-1"), numbers), "setting n is"),
+        (with(0, 1e9_f64.to_le_bytes()), "a time that is not on its way"),
+        (with(0, f64::NAN.to_le_bytes()), "a time that is not on its way"),
+        (with(56, u64::MAX.to_le_bytes()), "a count that no run reaches"),
+        // The length of a list of what was observed.
+        (sealed(&head, &numbers[..numbers.len() - 40]), "damaged or truncated"),
+    ]
+}
+
 /// A run that is killed, goes on, is interrupted and goes on again ends with the record, the tables and the
 /// frames of one that was left alone; and a checkpoint that was cut is refused.
 #[cfg(unix)]
@@ -655,6 +684,12 @@ fn a_killed_run_goes_on_to_an_equal_record() {
     let cut = touchstone_in(folder.path(), &resume);
     assert_eq!(cut.status.code(), Some(2));
     assert!(stderr(&cut).contains("killed/checkpoint\" is damaged or truncated"), "{cut:?}");
+    for (changed, words) in forged(&whole) {
+        fs::write(&checkpoint, changed).unwrap();
+        let output = touchstone_in(folder.path(), &resume);
+        assert_eq!(output.status.code(), Some(2), "{words}: {}", stderr(&output));
+        assert!(stderr(&output).contains(words), "{words}: {}", stderr(&output));
+    }
     fs::write(&checkpoint, &whole).unwrap();
 
     let (mut child, mut said) = started(folder.path(), &resume, "estimate: ");
@@ -765,6 +800,29 @@ fn bits_do_not_depend_on_the_instructions_that_the_c_library_finds() {
         let metrics = |of: &Record| format!("{:?}", of.metrics); // some may be NaN
         assert_eq!(metrics(&with), metrics(&without), "{case}");
     }
+}
+
+/// The record of a run was lost with exit 0. Rust opens `/dev/null` where standard output is closed, and of
+/// `>/dev/null` somebody knows.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_document_for_a_closed_standard_output_is_an_error() {
+    let program = env!("CARGO_BIN_EXE_touchstone");
+    for line in ["run couette --set rows=8 --set end=0.01 --json", "list --json"] {
+        let run = |to: &str| {
+            let line = format!("'{program}' {line} {to}");
+            Command::new("bash").args(["-c", &line]).output().unwrap()
+        };
+        for to in [">&-", ">/dev/full"] {
+            let output = run(to);
+            assert_eq!(output.status.code(), Some(2), "{line} {to}: {}", stderr(&output));
+            assert!(stderr(&output).contains("standard output"), "{line} {to}: {output:?}");
+        }
+        assert_eq!(run(">/dev/null").status.code(), Some(0), "{line}");
+    }
+    let line = format!("'{program}' --help >/dev/full");
+    let help = Command::new("bash").args(["-c", &line]).output().unwrap();
+    assert_eq!(help.status.code(), Some(2), "{}", stderr(&help));
 }
 
 /// A program that reads half a document must not take it for a whole one.

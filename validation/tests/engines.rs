@@ -238,3 +238,61 @@ fn a_worker_that_is_killed_costs_its_run_alone() {
     assert_eq!((begun(), records(&store).len()), (0, 2));
     assert!(records(&store).contains(&records(&folder.path().join("whole"))[0]));
 }
+
+/// A package `hyperqueue` that writes the tasks of a job into a file, a word a line, and runs none.
+const HYPERQUEUE: &str = "
+class Job:
+    def __init__(self, max_fails=None): self.tasks = []
+    def program(self, words, name=None): self.tasks.append(words)
+class LocalCluster:
+    def __enter__(self): return self
+    def __exit__(self, *_): pass
+    def start_worker(self, _): pass
+    def client(self): return self
+    def submit(self, job): open('tasks', 'w').write('\\n'.join(word for task in job.tasks for word in task))
+    def wait_for_jobs(self, jobs, raise_on_error): return True
+";
+
+/// 0 lines a task were a traceback, and −1 made an empty job that succeeded.
+#[test]
+fn tasks_of_hyperqueue_keep_odd_paths_and_refuse_what_is_no_plan() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let package = at.join("packages/hyperqueue");
+    fs::create_dir_all(&package).unwrap();
+    fs::write(package.join("__init__.py"), HYPERQUEUE).unwrap();
+    let cluster = "class WorkerConfig:\n    def __init__(self, cores): pass\n";
+    fs::write(package.join("cluster.py"), cluster).unwrap();
+    let script = contrib("hyperqueue_tasks.py");
+    let python = |arguments: &[&str]| {
+        let mut python = command("python3", at, &[&[&*script], arguments].concat());
+        python.env("PYTHONPATH", at.join("packages"));
+        python
+    };
+    if !succeeds(command("python3", at, &["--version"])) {
+        return println!("skipped: there is no python3");
+    }
+    let odd = "it's a $(touch pwned) `touch pwned` {x} \"y\"";
+    fs::create_dir(at.join(odd)).unwrap();
+    fs::write(at.join(odd).join("p"), "a\n \n\nb\nc\n").unwrap();
+    let [specs, store] = ["p", "st"].map(|of| at.canonicalize().unwrap().join(odd).join(of));
+    run(python(&[specs.to_str().unwrap(), store.to_str().unwrap(), "2"]));
+    let told = fs::read_to_string(at.join("tasks")).unwrap();
+    let tasks: Vec<&str> = told.lines().collect();
+    let paths = [specs.to_str().unwrap(), store.to_str().unwrap()];
+    assert_eq!(tasks.len(), 28, "{tasks:?}");
+    for (task, index) in tasks.chunks(14).zip(["0..2", "2..4"]) {
+        assert_eq!(task[5..7], ["run", "--specs"], "{task:?}");
+        assert_eq!([task[7], task[9], task[13]], [paths[0], paths[1], index], "{task:?}");
+    }
+    fs::write(at.join("empty"), "\n \n").unwrap();
+    let specs = specs.to_str().unwrap();
+    for arguments in
+        [&[specs, "st", "0"][..], &[specs, "st", "-1"], &[specs, "st", "x"], &["empty", "st"]]
+    {
+        fs::remove_file(at.join("tasks")).unwrap_or_default();
+        let output = python(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {output:?}");
+        assert!(!at.join("tasks").exists() && !at.join("pwned").exists(), "{arguments:?}");
+    }
+}

@@ -148,7 +148,15 @@ fn a_challenge_takes_a_method_that_a_submission_can_have() {
         ("<script>".into(), "expected value"),
         (whole.replace("closed", "ajar"), "unknown variant `ajar`"),
         (whole.replace("\"touchstone\"", "\"\""), "expected 1 to 100 characters"),
-        (whole.replace("\"touchstone\"", "\"a\\u202eb\""), "U+202E"),
+        (whole.replace("\"touchstone\"", "\"a\\u202eb\""), "\\u{202e}"),
+        // Names that read as another's: a blank at an end or two in a row, Cyrillic, a mark on a letter.
+        (whole.replace("\"touchstone\"", "\"touchstone \""), "single blanks between words"),
+        (whole.replace("\"touchstone\"", "\" PySPH\""), "single blanks between words"),
+        (whole.replace("\"touchstone\"", "\"my  code\""), "single blanks between words"),
+        (whole.replace("\"touchstone\"", "\"t\u{43e}uchstone\""), "\\u{43e}"),
+        (whole.replace("\"touchstone\"", "\"touchstone\u{323}\""), "characters of ASCII"),
+        (whole.replace("\"touchstone\"", "\"a\u{a0}b\""), "characters of ASCII"),
+        (whole.replace("\"touchstone\"", "\"Touchstone\""), "touchstone in lower case"),
     ] {
         fs::write(at.join("m"), text).unwrap();
         refused(at, line, words);

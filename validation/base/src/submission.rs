@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de::Error};
 
-use crate::number::is_default;
+use crate::{number::is_default, text::short};
 
 /// The code of a submission that this program wrote itself, as `export --solve` does.
 pub const OURS: &str = "touchstone";
@@ -13,11 +13,35 @@ pub const MACHINE: &str = "machine";
 /// Key of the numerics of a record: the day of the session in which it was made with others, in turn.
 pub const SESSION: &str = "session";
 
+/// Reads the name of a code, and refuses a name that a reader takes for another one: with letters of other
+/// scripts, of which some look like ours, with a blank that nobody sees, or this program's in other letters.
+///
+/// # Errors
+/// If it is such a name.
+pub fn code_name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Error> {
+    let name = String::deserialize(from)?;
+    let is_plain = name.chars().all(|char| (' '..='~').contains(&char));
+    let is_other = name == OURS || !name.eq_ignore_ascii_case(OURS);
+    let expected = match (is_plain && name.split(' ').all(|word| !word.is_empty()), is_other) {
+        (true, true) => return Ok(name),
+        (true, false) => "touchstone in lower case for this program, or the name of another code",
+        // An empty name is refused with the other texts of the document.
+        _ if name.is_empty() => return Ok(name),
+        _ => "printable characters of ASCII and single blanks between words",
+    };
+    let escaped: String = name.escape_default().collect();
+    Err(D::Error::custom(format!(
+        "the name of the code is \"{}\"; expected {expected}",
+        short(&escaped)
+    )))
+}
+
 /// A run of another code.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Submission {
     /// name of the code
+    #[serde(deserialize_with = "code_name")]
     pub code: String,
     /// its version
     pub version: String,

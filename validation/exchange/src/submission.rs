@@ -10,7 +10,7 @@ use base::{
     record::{self, Cost, Metric, Record, Status},
     reference::sha256,
     spec::{Measure, RunSpec},
-    submission::{Division, MACHINE, Submission},
+    submission::{Division, MACHINE, Submission, code_name},
     text::{first, number, short, unseen},
 };
 use harness::{
@@ -60,6 +60,7 @@ const MOST_BYTES: u64 = 1 << 24;
 #[serde(deny_unknown_fields)]
 pub struct Method {
     /// name of the code
+    #[serde(deserialize_with = "code_name")]
     pub code: String,
     /// its version
     pub version: String,

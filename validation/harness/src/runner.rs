@@ -344,6 +344,10 @@ impl Watch<'_> {
         let (simulation, seen) = run.parts();
         let Stage { reached, cost, frames, ended } =
             checkpoint::restore(&bytes, simulation, seen.bits())?;
+        let next = self.course.times.get(reached).unwrap_or(&self.end);
+        if reached > self.course.times.len() || simulation.time() > *next {
+            return Err(RunError::Checkpoint("times of another run"));
+        }
         let resumed = cost.resumed + u32::from(ended.is_none());
         self.cost = Cost { threads: self.cost.threads, resumed, ..cost };
         self.reached = reached;

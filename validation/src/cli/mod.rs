@@ -39,7 +39,7 @@ mod verify;
 
 use std::error::Error as _;
 use std::process::ExitCode;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use base::files::FileError;
 use base::manifest::{Known, Source, UNKNOWN, tell_source};
@@ -200,7 +200,7 @@ impl World {
     }
 
     fn is_interrupted(&self) -> bool {
-        self.interrupt.load(std::sync::atomic::Ordering::Relaxed)
+        self.interrupt.load(Ordering::Relaxed)
     }
 }
 
@@ -275,8 +275,8 @@ pub fn main() -> ExitCode {
             return code(Exit::Usage);
         }
         Err(help) => {
-            let _ = help.print();
-            return code(Exit::Pass);
+            let printed = output::taken(help.print());
+            return code(conclude(|| printed.map(|()| Exit::Pass)));
         }
     };
     let world = World { cases: cases::CASES, sources, references, interrupt: interrupt::flag() };
@@ -307,6 +307,7 @@ fn conclude(command: impl FnOnce() -> Outcome) -> Exit {
             }
             exit
         }
+        Err(_) if output::GOES_ON.load(Ordering::Relaxed) => Exit::Usage,
         Err(_) => Exit::Bug, // the hook has said what there is to say
     }
 }

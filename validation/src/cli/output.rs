@@ -2,6 +2,8 @@
 
 use std::io::{self, ErrorKind, Write};
 use std::panic::PanicHookInfo;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::Value;
 
@@ -29,16 +31,22 @@ fn visible(text: &str) -> String {
 
 /// A result, on standard output. A reader that has had enough (`| head`) is no error.
 pub fn print(text: &str) -> Result<(), Failure> {
-    match write(&visible(text)) {
+    taken(write(&visible(text)))
+}
+
+/// What came of writing to standard output, which a reader may leave before the end.
+pub fn taken(written: io::Result<()>) -> Result<(), Failure> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(refused(&error)),
         _ => Ok(()),
     }
 }
 
 /// A document for a program, on standard output. A reader that goes away before its end has no document,
-/// which is an error.
+/// which is an error; so is standard output that was closed.
 pub fn print_whole(document: &str) -> Result<(), Failure> {
-    write(document).map_err(|error| refused(&error))
+    let written = if is_closed() { Err(ErrorKind::NotConnected.into()) } else { write(document) };
+    written.map_err(|error| refused(&error))
 }
 
 /// The answer to a question, for a program as JSON or for a person.
@@ -55,16 +63,38 @@ fn write(text: &str) -> io::Result<()> {
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
 }
 
-fn refused(error: &io::Error) -> Failure {
-    Failure::usage(format!("cannot write to standard output: {error}"))
+/// Was standard output closed before the program began? Before `main`, Rust opens `/dev/null` in its place, for
+/// reading and writing; a shell's `>/dev/null` is opened for writing alone.
+fn is_closed() -> bool {
+    let is_null =
+        std::fs::read_link("/proc/self/fd/1").is_ok_and(|to| to == Path::new("/dev/null"));
+    let info = std::fs::read_to_string("/proc/self/fdinfo/1").unwrap_or_default();
+    let flags = info.lines().find_map(|line| line.strip_prefix("flags:"));
+    is_null && flags.is_some_and(|octal| octal.ends_with('2'))
 }
+
+fn refused(error: &io::Error) -> Failure {
+    let closed =
+        "standard output is closed, or is /dev/null opened for reading too; the document is lost";
+    match error.kind() {
+        ErrorKind::NotConnected => Failure::usage(closed),
+        _ => Failure::usage(format!("cannot write to standard output: {error}")),
+    }
+}
+
+/// Set while a run goes on from numbers of a file, which anybody can change.
+pub static GOES_ON: AtomicBool = AtomicBool::new(false);
+/// Before the words of a panic then.
+const OTHER_RUN: &str = "touchstone: the run cannot go on from these numbers of the checkpoint, which no run \
+                         has. If nobody changed the file, please report it with these lines:";
 
 /// The hook of a panic.
 pub fn report_bug(info: &PanicHookInfo) {
     let message = info.payload_as_str().unwrap_or("no message");
     let (version, commit) = (env!("CARGO_PKG_VERSION"), super::SOURCE.commit);
     let place = info.location().map(ToString::to_string).unwrap_or_default();
-    say(&format!("{BUG}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
+    let what = if GOES_ON.load(Ordering::Relaxed) { OTHER_RUN } else { BUG };
+    say(&format!("{what}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
 }
 
 /// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.

@@ -47,6 +47,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         world.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
         let asked = Asked { every: arguments.checkpoint_every.or(asked.every), ..asked };
+        output::GOES_ON.store(true, Ordering::Relaxed);
         return carry_out(case, asked, earlier, Some(folder), arguments, world);
     }
     let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
