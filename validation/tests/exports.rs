@@ -327,6 +327,17 @@ fn numbers_of_a_problem_are_those_of_the_run() {
     }
     close(number(&plates, "domain/period/0/value"), 12.0 * dx, "period");
     assert_eq!(at(&plates, "domain/period/1"), "none");
+    // Planes at y = 0 and L, of which the upper one moves with U = Re ν/L.
+    let planes = of("couette --variant seed --set rows=16 --set re=0.25");
+    for (k, (y, normal, u)) in [(0.0, 1.0, 0.0), (1e-3, -1.0, 0.25e-3)].into_iter().enumerate() {
+        let plane = |key: &str, axis: usize| {
+            number(&planes, &format!("walls/planes/{k}/{key}/value/{axis}"))
+        };
+        let [x_normal, y_normal] = [0, 1].map(|axis| plane("normal_into_the_material", axis));
+        assert_eq!((x_normal, y_normal), (0.0, normal), "into the water");
+        close(plane("point", 1), y, "place of the plane");
+        close(plane("velocity", 0), u, "velocity of the plane");
+    }
     // Water of H = 0.1143 m.
     let dam = of("dam_break --set n=8 --set c0=20 --set end=0.5");
     let fall = (9.81_f64 * 0.1143).sqrt();
@@ -577,5 +588,39 @@ fn still_water_over_a_wedge_is_measured_over_the_last_quarter() {
     for (k, time) in times.iter().enumerate() {
         let expected = end * (0.75 + 0.25 * (k + 1) as f64 / 40.0);
         assert!((time.as_f64().unwrap() / expected - 1.0).abs() < 1e-12, "{time}: {expected}");
+    }
+}
+
+/// An observer who numbers particles otherwise gives other numbers to particles of walls, too, and each kind
+/// keeps its own numbers.
+#[test]
+fn particles_of_each_kind_are_renumbered_among_themselves() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |by: &str| {
+        let line = "export couette --variant extrapolating-wall --set rows=8";
+        done(folder.path(), &format!("{line} --relation {by} --out {by}"));
+        let table = Table::read(&folder.path().join(by).join("particles.csv"));
+        let columns = ["id", "role", "x", "y", "u"].map(|name| table.column(name));
+        (0..columns[0].len()).map(|k| columns.each_ref().map(|of| of[k])).collect::<Vec<_>>()
+    };
+    let (same, other) = (of("same"), of("renumbered"));
+    for moves in [true, false] {
+        let of_kind = |all: &[[f64; 5]]| -> Vec<[f64; 5]> {
+            all.iter().filter(|[_, role, ..]| (*role == 0.0) == moves).copied().collect()
+        };
+        let (mut a, mut b) = (of_kind(&same), of_kind(&other));
+        let stay = a.iter().zip(&b).filter(|(a, b)| a == b).count();
+        assert!(a.len() > 30 && stay < a.len() / 4, "moves: {moves}; {stay} of {} stay", a.len());
+        let ids = |of: &[[f64; 5]]| of.iter().map(|row| row[0]).collect::<Vec<_>>();
+        assert_eq!(ids(&a), ids(&b), "moves: {moves}");
+        for all in [&mut a, &mut b] {
+            all.iter_mut().for_each(|row| row[0] = 0.0);
+            all.sort_by(|a, b| {
+                a.iter()
+                    .zip(b)
+                    .fold(std::cmp::Ordering::Equal, |all, (a, b)| all.then(a.total_cmp(b)))
+            });
+        }
+        assert_eq!(a, b, "moves: {moves}");
     }
 }

@@ -143,6 +143,26 @@ fn a_submission_that_diverged_fails_and_names_particle_field_value_and_time() {
     }
 }
 
+/// A solid may be compressed or stretched to what no weakly compressible fluid has: the bounds of a run that
+/// diverged are 30 % of the density of a fluid, a half and twice that of a solid.
+#[test]
+fn a_density_has_the_bounds_of_its_material() {
+    for (problem, least, most) in [
+        ("elastic_bar --variant seed --set n=10", 0.5, 2.0),
+        ("couette --variant plain --set rows=8 --set end=0.1", 0.7, 1.3),
+    ] {
+        let own = Entry::own(problem);
+        let last = [(*own.of(Some(3)).last().unwrap(), own.column("density"))];
+        let diverges = |factor: f64| {
+            let said = own.edited(&last, |_, density| factor * density);
+            let status = said.record.unwrap_or_else(|| panic!("{problem}: {}", said.text)).status;
+            matches!(status, Status::Diverged { .. })
+        };
+        let found = [0.98 * least, 1.02 * least, 0.98 * most, 1.02 * most].map(diverges);
+        assert_eq!(found, [true, false, false, true], "{problem}");
+    }
+}
+
 /// Pressures of still water were those of our own start, and passed.
 #[test]
 fn nothing_is_judged_that_rests_on_a_density_that_was_not_handed_in() {
@@ -261,6 +281,9 @@ fn nothing_judged_ends_with_2_and_names_what_is() {
     for part in [
         "Nothing was judged",
         "the nearest that is judged is couette --variant",
+        "largest relative rms",
+        // The bound is on the number that is stated as the error.
+        ": l2_worst at most",
         "next touchstone export couette --variant",
         "error ",
     ] {
@@ -288,6 +311,31 @@ fn a_window_of_our_own_step_judges_only_what_states_it() {
         assert!(honest.text.contains(" to "), "the window judges what states it: {}", honest.text);
         assert_eq!(fine.gates.get(gate).map(String::as_str), Some("pass"), "{}", fine.text);
         assert!(fine.gates.values().all(|verdict| verdict == "pass"), "{}", fine.text);
+    }
+}
+
+/// A run that states our step has made as many steps as that takes, and no more than one further for each of
+/// the times that it had to reach.
+#[test]
+fn a_run_of_our_step_has_made_the_steps_that_this_takes() {
+    let own = Entry::own("couette --variant plain --set rows=20");
+    let document = |name: &str| -> serde_json::Value {
+        serde_json::from_str(&fs::read_to_string(own.folder.join(name)).unwrap()).unwrap()
+    };
+    let (problem, mut system) = (document("problem.json"), document("system.json"));
+    let times = problem["times"]["value"].as_array().unwrap();
+    let steps = problem["end"]["value"].as_f64().unwrap()
+        / problem["our_method"]["time_step"]["value"].as_f64().unwrap();
+    let [least, most] = [steps.floor() as usize, steps.ceil() as usize + times.len()];
+    for (steps, is_ours) in
+        [(least - 1, false), (least, true), (most, true), (most + 1, false), (2 * most, false)]
+    {
+        system["steps"] = steps.into();
+        fs::write(own.folder.join("system.json"), system.to_string()).unwrap();
+        let said = own.submit(&own.head, &own.rows);
+        let line = said.text.lines().find(|line| line.contains("couette.plain.20.l2@0.1"));
+        let has_window = line.expect(&said.text).contains(" to ");
+        assert_eq!(has_window, is_ours, "{steps} steps, {least} to {most}: {}", said.text);
     }
 }
 

@@ -106,6 +106,11 @@ fn submissions_are_judged_where_our_own_runs_are() {
     assert!(verdicts["counts"].get("fail").is_none(), "{}", verdicts["counts"]);
     submission(&at.join("borrowed"), ["second code", "7"], 1.0);
     assert_eq!(of(at, "submit couette borrowed --store st").1, 0);
+    submission(&at.join("scheme"), ["good code", "1"], 1.0);
+    let method = fs::read_to_string(at.join("scheme/method.json")).unwrap();
+    let method = method.replace("\"scheme\": \"s\"", "\"scheme\": \"t\"");
+    fs::write(at.join("scheme/method.json"), method).unwrap();
+    assert_eq!(of(at, "submit couette scheme --store st").1, 0);
     let (words, code) = of(at, "report --store st --out page");
     assert!(code == 1 && words.contains("bad code"), "{words}");
     let page = fs::read_to_string(at.join("page/index.html")).unwrap();
@@ -120,8 +125,18 @@ fn submissions_are_judged_where_our_own_runs_are() {
     }
     let told = page.split("Equal results, to the last bit").nth(1).expect("they are told");
     let told = told.split("</p>").next().unwrap();
-    assert!(told.contains("good code 1, s") && told.contains("second code 7, s"), "{told}");
+    for [a, b] in [["good code 1, s", "second code 7, s"], ["good code 1, s", "good code 1, t"]] {
+        let is_told =
+            [format!("{a} and {b}"), format!("{b} and {a}")].iter().any(|two| told.contains(two));
+        assert!(is_told, "{a} and {b}: {told}");
+    }
     assert!(!told.contains("bad code"), "{told}");
+    // Their only gate is on the error at one of the times: it judges the accuracy.
+    for (code, verdict) in [("good code 1, s", "pass"), ("bad code 1, s", "fail")] {
+        let is_its = |row: &&str| row.contains(&format!("<td>{code}</td>"));
+        let row = page.split("<tr>").find(is_its).expect(code).to_lowercase();
+        assert!(row.contains(&format!("<td>{verdict}</td><td>–</td>")), "{row}");
+    }
 }
 
 /// Gates of submissions were not compared, and a new version was another run.
@@ -304,6 +319,27 @@ fn what_has_no_bound_or_is_no_method_is_not_sealed() {
         assert!(words.contains(expected), "{arguments}: {words}");
     }
     assert!(!at.join("sealed").exists(), "nothing is written");
+}
+
+/// Settings are drawn all over the range in which the reference holds, and nowhere else.
+#[test]
+fn sealed_settings_lie_where_the_reference_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let method = fs::read_to_string(solved().join("own/method.json")).unwrap();
+    for (case, name, [low, high]) in
+        [("couette", "re", [0.05, 20.0]), ("hydrostatic", "compressibility", [0.001, 0.05])]
+    {
+        let value = |seed: u32| -> f64 {
+            let set = drawn(folder.path(), &method, &format!("{case} --seed {seed}")).unwrap();
+            let value =
+                set.split_whitespace().find_map(|one| one.strip_prefix(&format!("{name}=")));
+            value.expect(&set).parse().unwrap()
+        };
+        let values: Vec<f64> = (0..24).map(value).collect();
+        let [least, most] =
+            [f64::min, f64::max].map(|end| values.iter().copied().reduce(end).unwrap());
+        assert!(low <= least && most <= high && most > 8.0 * least, "{case}: {least} to {most}");
+    }
 }
 
 /// Sealed problems were never judged: our own runs pass, and twice the velocity fails.

@@ -101,6 +101,8 @@ fn a_third_component_is_not_lost() {
     }
     let words = read_as(&format!("t,id,x,y,u,v,w\n{ROWS}"), &[]).unwrap_err();
     assert!(words.contains("column w: it is from 5 to 10"), "{words}");
+    let words = read_as("t,id,x,y,z,u,v\n0,0,1,2,3,4,5\n0,1,6,7,NaN,9,10\n", &[]).unwrap_err();
+    assert!(words.contains("column z: it is from 3 to 3"), "a place that is no number: {words}");
     let level = format!("t,id,x,y,u,v,w\n{ROWS}").replace(",5\n", ",10\n");
     assert!(read_as(&level, &[]).is_ok(), "constant");
 }

@@ -151,8 +151,9 @@ fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> O
 mod tests {
     use super::*;
     use crate::{
-        declare::Stated,
-        studies::tests::{ERROR, run, spec},
+        bisect::STABLE,
+        declare::{Stated, StepLimit, StepLimits},
+        studies::tests::{ERROR, comparison, records, run, spec},
     };
 
     fn made_up() -> declare::Card {
@@ -196,6 +197,46 @@ mod tests {
         assert_eq!(breaks(&made_up(), &all(Vec::new())), Some(whole.into()));
         let one = Runs::new(vec![of("good", 2, 0.5)]);
         assert_eq!(breaks(&made_up(), &one).as_deref(), Some("`good` in no run at n = 2"));
+    }
+
+    /// The uncertainty beside an error is u_val, of which that of the reference is a part: here
+    /// (0.6² + 0.4²)^(1/2), for u_num is 3/2 of the range of the levels 0.6, 0.2 and 0.2. A run that is
+    /// compared nowhere, or with an exact reference, has none.
+    #[test]
+    fn an_error_has_the_uncertainty_of_its_comparison() {
+        let of = |n, error: f64| run(spec("good", n), |r| r.put(ERROR, error));
+        let runs = Runs::new(vec![of(10, 0.6), of(14, 0.2), of(20, 0.2), of(40, 0.5)]);
+        let compared = Comparison { reference: 0.4, ..comparison("good", &[10, 14, 20]) };
+        let exact = comparison("good", &[14, 20, 40]);
+        let declared = Declaration { comparisons: vec![compared, exact], ..Declaration::default() };
+        let told = |n| result(&made_up(), &declared, &spec("good", n), &runs);
+        let unit = "\u{a0}a";
+        assert!(told(20).starts_with(&format!("**0.20{unit}** ± 0.72{unit} in ")), "{}", told(20));
+        for n in [14, 40] {
+            assert!(!told(n).contains('±'), "n = {n}: {}", told(n));
+        }
+        assert_eq!(told(80), "not run");
+    }
+
+    /// The largest stable step of a variant is that of its worst scene.
+    #[test]
+    fn the_stable_step_of_a_variant_is_the_least_of_its_scenes() {
+        let limit = |(variant, n): (&str, usize)| StepLimit {
+            scene: "made up".into(),
+            spec: spec(variant, n),
+            theory: 1.0,
+            theory_at: 2.0,
+            default_at: 1.0,
+            gate: None,
+        };
+        let scenes = [("good", 1), ("good", 2), ("good", 3), ("bad", 1)];
+        let stable_at = |of: f64| move |r: &mut Record| r.put(STABLE, of);
+        let made = scenes.iter().zip([2.4, 2.2, 3.0, 1.0]);
+        let runs = records(made.map(|((variant, n), of)| (spec(variant, *n), stable_at(of))));
+        let limits = StepLimits { about: String::new(), of: scenes.map(limit).into() };
+        let declared = Declaration { limits, ..Declaration::default() };
+        let found = stable(&declared, &[spec("good", 9), spec("bad", 9)], &runs);
+        assert_eq!(found.as_deref(), Some("1.10 (`good`), 0.500 (`bad`)"));
     }
 
     /// An error has the unit and the words of the run that has it.

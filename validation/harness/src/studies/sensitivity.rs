@@ -175,6 +175,17 @@ mod tests {
         }
     }
 
+    /// Of two runs that are searched one was made, and detects 2 %: the other one is missing all the same.
+    #[test]
+    fn one_search_of_two_is_not_all() {
+        let of = [spec("seed", 1), spec("seed", 2)];
+        let sensitivity = Sensitivity::new(Tier::Full, of, [Watched::new(Constant::Viscosity)]);
+        let all = sensitivity.searches(Constant::Viscosity);
+        let made = all.take(1).map(|search| (search, self::search(Some(0.02), None)));
+        let study = study("case", &sensitivity, &records(made));
+        assert_eq!(study.judged[0].judgement.verdict, Verdict::Fail);
+    }
+
     /// What a search has found: the smallest detected error, and the largest smaller one that is not
     /// detected.
     fn search(detected: Option<f64>, undetected: Option<f64>) -> impl FnOnce(&mut Record) {
