@@ -339,6 +339,114 @@ fn a_run_of_our_step_has_made_the_steps_that_this_takes() {
     }
 }
 
+/// Place and velocity of a particle, those of the problem at the start, and the mean of the places there.
+type Alter = fn([f64; 4], [f64; 4], [f64; 2]) -> [f64; 4];
+
+/// What is made of every particle of an honest submission.
+const ALTERED: [(&str, Alter); 8] = [
+    ("one x", |[_, y, u, v], _, [x, _]| [x, y, u, v]),
+    ("one y", |[x, _, u, v], _, [_, y]| [x, y, u, v]),
+    ("no velocity", |[x, y, ..], _, _| [x, y, 0.0, 0.0]),
+    ("swapped", |[x, y, u, v], _, _| [x, y, v, u]),
+    ("faster", |[x, y, u, v], _, _| [x, y, 1.1 * u, 1.1 * v]),
+    ("backwards", |[x, y, u, v], _, _| [x, y, -u, -v]),
+    ("unmoved", |[.., u, v], [x, y, ..], _| [x, y, u, v]),
+    ("the start", |_, start, _| start),
+];
+
+impl Entry {
+    /// The same by a code that does not state our kernel, support and step.
+    fn foreign(problem: &str) -> Self {
+        let own = Self::own(problem);
+        let path = own.folder.join("method.json");
+        let text = fs::read_to_string(&path).unwrap();
+        let mut method: serde_json::Value = serde_json::from_str(&text).unwrap();
+        method["settings"] = serde_json::json!({});
+        fs::write(path, method.to_string()).unwrap();
+        own
+    }
+
+    /// Submits what is made of each particle.
+    fn altered(&self, alter: Alter) -> Said {
+        let text = fs::read_to_string(self.folder.join("particles.csv")).unwrap();
+        let mut lines = text.lines().map(cells);
+        let head = lines.next().unwrap();
+        let at = |name: &str| head.iter().position(|h| h.split('[').next() == Some(name)).unwrap();
+        let places = ["x", "y", "u", "v"].map(at);
+        let start: Vec<[f64; 4]> =
+            lines.map(|row| places.map(|k| row[k].parse().unwrap())).collect();
+        let (id, columns) = (self.column("id"), ["x", "y", "u", "v"].map(|of| self.column(of)));
+        let moved: BTreeSet<usize> = self.rows.iter().map(|row| row[id].parse().unwrap()).collect();
+        let mean =
+            [0, 1].map(|k| moved.iter().map(|of| start[*of][k]).sum::<f64>() / moved.len() as f64);
+        let mut rows = self.rows.clone();
+        for row in &mut rows {
+            let now = columns.map(|k| row[k].parse().unwrap());
+            let is = alter(now, start[row[id].parse::<usize>().unwrap()], mean);
+            columns.iter().zip(is).for_each(|(k, value)| row[*k] = format!("{value:?}"));
+        }
+        self.submit(&self.head, &rows)
+    }
+}
+
+/// Problems, and what of these is right there, or is not measured: the strain of a pulse of 1e-4.
+const SEEN: [(&str, &[&str]); 7] = [
+    ("elliptic_drop --set n=20", &[]),
+    ("hydrostatic", AT_REST),
+    ("still_wedge", AT_REST),
+    ("couette", &["unmoved"]),
+    ("taylor_couette", &[]),
+    ("elastic_bar", &["unmoved"]),
+    ("periodic_hill --set re=10 --set n=4 --set end=10", &[]),
+];
+
+/// Water at rest has no velocity, and is where it was.
+const AT_REST: &[&str] = &["no velocity", "swapped", "faster", "backwards", "unmoved", "the start"];
+
+/// Velocities of the drop were measured by nothing, so that without any, with their components swapped or a
+/// tenth too fast all gates passed; so did still water on a line, a pulse that had not started, and hills without
+/// flow.
+#[test]
+fn a_field_that_is_wrong_everywhere_fails_a_gate() {
+    for (problem, right) in SEEN {
+        let own = Entry::foreign(problem);
+        let honest = own.submit(&own.head, &own.rows);
+        assert_eq!(honest.code, 0, "{problem}: {}", honest.text);
+        for (what, alter) in ALTERED {
+            let said = own.altered(alter);
+            let expected = if right.contains(&what) { 0 } else { 1 };
+            assert_eq!(said.code, expected, "{problem}, {what}: {}", said.text);
+        }
+    }
+}
+
+/// A front behind the back wall, and one that falls back and goes on, passed: a few times move no rms.
+#[test]
+fn a_front_that_falls_back_fails() {
+    let own = Entry::foreign("dam_break");
+    let honest = own.submit(&own.head, &own.rows).record.expect("a record");
+    let [t, front] = ["t", "front"].map(|name| honest.column("series", name).to_vec());
+    fs::remove_file(own.folder.join("results.csv")).unwrap();
+    let submit = |edit: &dyn Fn(usize, f64) -> f64| {
+        let rows = t.iter().zip(&front).enumerate();
+        let rows: String = rows.map(|(k, (t, x))| format!("{t:?},{:?}\n", edit(k, *x))).collect();
+        fs::write(own.folder.join("curve.csv"), format!("t[s],front[m]\n{rows}")).unwrap();
+        let store = tempfile::tempdir().unwrap();
+        let (folder, at) = (own.folder.display(), store.path().display());
+        touchstone(&own.folder, &format!("submit dam_break {folder} --all --store {at}"))
+    };
+    let (code, text) = submit(&|_, x| x);
+    assert_eq!(code, 0, "{text}");
+    let edits: [&dyn Fn(usize, f64) -> f64; 2] = [&|k, x| if k == 9 { -x } else { x }, &|k, x| {
+        if (100..103).contains(&k) { 0.7 * x } else { x }
+    }];
+    for edit in edits {
+        let (code, text) = submit(edit);
+        let gate = text.lines().find(|line| line.contains("front_back"));
+        assert!(code == 1 && gate.is_some_and(|line| line.starts_with("FAIL")), "{text}");
+    }
+}
+
 /// Honest submissions of six cases.
 const HONEST: [&str; 6] = [
     "couette --variant plain --set rows=20",

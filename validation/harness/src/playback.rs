@@ -1,7 +1,7 @@
 //! Frames of a run that another code made, played back: particles are put where a frame has them, all that
 //! pair sweeps read is derived from them, and the case measures them as it measures its own.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use base::{
     absent::Absent,
@@ -145,6 +145,33 @@ impl Playback<'_> {
     }
 }
 
+/// Side of the squares in which particles are counted, in spacings, and the most of the density that may be in
+/// those of the median particle: a lattice has 1.4 at most, particles at random 1.2.
+const SQUARE: f64 = 2.5;
+const MOST_CROWDED: f64 = 2.0;
+
+/// The particle of a frame in place of the median by what is in its square, if that is more than any density:
+/// particles of whatever densities that lie on a line or in a corner.
+fn crowded<X: Numbers>(
+    playback: &Playback,
+    frame: &Frame,
+    all: &[(u32, Particle<X>)],
+) -> Option<Fault> {
+    let ids: BTreeSet<u32> = frame.particles.iter().map(|placed| placed.id).collect();
+    let moving: Vec<_> = all.iter().filter(|(id, _)| ids.contains(id)).collect();
+    let mass = moving.iter().fold(0.0, |sum, (_, p)| sum + p.mass) / moving.len() as f64;
+    let side = SQUARE * (mass / playback.fill.density).sqrt();
+    let square = |p: &Particle<X>| [p.position.x, p.position.y].map(|x| (x / side).floor() as i64);
+    let mut masses: BTreeMap<[i64; 2], f64> = BTreeMap::new();
+    moving.iter().for_each(|(_, p)| *masses.entry(square(p)).or_default() += p.mass);
+    let density = |p: &Particle<X>| masses[&square(p)] / (side * side);
+    let mut found: Vec<(f64, u32)> = moving.iter().map(|(id, p)| (density(p), *id)).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (value, particle) = *found.get(found.len() / 2)?;
+    let is_crowded = value > MOST_CROWDED * playback.fill.density;
+    is_crowded.then_some(Fault { particle, field: "density of the places", value })
+}
+
 /// The times that have no frame \[s\], of a run that ends with the last of them.
 pub fn missing(frames: &[Frame], times: &[f64]) -> Vec<f64> {
     let end = times.last().copied().unwrap_or_default();
@@ -194,6 +221,9 @@ pub(crate) fn put<X: Numbers>(
         particle.velocity = placed.velocity;
         particle.density = placed.density.unwrap_or_else(|| playback.fill.density(placed.id));
         particle.extra = X::default().advanced(playback.fill.extra, X::default());
+    }
+    if let Some(fault) = crowded(playback, frame, &state.particles) {
+        return Ok(Some(diverged(Divergence { step: 0, time, fault })));
     }
     let places = state.particles.iter().map(|(_, particle)| particle.position).collect();
     let reference = std::mem::replace(&mut state.built_at, places);

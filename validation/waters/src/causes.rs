@@ -52,6 +52,13 @@ pub static SHORT_KERNEL: Cause = Cause::new(
     "A smoothing length of 2.5 initial spacings, as in `modern`.",
 );
 
+/// Noise of the density that nothing smooths.
+pub static NOISY_DENSITY: Cause = Cause::new(
+    "The density that follows the continuity equation (3) becomes noisy where rows of particles shear, and \
+     its pressure shakes the particles.",
+    "Density diffusion, as in `modern`.",
+);
+
 /// A mirror knows no gravity.
 pub static MIRRORED_PRESSURE: Cause = Cause::new(
     "Ghost particles mirror the pressure of the water at the bottom, where it should go on rising, so the \

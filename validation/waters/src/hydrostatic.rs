@@ -72,6 +72,9 @@ base::metrics! {
     KINETIC = "kinetic" ["-"]
         "largest sum m v^2/2 over M g H, once a period over the last quarter of the run";
     OUTSIDE = "outside" ["-"] "most particles beyond bottom or sides, once a period";
+    SPREAD = "spread" ["-"]
+        "W/dx times the mean over the water of |share of the water at less x - x/W| at the end, W the width of \
+         the tank, x from its left side";
 }
 
 /// Wendland C2 at h = 1.5 dx, long steps, and a fifth of the artificial viscosity: in water at rest there
@@ -240,15 +243,17 @@ struct History<'a> {
     rows: Vec<[f64; 5]>,
     /// The most particles outside of the tank.
     outside: f64,
+    /// How far the water is from being spread over the tank, at the last sample \[dx\].
+    spread: f64,
 }
 
-harness::observed! { History<'_>: changes(rows, outside), stays(column, start) }
+harness::observed! { History<'_>: changes(rows, outside, spread), stays(column, start) }
 
 impl<'a> History<'a> {
     /// No sample yet of water that starts as in this simulation.
     fn new(column: &'a Column, simulation: &dyn Stepper<()>) -> Self {
         let start = ends(column, &fluid(simulation));
-        Self { column, start, rows: Vec::new(), outside: 0.0 }
+        Self { column, start, rows: Vec::new(), outside: 0.0, spread: 0.0 }
     }
 
     fn sample(&mut self, simulation: &dyn Stepper<()>) {
@@ -265,6 +270,7 @@ impl<'a> History<'a> {
             !(0.0..=tank.width()).contains(&x.x) || x.y < 0.0
         };
         self.outside = self.outside.max(water.iter().filter(is_outside).count() as f64);
+        self.spread = spread(&water, tank.width()) * tank.width() / medium.dx;
         self.rows.push([
             simulation.time() / column.period,
             l2(&pressure, &exact),
@@ -285,9 +291,23 @@ impl<'a> History<'a> {
             let later = self.rows.iter().filter(|row| row[0] >= 0.75 * end);
             record.put(KINETIC, largest(later.map(|row| row[4])));
             record.put(OUTSIDE, self.outside);
+            record.put(SPREAD, self.spread);
         }
         record.profiles.insert("history".into(), Profile::of_rows(&HISTORY, &self.rows));
     }
+}
+
+/// The mean distance of the share of the water at less x from that of water everywhere in the tank.
+fn spread(water: &[Particle], width: f64) -> f64 {
+    let mut places: Vec<(f64, f64)> =
+        water.iter().map(|p| (p.position.x / width, p.mass)).collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mass, mut before, mut sum) = (places.iter().map(|p| p.1).sum::<f64>(), 0.0, 0.0);
+    for (x, own) in places {
+        sum += own * ((before + 0.5 * own) / mass - x.clamp(0.0, 1.0)).abs();
+        before += own;
+    }
+    sum / mass
 }
 
 /// Mean heights of the lowest and of the highest particles in strips of width dx \[m\].
@@ -400,6 +420,8 @@ fn gates(row: &Row) -> Vec<Gate> {
     let levelled = "Control: density diffusion that does not know the weight of the water levels its density \
                     out, and the column rises by 3 % of its depth.";
     let tight = "No particle passes a wall.";
+    let across = "The water fills the tank: it is where it is known to be, to half of a spacing, of which \
+                  columns that are one spacing apart take half.";
     let variant = row.variant;
     let (run, because) = match (row.group, row.settings.compressibility) {
         (Group::Ladder, _) => return Vec::new(),
@@ -422,7 +444,9 @@ fn gates(row: &Row) -> Vec<Gate> {
     };
     let outside = HYDROSTATIC.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, tight);
     let gap = exact(GAP, Bound::Within(-0.25, 0.25), lowest);
-    let mut gates = vec![pressure, gap, exact(KINETIC, Bound::Below(2.5e-5), still), outside];
+    let spread = exact(SPREAD, Bound::Below(0.5), across);
+    let kinetic = exact(KINETIC, Bound::Below(2.5e-5), still);
+    let mut gates = vec![pressure, gap, kinetic, outside, spread];
     // A start of other densities or places has another level than the column that it comes to rest as.
     if row.group == Group::Judged {
         gates.push(exact(LEVEL_DRIFT, Bound::Within(-0.005, 0.005), stays));

@@ -120,8 +120,19 @@ fn gates(row: &Row) -> Vec<Gate> {
             let rested = row.group == For::Long;
             [vec![outside], of_reference(&run, re, n, rested), balances(&run, n)].concat()
         }
-        _ => vec![outside],
+        _ => [vec![outside], coarse(&run, n)].concat(),
     }
+}
+
+/// The velocity and the flux of runs with few spacings, and of other variants.
+fn coarse(run: &str, n: usize) -> Vec<Gate> {
+    let walls = "A wall is known to be where it is to half of a spacing, over which the velocity changes by \
+                 U_b dx/(2 H) if it changes by U_b over the height of the hill.";
+    let flux = "The flux is asked for. The bound is 1 %.";
+    vec![
+        CASE.gate(run, L2_U, Bound::Below(0.5 / n as f64), Evidence::Reference, walls),
+        CASE.gate(run, FLUX, Bound::Within(-0.01, 0.01), Evidence::Invariant, flux),
+    ]
 }
 
 /// The goal for the error of u \[U_b\].

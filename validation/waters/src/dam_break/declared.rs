@@ -140,7 +140,7 @@ fn front() -> Curve {
             let moved = Vector2::new(at[0][0] - width, 0.0);
             starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
         },
-        metrics: vec![Z, FRONT_AWAY, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
+        metrics: vec![Z, FRONT_AWAY, FRONT_BACK, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
         coarsen: None,
         shown: ("series", &["t", "front"]),
     }

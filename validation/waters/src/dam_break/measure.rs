@@ -156,6 +156,22 @@ impl<'a> Samples<'a> {
         self.outside = [self.outside[0].max(lost), lost];
     }
 
+    /// The most by which the front is behind where it has been, until it is two spacings from the far wall,
+    /// from which water comes back \[m\].
+    fn fallen_back(&self) -> f64 {
+        let Dam { settings, tank, medium, .. } = self.dam;
+        let wall = tank.width() - 2.0 * medium.dx;
+        let (mut farthest, mut most) = (settings.width, 0.0_f64);
+        for [_, front, ..] in &self.rows {
+            most = most.max(farthest - front);
+            farthest = farthest.max(*front);
+            if farthest >= wall {
+                break;
+            }
+        }
+        most
+    }
+
     /// Metrics that need no reference, and the series.
     pub fn measure(&self, record: &mut Record) {
         let [most, last] = self.outside;
@@ -164,6 +180,7 @@ impl<'a> Samples<'a> {
         let [columns, rows] = self.dam.counts;
         record.put(metrics::SPILLED, self.spilled.len() as f64 / (columns * rows) as f64);
         record.put(metrics::RELEASED, self.released);
+        record.put(metrics::FRONT_BACK, self.fallen_back() / self.dam.settings.width);
         record.put(metrics::MACH, self.fastest / self.dam.medium.eos.sound_speed);
         let [front, height, one, two, three, four] =
             ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));

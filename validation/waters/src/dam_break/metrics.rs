@@ -49,6 +49,8 @@ base::metrics! {
     Z = "z" ["-"]
         "Z = front from the back wall/a at T = t (2g/a)^(1/2), front = x of the foremost particle below H/4, \
          plus a, less that x at the start";
+    FRONT_BACK = "front_back" ["-"]
+        "most by which the front is behind where it has been, in a, until it is at the far wall";
     FRONT_AWAY = "front_away" ["-"]
         "front less that of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank in H \
          at t (g/H)^(1/2)";

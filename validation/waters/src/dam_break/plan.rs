@@ -178,7 +178,14 @@ fn free_references(run: &str) -> Vec<Gate> {
         against(run, HEIGHT.rms_shifted, Bound::Below(1.0 / 18.0), height),
         against(run, HEIGHT.shift, Bound::Above(0.0), clock),
     ];
-    PEERS.map(place).into_iter().chain(of_experiment).collect()
+    PEERS.map(place).into_iter().chain(of_experiment).chain([runs_out(run)]).collect()
+}
+
+/// The gate on a front that falls back.
+fn runs_out(run: &str) -> Gate {
+    let because = "Water that runs out over a dry floor never goes back. The bound of 0.1 a is the spread of \
+                   digitised curves of a front.";
+    DAM_BREAK.gate(run, FRONT_BACK, Bound::Below(FRONT_SPREAD), Evidence::Invariant, because)
 }
 
 /// Bound of the potential energy of the column of Martin & Moyce \[M g H/2\].
@@ -230,7 +237,7 @@ fn tank_references(run: &str) -> Vec<Gate> {
     });
     let front = against(run, FRONT.rms_shifted, Bound::Below(0.08), front);
     let levels = against(run, LEVELS.rms_shifted, Bound::Below(0.05), levels);
-    [front, levels].into_iter().chain(impulses).collect()
+    [front, levels, runs_out(run)].into_iter().chain(impulses).collect()
 }
 
 /// Gates of the method on such a column: the same model by volume of fluid.
