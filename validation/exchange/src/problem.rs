@@ -8,7 +8,7 @@ use base::{
     text::short,
 };
 use harness::{
-    case::{Case, RunError, Tier},
+    case::{self, Case, RunError, Tier},
     context::Context,
     declare::{Curve, Declaration, Fact},
     method::{Knob, Medium, Properties},
@@ -47,8 +47,10 @@ pub struct Problem {
     pub method: Properties,
     /// What a run of another code with these settings can be judged by.
     pub gates: Vec<Gate>,
-    /// The settings of the case.
-    pub fields: &'static [Field],
+    /// The settings that the variant reads.
+    pub fields: Vec<&'static Field>,
+    /// The command of the nearest run that has a gate for results of another code, if this one has none.
+    pub nearest: Option<String>,
     /// The conditions at walls, clamps and surfaces in words.
     pub boundary: &'static str,
     /// What it is driven by beside the acceleration.
@@ -141,6 +143,15 @@ fn contradiction<'a>(field: &str, stated: &'a Value, ours: &'a Value) -> Option<
             let mut of = both.map(|(key, a, b)| contradiction(&format!("{field}.{key}"), a, b));
             return of.find_map(|found| found);
         }
+        // What has names may have more or fewer of them in another version.
+        (Value::Array(stated), Value::Array(ours))
+            if !ours.is_empty() && ours.iter().all(|of| of["name"].is_string()) =>
+        {
+            let same = |of: &Value| ours.iter().find(|ours| ours["name"] == of["name"]);
+            let both = stated.iter().enumerate().filter_map(|(k, of)| Some((k, of, same(of)?)));
+            let mut of = both.map(|(k, a, b)| contradiction(&format!("{field}[{k}]"), a, b));
+            return of.find_map(|found| found);
+        }
         (Value::Array(stated), Value::Array(ours)) if stated.len() == ours.len() => {
             let both = stated.iter().zip(ours).enumerate();
             let mut of = both.map(|(k, (a, b))| contradiction(&format!("{field}[{k}]"), a, b));
@@ -164,6 +175,16 @@ fn bound<'a>(stated: &'a Value, ours: &'a Value) -> Option<Contradiction<'a>> {
         let field = format!("{JUDGED_BY} {}", gate["id"].as_str().unwrap_or_default());
         contradiction(&field, &gate["bound"], &today["bound"])
     })
+}
+
+/// The settings that the variant of a run reads: others are refused if they are set.
+fn fields_read(case: &dyn Case, spec: &RunSpec) -> Vec<&'static Field> {
+    let is_read = |field: &&Field| {
+        let text = spec.settings.get(field.name).map(settings::text).unwrap_or_default();
+        let set = case.settings(&spec.variant, &[format!("{}={text}", field.name)]);
+        !matches!(set, Err(RunError::Unused { .. }))
+    };
+    case.fields().iter().filter(is_read).collect()
 }
 
 /// A number with its unit.
@@ -198,7 +219,7 @@ impl Problem {
             case.declaration(Tier::Quick);
         let ours = [stepwise, of_methods, costly].concat();
         let (mut gates, mut metrics) = (Vec::new(), Vec::new());
-        let (mut further, mut fields): (_, &[Field]) = (Vec::new(), &[]);
+        let (mut further, mut fields, mut nearest) = (Vec::new(), Vec::new(), None);
         // What another observer sees is compared, not measured, and settings are as the first one sees them.
         if relation.is_none() {
             gates = plan::gates_of(case, &spec);
@@ -206,7 +227,12 @@ impl Problem {
             metrics = posed.metrics;
             metrics.retain(|metric| !record::is_of(&ours, &metric.name));
             further = posed.further.map_or_else(Vec::new, |of| of(&spec.settings));
-            fields = case.fields();
+            fields = fields_read(case, &spec);
+            if gates.is_empty() {
+                let is_meant = |gate: &Gate| !record::is_of(&ours, &gate.metric);
+                nearest = plan::nearest_judged(case, &spec, &is_meant)
+                    .map(|(of, _)| case::command(case, &of));
+            }
         }
         let (about, boundary, sealed) = (case.about(), posed.boundary, None);
         let curve = curve.filter(|_| relation.is_none());
@@ -217,6 +243,7 @@ impl Problem {
             method,
             gates,
             fields,
+            nearest,
             boundary,
             further,
             metrics,
@@ -353,9 +380,9 @@ impl Problem {
         if bodies.is_empty() { particles } else { particles.with("body", "-", bodies) }
     }
 
-    /// The settings of the case with their values in this run.
-    fn settings(&self) -> impl Iterator<Item = (&Field, &Value)> {
-        let value = |field: &'static Field| Some((field, self.spec.settings.get(field.name)?));
+    /// The settings that the variant reads, with their values in this run.
+    pub fn settings(&self) -> impl Iterator<Item = (&Field, &Value)> {
+        let value = |field: &&'static Field| Some((*field, self.spec.settings.get(field.name)?));
         self.fields.iter().filter_map(value)
     }
 
@@ -477,12 +504,25 @@ impl Problem {
         match (self.gates.is_empty(), self.relation) {
             (false, _) => table(["gate", "metric", "bound"], self.gates.iter().map(gate)),
             (true, Some(_)) => "No gate judges it: two observers are compared.".into(),
-            (true, None) => format!(
-                "No gate judges results of another code with these settings: they are measured, and nothing \
-                 is judged. `touchstone explain {}` lists the gates of the case and their settings.",
-                self.spec.case
-            ),
+            (true, None) => self.unjudged().unwrap_or_default(),
         }
+    }
+
+    /// That no gate judges results of another code, if so, and which problem is judged.
+    pub fn unjudged(&self) -> Option<String> {
+        let is_judged = !self.gates.is_empty() || self.relation.is_some();
+        let of = |run: &String| {
+            let export = run.replacen("touchstone run", "touchstone export", 1);
+            format!("The nearest problem that is judged: `{export} --out DIR`.")
+        };
+        let other = self.nearest.as_ref().map(of);
+        let other = other.unwrap_or_else(|| "No settings of this case have such a gate.".into());
+        (!is_judged).then(|| {
+            format!(
+                "No gate judges results of another code with these settings: they are measured, and nothing \
+                 is judged. {other}"
+            )
+        })
     }
 
     /// What may be handed in in place of particles.

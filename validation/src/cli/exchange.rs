@@ -43,6 +43,7 @@ pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failur
         estimate(case, &spec, arguments)?;
     }
     let problem = Problem::seen(case, spec, arguments.relation, arguments.allow_long)?;
+    problem.unjudged().iter().for_each(|why| output::say(&format!("note: {why}")));
     let mut files = write::files(&problem, of.format)?;
     let method = solved_by(&problem);
     let own = arguments.solve.then_some((METHOD, method.as_bytes()));
@@ -124,7 +125,8 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
 
 /// What a submission of this program says of its method.
 fn solved_by(problem: &Problem) -> String {
-    let (mut settings, own) = (problem.spec.settings.clone(), &problem.method);
+    let read = problem.settings().map(|(field, value)| (field.name.to_string(), value.clone()));
+    let (mut settings, own) = (Value::Object(read.collect()), &problem.method);
     // What makes gates on the theory of our own method apply.
     settings["kernel"] = json!(own.kernel);
     settings["support"] = json!(own.support * problem.outline.medium.h);
