@@ -145,8 +145,8 @@ impl Playback<'_> {
     }
 }
 
-/// Side of the squares in which particles are counted, in spacings, and the most of the density that may be in
-/// those of the median particle: a lattice has 1.4 at most, particles at random 1.2.
+/// Side of the squares in which particles are counted, in spacings, and the most of the density that may be
+/// in the square of the median particle: a lattice has 1.4 at most, particles at random 1.2.
 const SQUARE: f64 = 2.5;
 const MOST_CROWDED: f64 = 2.0;
 

@@ -333,10 +333,10 @@ fn gates(row: &Row) -> Vec<Gate> {
                 first order in it: 1 % at 40 particles across.";
     let short = "`modern` with this h/dx of 1.5 has an error of a of 5.8 % at 40 particles across, which is \
                  the bound of a. The bound of b is of first order in the spacing, from 4.6 % at 14.";
-    let near = "The velocity of a particle is known as well as its place, to half of the spacing dx = 2 R/n: A \
-                dx/2 over the rms A R/2^(1/2) of the exact velocities is 2^(1/2)/n.";
-    let noisy = "Density diffusion alone takes `modern` from 12 to 5.4 % at 20 particles across. The bound is \
-                 of first order in the spacing, 16 % at 20.";
+    let near = "The velocity of a particle is known as well as its place, to half of the spacing dx = 2 R/n: \
+                A dx/2 over the rms A R/2^(1/2) of the exact velocities is 2^(1/2)/n.";
+    let noisy = "Density diffusion alone takes `modern` from 12 to 5.4 % at 20 particles across. The bound \
+                 is of first order in the spacing, 16 % at 20.";
     let (variant, n) = (row.variant, row.settings.n as f64);
     let run = match row.group {
         Group::Ladder => return Vec::new(),

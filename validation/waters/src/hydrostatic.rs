@@ -73,8 +73,8 @@ base::metrics! {
         "largest sum m v^2/2 over M g H, once a period over the last quarter of the run";
     OUTSIDE = "outside" ["-"] "most particles beyond bottom or sides, once a period";
     SPREAD = "spread" ["-"]
-        "W/dx times the mean over the water of |share of the water at less x - x/W| at the end, W the width of \
-         the tank, x from its left side";
+        "W/dx times the mean over the water of |share of the water at less x - x/W| at the end, W the width \
+         of the tank, x from its left side";
 }
 
 /// Wendland C2 at h = 1.5 dx, long steps, and a fifth of the artificial viscosity: in water at rest there
