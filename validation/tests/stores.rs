@@ -84,7 +84,16 @@ fn submissions_are_judged_where_our_own_runs_are() {
     };
     let (words, _, code) = judged("judge couette --store st");
     assert_eq!(code, 0, "our own runs are absent and do not fail: {words}");
-    assert!(!words.contains("gates fail"), "{words}");
+    assert!(
+        !words.contains("gates fail") && words.contains("\nRuns of other codes: 1 "),
+        "{words}"
+    );
+    assert!(
+        words.trim_start().starts_with("runs of other codes ") && !words.contains("ur own runs"),
+        "{words}"
+    );
+    let (words, _) = of(at, "judge couette --store st");
+    assert!(words.contains("\n1 run of another code in "), "{words}");
     assert_eq!(of(at, "submit couette bad --store st").1, 1);
     let (words, junit, code) = judged("judge couette --store st");
     assert_eq!(code, 1, "{words}");

@@ -527,7 +527,7 @@ mod tests {
     use super::*;
     use crate::{
         case::{Recommended, Variant, spec},
-        declare::{Breaks, Card, Declaration, Stated},
+        declare::{Card, Declaration},
         suite,
     };
 
@@ -621,20 +621,7 @@ mod tests {
             Vec::new()
         }
         fn declaration(&self, _: Tier) -> Declaration {
-            let card = || Card {
-                title: "Main",
-                picture: "none",
-                metric: ERROR.into(),
-                stated: |_| Stated {
-                    name: "made up".into(),
-                    against: "nothing",
-                    uncertainty: None,
-                    unit: "",
-                },
-                beside: None,
-                runs: Vec::new(),
-                breaks: Breaks { setting: "k", words: ["", ""], has_broken: |_| None, sign: "" },
-            };
+            let card = || Card::made_up(ERROR, "k", Vec::new());
             Declaration { card: self.1.then(card), ..Declaration::default() }
         }
     }

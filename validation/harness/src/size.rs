@@ -27,6 +27,8 @@ pub struct Size {
     pub steps: f64,
     /// Particles, those of walls included.
     pub particles: f64,
+    /// Those whose pairs are summed: walls are neighbours, and few of them have neighbours of their own.
+    pub summed: f64,
     /// Neighbours of a particle.
     pub neighbours: f64,
     /// Pair sweeps of a step.
@@ -38,7 +40,8 @@ pub struct Size {
 impl Size {
     /// So many steps of so many particles, whose kernel reaches over `reach` spacings.
     pub fn new([steps, particles]: [f64; 2], reach: f64) -> Self {
-        Self { steps, particles, neighbours: PI * reach * reach, sweeps: 2.0, samples: 0.0 }
+        let (summed, neighbours) = (particles, PI * reach * reach);
+        Self { steps, particles, summed, neighbours, sweeps: 2.0, samples: 0.0 }
     }
 
     /// So many steps of a simulation; its kernel tells how far it reaches.
@@ -48,12 +51,18 @@ impl Size {
         let reaches =
             |tenths: &i32| simulation.weight((0.1 * f64::from(*tenths) * spacing).powi(2)) > 0.0;
         let reach = 0.1 * f64::from((1..300).take_while(reaches).count() as i32);
-        Self::new([steps, particles as f64], reach)
+        let summed = simulation.data().fluid_count() as f64;
+        Self { summed, ..Self::new([steps, particles as f64], reach) }
+    }
+
+    /// Pair interactions.
+    pub fn pairs(&self) -> f64 {
+        self.sweeps * self.steps * self.summed * self.neighbours
     }
 
     /// Processor time \[s\].
     pub fn seconds(&self) -> f64 {
-        0.5 * self.sweeps * self.steps * self.particles * (STEP[0] + STEP[1] * self.neighbours)
+        0.5 * (self.sweeps * self.steps * self.particles * STEP[0] + self.pairs() * STEP[1])
     }
 
     /// Memory \[bytes\].

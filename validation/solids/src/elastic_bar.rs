@@ -65,14 +65,14 @@ base::metrics! {
          what the free end has sent back";
     STRESS_ERROR = "stress_error" ["-"]
         "mean -sigma_xx of the particles within L/2 of the contact, when the left bar has come to rest, \
-         over that of the jump conditions, less 1";
+         over that of the jump conditions, minus 1";
     CONTACT_TIME_ERROR = "contact_time_error" ["-"]
         "time from 10 % to 90 % of the exchange of velocity, over 0.8, over 2 L/U of the jump conditions, \
-         less 1";
+         minus 1";
     EXCHANGE = "exchange" ["-"] "largest speed of the left bar backwards over V";
     RESTITUTION = "restitution" ["-"] "relative speed of the bars at the end over 2 V, of bars with a gap";
     MOMENTUM_ERROR = "momentum_error" ["-"] "|change of sum m v|/sum m |v| at the start";
-    ENERGY_CHANGE = "energy_change" ["-"] "kinetic and strain energy, end over start less 1";
+    ENERGY_CHANGE = "energy_change" ["-"] "kinetic and strain energy, end over start, minus 1";
 }
 
 /// What is read from the motion between two steps.

@@ -49,9 +49,9 @@ base::metrics! {
          farther than 4 h + dx from the rim";
     RIM_STRAIN = "rim_strain" ["-"] "root mean square of the same for the other particles";
     ANGULAR_MOMENTUM_DRIFT = "angular_momentum_drift" ["-"]
-        "|angular momentum at the end over that at the start less 1|, a revolution";
+        "|angular momentum at the end over that at the start - 1|, a revolution";
     ANGULAR_MOMENTUM_TENTH = "angular_momentum_tenth" ["-"]
-        "angular momentum after a tenth of a revolution over that at the start, less 1";
+        "angular momentum after a tenth of a revolution over that at the start, minus 1";
     LARGEST_STRESS = "largest_stress" ["-"] "largest (mean S:S)^(1/2) over rho U^2";
     ENERGY_DRIFT = "energy_drift" ["-"] "change of energy, a revolution";
     MOMENTUM_ERROR = "momentum_error" ["-"] "|sum m v|/(sum m times the speed of the rim)";

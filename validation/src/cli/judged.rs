@@ -291,6 +291,9 @@ pub fn headline(suite: &Suite) -> String {
     let others = Counts::of(suite.submitted().map(|of| of.judged.judgement.verdict)).headline();
     match suite.submissions().next() {
         None => ours,
+        Some(_) if suite.cases.iter().all(|of| of.runs.all.is_empty()) => {
+            format!("Runs of other codes: {others}.")
+        }
         Some(_) => format!("Our own runs: {ours}. Runs of other codes: {others}."),
     }
 }

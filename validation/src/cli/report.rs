@@ -32,7 +32,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
             if arguments.partial {
                 partial(plans, tier, store, stored)
-            } else if verify::has_submissions_alone(&stored, tier) {
+            } else if verify::has_submissions_alone(&stored) {
                 let (suite, _, told) = partial(plans, tier, store, stored);
                 (suite, String::new(), told)
             } else {

@@ -35,9 +35,13 @@ pub fn summary(suite: &Suite) -> String {
         "worst gate",
         "margin",
     ];
-    let mut text = output::table(&heads, suite.cases.iter().map(row));
-    text += "The error is that of the recommended variant, its cost that on one core; the margin is the\n\
-             unused share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
+    let rows: Vec<_> = suite.cases.iter().filter(|of| !of.runs.all.is_empty()).map(row).collect();
+    let mut text = String::new();
+    if !rows.is_empty() {
+        text = output::table(&heads, rows);
+        text += "Error and cost are of the recommended variant, the cost on one core; the margin is the\n\
+                 unused share of the bound of the worst gate; for a known limitation, of its wider bound.\n";
+    }
     text += &failures(suite);
     text += &judged::submissions(suite);
     let counts = suite.counts();

@@ -19,7 +19,7 @@ use clap::Parser;
 use harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
-    declare::{Breaks, Card, Declaration, Stated},
+    declare::{Card, Declaration},
     make::{self, Made, Making},
     runs::{Judged, Runs},
     store::Store,
@@ -115,25 +115,7 @@ impl Case for Staged {
 
     fn declaration(&self, _: Tier) -> Declaration {
         let run = || case::spec(self, "right", &["re=1".to_string()]).expect("staged settings");
-        let card = || Card {
-            title: "Main",
-            picture: "none",
-            metric: ERROR.into(),
-            stated: |_| Stated {
-                name: "made up".into(),
-                against: "nothing",
-                uncertainty: None,
-                unit: "",
-            },
-            beside: None,
-            runs: vec![run()],
-            breaks: Breaks {
-                setting: "re",
-                words: ["", ""],
-                has_broken: |_| Some(false),
-                sign: "",
-            },
-        };
+        let card = || Card::made_up(ERROR, "re", vec![run()]);
         let (name, card) = (self.name, (self.name == "main").then(card));
         let studies = move |runs: &Runs| {
             let count = runs.all.len() as f64;

@@ -11,6 +11,7 @@ use harness::{
     suite::{self, JudgedOf, Plans, Suite},
 };
 
+use report::counted;
 use validation::peers;
 
 use super::{
@@ -58,14 +59,18 @@ fn show(
     Ok(exit(&suite))
 }
 
-/// `206 runs, 12 of them from the store`.
+/// `206 runs, 12 of them from the store`, or of a store without our own runs `3 runs of other codes`.
 pub fn runs(suite: &Suite) -> String {
     let all: usize = suite.cases.iter().map(|results| results.runs.all.len()).sum();
+    let others = suite.submissions().count();
+    if all == 0 && others > 0 {
+        return counted(others, "run of another code", "runs of other codes");
+    }
     let other = match suite.made.of_other_sources {
         0 => String::new(),
         count => format!(", {count} of these made by a build of other sources"),
     };
-    let all = report::counted(all, "run", "runs");
+    let all = counted(all, "run", "runs");
     match suite.made.reused {
         0 => all,
         count => format!("{all}, {count} of them from the store{other},"),
@@ -129,24 +134,20 @@ pub fn of_store(
     any_build: bool,
     world: &World,
 ) -> Result<Suite, Failure> {
-    let (plans, stored) = stored(cases, tier, path, any_build, world)?;
-    if has_submissions_alone(&stored, tier) {
+    let (mut plans, stored) = stored(cases, tier, path, any_build, world)?;
+    if has_submissions_alone(&stored) {
+        plans.iter_mut().for_each(|(_, plan)| plan.clear());
         return Ok(partial(plans, tier, path, stored).0);
     }
     Ok(of_stored(plans, tier, stored))
 }
 
 /// Does a store hold nothing but runs of other codes? What was not to be made there is no failure.
-pub fn has_submissions_alone(stored: &Stored, tier: Tier) -> bool {
-    let Stored { made, missing, other } = stored;
+pub fn has_submissions_alone(stored: &Stored) -> bool {
+    let Stored { made, other, .. } = stored;
     let is_alone = made.records.is_empty() && made.unsound.is_empty() && *other == 0;
     if is_alone && !made.submissions.is_empty() {
-        output::say(&format!(
-            "note: the store has runs of other codes alone; the {} runs of this program in the {} tier are \
-             absent, and are not judged",
-            missing.len(),
-            judged::tier_name(tier)
-        ));
+        output::say("note: the store has runs of other codes alone; only these are judged");
     }
     is_alone && !made.submissions.is_empty()
 }

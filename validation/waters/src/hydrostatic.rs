@@ -66,9 +66,9 @@ base::metrics! {
     P_L2 = "p_l2" ["-"]
         "rms(p - p_exact)/rms(p_exact) over particles, p_exact at their places, at the end";
     LEVEL_DRIFT = "level_drift" ["-"]
-        "mean height of the highest particle in each strip of width dx, end less start, over H";
+        "mean height of the highest particle in each strip of width dx, end minus start, over H";
     GAP = "gap" ["-"]
-        "mean height of the lowest particle in each strip of width dx, end less start, over dx";
+        "mean height of the lowest particle in each strip of width dx, end minus start, over dx";
     KINETIC = "kinetic" ["-"]
         "largest sum m v^2/2 over M g H, once a period over the last quarter of the run";
     OUTSIDE = "outside" ["-"] "most particles beyond bottom or sides, once a period";

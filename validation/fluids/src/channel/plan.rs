@@ -71,8 +71,8 @@ fn gates(flow: Flow, row: &Row<ChannelSettings, For>) -> Vec<Gate> {
     match row.group {
         For::Ladder => of_ladder(flow, variant, s.rows),
         For::Reynolds => {
-            let because = "One rule for the settings must hold at every Reynolds number of the list, with \
-                           an error of at most 1 %.";
+            let because = "The settings follow from one rule, and the error must be at most 1 % at every \
+                           Reynolds number of the list.";
             let (run, bound) = (format!("{variant}.re{}", s.re), Bound::Below(0.01));
             vec![flow.case().gate(run, L2_WORST, bound, Evidence::Analytic, because)]
         }

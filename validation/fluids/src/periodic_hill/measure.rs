@@ -19,7 +19,7 @@ pub const WALL: usize = 361;
 base::metrics! {
     all ALL;
     FORCE = "force" ["U_b^2/H"] "mean body force of the last window";
-    FLUX = "flux" ["-"] "mean flux over the flux wanted, less 1, from the particles' volumes";
+    FLUX = "flux" ["-"] "mean flux over the flux wanted, minus 1, from the particles' volumes";
     SECTION_FLUX = "section_flux" ["-"]
         "largest |flux through a station/flux wanted - 1|, interpolated";
     DRAG_BALANCE = "drag_balance" ["-"]

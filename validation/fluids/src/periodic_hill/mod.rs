@@ -36,7 +36,7 @@ unit_settings! {
         /// time in which the controller closes a gap in flux; 0 keeps the force
         response: f64 ["H/U_b"] in 0.0..=1e3 = 1.0,
         /// end of the run
-        end: f64 ["H/U_b"] in 1e-3..=1e4 = 40.0,
+        end: f64 ["H/U_b"] in 1e-3..=1e4 = 30.0,
         /// last part of the run, over which profiles are averaged
         average: f64 ["of the run"] in 0.01..=0.3 = 0.2,
         /// smoothing length over spacing

@@ -23,7 +23,7 @@ base::metrics! {
     all ALL;
     L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
     L2_WORST = "l2_worst" ["-"] "largest l2 over 40 times, while 1 % of the speed of the start is left";
-    ENERGY = "energy" ["-"] "kinetic energy over the exact one at the end, less 1";
+    ENERGY = "energy" ["-"] "kinetic energy over the exact one at the end, minus 1";
     MOMENTUM_ADDED = "momentum_added" ["-"]
         "|sum m v at the end - sum m v at the start|/(sum m U), exactly 0";
     PRESSURE_L2 = "pressure_l2" ["-"] "(sum (p - mean - p_exact)^2/sum p_exact^2)^(1/2) at the end";

@@ -76,7 +76,7 @@ mod tests {
         assert_eq!(
             changes,
             ["0 %", "−12 %", "−3.0 %", "−9.0 %"],
-            "error less that of its reference"
+            "error minus the error of its reference"
         );
     }
 

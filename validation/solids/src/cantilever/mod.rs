@@ -61,9 +61,9 @@ base::metrics! {
          greatest kinetic energy";
     BENDING_FREQUENCY_ERROR = "bending_frequency_error" ["-"]
         "frequency over that of finite elements, over the root of the theory's stiffness of so many layers \
-         over E H^3/(12 (1 - nu^2)), less 1";
+         over E H^3/(12 (1 - nu^2)), minus 1";
     BENDING_SAG_ERROR = "bending_sag_error" ["-"]
-        "average_y over that of finite elements, times this stiffness, less 1";
+        "average_y over that of finite elements, times this stiffness, minus 1";
     PATH_RMS = "path_rms" ["-"]
         "root of the mean square of the distance of the end from finite elements until 0.75 s, in the first \
          swing, over their amplitude harmonic_y";
@@ -97,7 +97,7 @@ const FIRST_LEAST_Y_ERROR: MetricKey = error("first_least_y_error");
 
 /// A difference from finite elements.
 const fn error(name: &'static str) -> MetricKey {
-    MetricKey::new(name, "-", "the same over that of finite elements of this law, less 1")
+    MetricKey::new(name, "-", "the same over that of finite elements of this law, minus 1")
 }
 
 /// The total Lagrangian variant of another law.

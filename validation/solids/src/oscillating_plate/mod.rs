@@ -63,20 +63,20 @@ base::metrics! {
         "time to the second passage of the tip through its height of rest, twice that to the first if \
          there is one only";
     PERIOD_EXCESS = "period_excess" ["-"]
-        "period over 2 pi (12 rho (1 - nu^2)/(E H^2))^(1/2) (L/1.875)^2, less 1";
+        "period over 2 pi (12 rho (1 - nu^2)/(E H^2))^(1/2) (L/1.875)^2, minus 1";
     AMPLITUDE_RATIO = "amplitude_ratio" ["-"]
         "greatest height of the tip in its first swing over its first speed times period/(2 pi)";
     ENERGY_CHANGE = "energy_change" ["-"]
-        "kinetic and strain energy of the free particles, end over start less 1";
-    PERIOD_ERROR = "period_error" ["-"] "period over that of finite elements of this law, less 1";
+        "kinetic and strain energy of the free particles, end over start, minus 1";
+    PERIOD_ERROR = "period_error" ["-"] "period over that of finite elements of this law, minus 1";
     AMPLITUDE_ERROR = "amplitude_error" ["-"]
-        "amplitude_ratio over that of the same place of finite elements, less 1";
+        "amplitude_ratio over that of the same place of finite elements, minus 1";
     PATH_RMS = "path_rms" ["-"]
         "root of the mean square of the distance of the tip from that of finite elements, through their \
          first three periods, over their first extreme";
     BENDING_PERIOD_ERROR = "bending_period_error" ["-"]
         "period over that of finite elements, times the root of the bending stiffness that a plate of so \
-         many layers has in the method by theory, less 1";
+         many layers has in the method by theory, minus 1";
 }
 
 /// What is read from the path of the tip through all steps.

@@ -24,13 +24,13 @@ base::metrics! {
     T_IMPULSE_99 = "t_impulse_99" ["L/c0"] "when this share (in %) of the phase's impulse has passed";
     IMPULSE_ERROR = "impulse_error" ["-"] "impulse of the phase/finite elements - 1";
     CONTACT_BEGIN_ERROR = "contact_begin_error" ["L/c0"]
-        "when 1 % of the phase's impulse has passed, less that of finite elements";
+        "when 1 % of the phase's impulse has passed, minus this time of finite elements";
     CONTACT_END_ERROR = "contact_end_error" ["L/c0"]
-        "when 99 % of the phase's impulse has passed, less that of finite elements";
+        "when 99 % of the phase's impulse has passed, minus this time of finite elements";
     RESTITUTION_ERROR = "restitution_error" ["-"] "restitution/finite elements - 1";
     WIDTH_MIN_ERROR = "width_min_error" ["-"] "width_min/finite elements - 1";
     HEIGHT_MAX_ERROR = "height_max_error" ["-"] "height_max/finite elements - 1";
-    X_C_WORST = "x_c_worst" ["L"] "x_c less finite elements, when that is largest in magnitude";
+    X_C_WORST = "x_c_worst" ["L"] "x_c minus x_c of finite elements, where the difference is largest in magnitude";
     X_C_RMS = "x_c_rms" ["L"] "rms over the run of x_c - finite elements";
     V_C_RMS = "v_c_rms" ["c0"] "rms over the run of v_c - finite elements";
     WIDTH_RMS = "width_rms" ["L"] "rms over the run of width - finite elements";

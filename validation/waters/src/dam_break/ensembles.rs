@@ -97,9 +97,9 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
     let judged =
         |name: &str, median: &str, known| judged(format!("{id}.{name}.median"), median, known);
     let [level, impulse] =
-        ["level H3, mean of 6 ≤ t ≤ 8", "impulse on P3 during 2.5, over the measured one, less 1"];
+        ["level H3, mean of 6 ≤ t ≤ 8", "impulse on P3 during 2.5, over the measured one, minus 1"];
     let of_level = "median of the level at H3, mean of 6 ≤ t ≤ 8 [H]";
-    let of_impulse = "median of the impulse on P3 during 2.5, over the measured one, less 1";
+    let of_impulse = "median of the impulse on P3 during 2.5, over the measured one, minus 1";
     vec![
         Number {
             name: [level, "H"],

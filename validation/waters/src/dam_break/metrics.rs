@@ -48,11 +48,11 @@ base::metrics! {
         "|mass of the water at the end/that at the start - 1|, of all particles, lost ones too";
     Z = "z" ["-"]
         "Z = front from the back wall/a at T = t (2g/a)^(1/2), front = x of the foremost particle below H/4, \
-         plus a, less that x at the start";
+         plus a, minus this x at the start";
     FRONT_BACK = "front_back" ["-"]
         "most by which the front is behind where it has been, in a, until it is at the far wall";
     FRONT_AWAY = "front_away" ["-"]
-        "front less that of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank in H \
+        "front minus the front of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank in H \
          at t (g/H)^(1/2)";
     HEIGHT_AWAY = "height_away" ["-"]
         "rms distance of the residual height/H from that of the same model by volume of fluid";
@@ -85,12 +85,12 @@ pub const LEVEL_AWAY: [MetricKey; 4] = four(
 /// Impulse on each sensor over that of the reference that shares the model.
 pub const IMPULSE_AWAY: [MetricKey; 4] = four(
     "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over that of the same model by volume of \
-     fluid, less 1",
+     fluid, minus 1",
     ["impulse_P1_away", "impulse_P2_away", "impulse_P3_away", "impulse_P4_away"],
 );
 /// Impulse on each sensor, at the end of its window.
 pub const IMPULSE: [MetricKey; 4] = four(
-    "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, less 1",
+    "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, minus 1",
     ["impulse_P1", "impulse_P2", "impulse_P3", "impulse_P4"],
 );
 

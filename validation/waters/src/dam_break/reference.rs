@@ -212,6 +212,9 @@ pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
 /// Why a metric of a time that a run does not reach is absent.
 const TOO_SHORT: &str = "the run ends before the times that this is of";
 
+/// Why a metric of a probe or a sensor is absent.
+const DRY: &str = "the run ends before water comes to this place";
+
 /// Puts a metric whose value is of a time, if the run goes on until then: a curve is constant beyond its end,
 /// and an impulse would be of a part of its window. A time that is not a number never comes.
 fn put_if_reached(
@@ -307,7 +310,9 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
     let pairs = [0, 1, 2, 3].map(pair);
     for (k, (computed, _)) in pairs.iter().enumerate() {
         let model = MODEL.level(k, LEVELS_UNTIL.min(s.end));
-        record.put(LEVEL_AWAY[k], rms(computed, &model, 0.0));
+        let is_wet = |curve: &[(f64, f64)]| curve.iter().any(|(_, level)| *level > 0.0);
+        let has_come = is_wet(computed) || is_wet(&model);
+        record.put_or(LEVEL_AWAY[k], has_come.then(|| rms(computed, &model, 0.0)), DRY);
     }
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
     let pressures = [0, 1, 2, 3].map(|k| pressure(record, k));
@@ -325,7 +330,8 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
             put_if_reached(record, IMPULSE_AWAY[k].at(window), times, || a / c - 1.0);
         }
     }
-    record.put(PEAK, pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max));
+    let peak = pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
+    record.put_or(PEAK, ours.is_finite().then_some(peak), DRY);
 }
 
 #[cfg(test)]

@@ -46,9 +46,9 @@ pub fn check_above(
     }
     let highest = particles.iter().map(|p| p.position.y).fold(surface, f64::max);
     let (name, value, allowed) = setting(highest - surface);
-    let why = "for particles of the walls above the surface have the density of water there";
+    let why = "otherwise wall particles far above the surface would have no density";
     let words =
-        format!("setting {name} is {value:?}; allowed with these settings is {allowed}, {why}");
+        format!("setting {name} is {value:?}; allowed with these settings is {allowed}; {why}");
     Err(SettingError(words).into())
 }
 
