@@ -131,7 +131,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
 /// of the flow: transients decay by 0.11 U_b/H at Re 50, and five times as fast at Re 10.
 fn left_of_start(settings: &serde_json::Value) -> String {
     let [re, end] = ["re", "end"].map(|name| settings[name].as_f64().unwrap_or(f64::NAN));
-    let left = (-5.5 * end / re).exp();
+    let left = base::functions::exp(-5.5 * end / re);
     match settings["from_reference"].as_bool() {
         Some(false) if left > 0.05 => {
             format!(" (not steady: about {} of the start from rest is left)", percent(left, 1))
