@@ -22,8 +22,8 @@ fn gates(flow: Flow, settings: &ChannelSettings, modern: f64) -> [Gate; 2] {
     let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.case().name);
     let is_poiseuille = flow == Flow::Poiseuille;
     let spacing = if is_poiseuille && modern.is_finite() { modern } else { 0.0 };
-    let because = "The bound is 0.1 %. Where the spacing alone has a larger error, in Poiseuille flow, the bound \
-                   is the error of `modern` plus 0.02 % for time and motion.";
+    let because = "The bound is 0.1 %. Where the spacing alone has a larger error, in Poiseuille flow, the \
+                   bound is the error of `modern` plus 0.02 % for time and motion.";
     let (metric, goal) = (L2.at(flow.compared_at()), Bound::Below((spacing + 2e-4).max(1e-3)));
     let l2 = Gate::new(id("l2"), metric, goal, Evidence::Analytic, because);
     let allowed = REYNOLDS.iter().find(|(of, _)| *of == re).map_or(0.0, |(_, allowed)| *allowed);

@@ -172,8 +172,8 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
     about: "A known field on particles at rest on a lattice, displaced at random. Over a few steps of \
             1e-6 h/c0 the density becomes the sum of the masses (variants `density`), the pressure \
             accelerates (`gradient`), viscosity accelerates (`laplacian`), or the flow compresses \
-            (`divergence`). The operator is the rate of change: the value of each particle at the end minus its value at \
-            the start, over the time. This rate is compared with the exact value.",
+            (`divergence`). The operator is the rate of change: the value of each particle at the \
+            end minus its value at the start, over the time. This rate is compared with the exact value.",
     variants,
     declaration: |tier| Declaration {
         posed: Posed {
