@@ -99,8 +99,7 @@ impl For {
                 let reason = format!(
                     "The order of noise is {expected} by theory: the lowest order of the field that the sum \
                      does not cancel, minus the order of the derivative that is sought. The limitation is \
-                     this \
-                     number with 0.25 either way, for the rms of few independent samples."
+                     this number with 0.25 either way, for the rms of few independent samples."
                 );
                 gate.with_limitation(within(0.25), reason, &DISORDERED)
             }

@@ -30,7 +30,7 @@ base::metrics! {
     RESTITUTION_ERROR = "restitution_error" ["-"] "restitution/finite elements - 1";
     WIDTH_MIN_ERROR = "width_min_error" ["-"] "width_min/finite elements - 1";
     HEIGHT_MAX_ERROR = "height_max_error" ["-"] "height_max/finite elements - 1";
-    X_C_WORST = "x_c_worst" ["L"] "x_c minus x_c of finite elements, where the difference is largest in magnitude";
+    X_C_WORST = "x_c_worst" ["L"] "x_c minus x_c of finite elements, when this is largest in magnitude";
     X_C_RMS = "x_c_rms" ["L"] "rms over the run of x_c - finite elements";
     V_C_RMS = "v_c_rms" ["c0"] "rms over the run of v_c - finite elements";
     WIDTH_RMS = "width_rms" ["L"] "rms over the run of width - finite elements";

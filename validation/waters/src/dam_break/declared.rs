@@ -236,8 +236,8 @@ fn accuracy(tier: Tier) -> Accuracy {
         ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
     }
     Accuracy {
-        about: "Front of the column of Martin & Moyce at T = 1, minus the front of the same model by volume of \
-                fluid, in widths a of the column. Later fronts of fine runs are ahead of that one by up \
+        about: "Front of the column of Martin & Moyce at T = 1, minus the front of the same model by volume \
+                of fluid, in widths a of the column. Later fronts of fine runs are ahead of that one by up \
                 to its uncertainty of 0.008 a, so they do not show how the error falls."
             .into(),
         spacing: "dx/a [-]",
@@ -251,8 +251,8 @@ fn accuracy(tier: Tier) -> Accuracy {
 fn in_the_tank(tier: Tier) -> Accuracy {
     let level = |s: &DamSettings| (1.0 / s.n as f64, format!("H/dx {}", s.n));
     Accuracy {
-        about: "Front of the column in the tank at t = 2 √(H/g), minus the front of the same model by volume of \
-                fluid, which is known to 0.028 H."
+        about: "Front of the column in the tank at t = 2 √(H/g), minus the front of the same model by volume \
+                of fluid, which is known to 0.028 H."
             .into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),

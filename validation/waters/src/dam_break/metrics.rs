@@ -52,8 +52,8 @@ base::metrics! {
     FRONT_BACK = "front_back" ["-"]
         "most by which the front is behind where it has been, in a, until it is at the far wall";
     FRONT_AWAY = "front_away" ["-"]
-        "front minus the front of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank in H \
-         at t (g/H)^(1/2)";
+        "front minus the front of the same model by volume of fluid: in a at T = t (2g/a)^(1/2), in the tank \
+         in H at t (g/H)^(1/2)";
     HEIGHT_AWAY = "height_away" ["-"]
         "rms distance of the residual height/H from that of the same model by volume of fluid";
     RELEASED = "released" ["-"]
