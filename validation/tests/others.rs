@@ -272,6 +272,39 @@ fn a_measure_over_nothing_is_no_number() {
     assert!(!flux.is_finite(), "no particle is in a section, and its error is {flux}");
 }
 
+/// Where all gates pass, the command that follows is a problem with half the spacing.
+#[test]
+fn what_passes_goes_on_with_a_finer_problem() {
+    let own = Entry::own("couette --variant modern");
+    let said = own.submit(&own.head, &own.rows);
+    let next = said.text.lines().find(|line| line.starts_with("next")).expect(&said.text);
+    assert_eq!(said.code, 0, "{}", said.text);
+    assert!(next.contains("touchstone export couette --variant modern --set rows=40"), "{next}");
+}
+
+/// What results of another code cannot have, for it takes our own terms, every step or our own theory, is not
+/// among what is measured of them.
+#[test]
+fn a_problem_lists_nothing_that_only_our_own_runs_have() {
+    for problem in ["dam_break --set n=8 --set end=1", "elliptic_drop --set n=8 --set end=0.2"] {
+        let own = Entry::own(problem);
+        let record = own.submit(&own.head, &own.rows).record.expect(problem);
+        let ours = [Absent::OwnTerms, Absent::EveryStep, Absent::OwnTheory];
+        let absent = record.absent.iter().filter(|(_, why)| ours.contains(why));
+        let absent: BTreeSet<&str> =
+            absent.map(|(name, _)| name.split('@').next().unwrap()).collect();
+        assert!(absent.len() > 3, "{problem}: {absent:?}");
+        let document = fs::read_to_string(own.folder.join("problem.json")).unwrap();
+        let document: serde_json::Value = serde_json::from_str(&document).unwrap();
+        for (list, key) in [("metrics", "name"), ("judged_by", "metric")] {
+            for of in document[list].as_array().unwrap() {
+                let name = of[key].as_str().unwrap();
+                assert!(!absent.contains(name.split('@').next().unwrap()), "{problem}: {name}");
+            }
+        }
+    }
+}
+
 /// Where no plan has a gate, 0 was the exit code, and nothing was said of the error.
 #[test]
 fn nothing_judged_ends_with_2_and_names_what_is() {

@@ -222,13 +222,24 @@ fn a_forged_record_is_refused_by_its_results() {
     assert_eq!(of(at, "submit couette a --store st").1, 1);
     let path = &records(&at.join("st"))[0];
     let record = Record::from_json(&fs::read_to_string(path).unwrap()).unwrap();
-    let mut forged = record.clone();
-    forged.metrics.get_mut("l2@0.1").unwrap().value = 1e-5;
-    let json = forged.to_json().unwrap();
-    assert!(Record::from_json(&json).is_ok(), "its digest fits");
-    fs::write(path, json).unwrap();
-    let (words, code) = of(at, "submit couette a --store st");
-    assert!(code == 2 && words.contains("l2@0.1 (1e-5 there"), "{words}");
+    let forgeries: [(fn(&mut Record), &str); 3] = [
+        (|of| of.metrics.get_mut("l2@0.1").unwrap().value = 1e-5, "l2@0.1 (1e-5 there"),
+        (|of| drop(of.metrics.remove("l2@0.1")), "l2@0.1 (not measured there"),
+        (
+            |of| drop(of.metrics.insert("l3".into(), of.metrics["l2@0.1"].clone())),
+            "there, not measured by the results",
+        ),
+    ];
+    for (forge, says) in forgeries {
+        let mut forged = record.clone();
+        forge(&mut forged);
+        let json = forged.to_json().unwrap();
+        assert!(Record::from_json(&json).is_ok(), "its digest fits");
+        fs::write(path, json).unwrap();
+        let (words, code) = of(at, "submit couette a --store st");
+        let words = words.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(code == 2 && words.contains(says), "expected {says:?} in {words}");
+    }
 }
 
 /// Equal results of two codes have equal digests, and the machine of the other code is not that of this
@@ -306,6 +317,33 @@ fn words_of_a_method_draw_nothing_and_what_it_is_does() {
     assert_ne!(other_seed.unwrap(), first);
 }
 
+/// Equal numbers are one number however they are written, wherever they stand among the settings of a method.
+#[test]
+fn a_method_has_one_digest_however_its_numbers_are_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let digest = |settings: &str| {
+        let method = format!(
+            "{{\"code\": \"c\", \"version\": \"1\", \"scheme\": \"s\", \"division\": \"closed\", \
+             \"settings\": {settings}, \"changed\": \"\"}}"
+        );
+        drawn(folder.path(), &method, "couette --seed 1").unwrap();
+        let problem = fs::read_to_string(folder.path().join("sealed/problem.json")).unwrap();
+        let problem: Value = serde_json::from_str(&problem).unwrap();
+        problem["sealed"]["method"].as_str().expect("a digest").to_string()
+    };
+    let first = digest(r#"{"a": 1, "b": [1, {"c": 2}]}"#);
+    for same in [r#"{"b": [1.0, {"c": 2}], "a": 1}"#, r#"{"a": 10e-1, "b": [1, {"c": 2.0}]}"#] {
+        assert_eq!(digest(same), first, "{same}");
+    }
+    for other in [
+        r#"{"a": 1, "b": [1, {"c": 2.5}]}"#,
+        r#"{"a": 1, "b": [{"c": 2}, 1]}"#,
+        r#"{"a": 1, "b": ["1", {"c": 2}]}"#,
+    ] {
+        assert_ne!(digest(other), first, "{other}");
+    }
+}
+
 /// What no submission can have was sealed, and problems that nobody can judge.
 #[test]
 fn what_has_no_bound_or_is_no_method_is_not_sealed() {
@@ -348,6 +386,26 @@ fn sealed_settings_lie_where_the_reference_holds() {
         let [least, most] =
             [f64::min, f64::max].map(|end| values.iter().copied().reduce(end).unwrap());
         assert!(low <= least && most <= high && most > 8.0 * least, "{case}: {least} to {most}");
+    }
+}
+
+/// An error that has a sign is bounded on both sides in a sealed problem, too.
+#[test]
+fn a_sealed_error_with_a_sign_is_bounded_on_both_sides() {
+    let folder = tempfile::tempdir().unwrap();
+    let method = fs::read_to_string(solved().join("own/method.json")).unwrap();
+    for (case, metric) in [
+        ("cantilever --variant lagrangian", "frequency_error"),
+        ("periodic_hill --variant carried", "force_error"),
+        ("rubber_rings --variant lagrangian", "width_min_error"),
+    ] {
+        drawn(folder.path(), &method, &format!("{case} --seed 1")).unwrap();
+        let problem = fs::read_to_string(folder.path().join("sealed/problem.json")).unwrap();
+        let problem: Value = serde_json::from_str(&problem).unwrap();
+        let gates = problem["judged_by"].as_array().unwrap();
+        let gate = gates.iter().find(|gate| gate["metric"] == metric).expect(metric);
+        let [low, high] = [0, 1].map(|k| gate["bound"]["within"][k].as_f64().unwrap_or(f64::NAN));
+        assert!(low == -high && high > 0.0, "{case}: {gate}");
     }
 }
 

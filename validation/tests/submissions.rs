@@ -145,6 +145,17 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
     }
 }
 
+/// Of a curve of the open division nobody knows how many particles there were.
+#[test]
+fn a_curve_of_the_open_division_has_no_number_of_particles() {
+    let line = "couette --variant seed --set rows=8 --set end=0.1";
+    let (folder, closed) = of_curve(line, "profile.csv");
+    edit(&folder.path().join("own"), "method.json", "\"closed\"", "\"open\"");
+    let open = submitted(folder.path(), "couette own", "open");
+    let particles = open["cost"]["particles"].as_u64().unwrap_or(0);
+    assert_eq!((closed.cost.particles, particles), (40, 0), "{}", open["cost"]);
+}
+
 /// Each time of a path placed all particles of the problem, so that a bar of 33 layers had too many rows.
 #[test]
 fn a_path_of_a_fine_bar_is_measured_in_a_coarse_scene() {

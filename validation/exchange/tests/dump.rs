@@ -91,6 +91,10 @@ fn shares_of_the_box_are_made_metres() {
         let frames = read_text(&text, map).unwrap();
         assert_eq!(frames[0].1[0].1, Vector2::new(0.0, 11.0), "{columns}");
     }
+    let later = snapshot("ITEM: TIME\n1\n", 1, "id xs ys vx vy", row);
+    let both = snapshot(&format!("{time}{BOX}"), 1, "id xs ys vx vy", row) + &later;
+    let words = read_text(&both, &[]).unwrap_err();
+    assert!(words.contains("no ITEM: BOX BOUNDS before these"), "of the snapshot before: {words}");
     let turned = "ITEM: BOX BOUNDS xy xz yz pp pp pp\n-1 3 0\n10 12 0\n-1 1 0\n";
     let odd = "ITEM: BOX BOUNDS pp ss pp\n-1 3\n12 10\n-1 1\n";
     for (head, says) in
