@@ -30,6 +30,14 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
     fn advanced(self, dt: f64, rate: Self) -> Self;
     /// Whether every number is finite.
     fn is_finite(&self) -> bool;
+    /// The deviatoric stress of a particle with these extra fields, if it is one of a solid \[Pa\].
+    fn stress(&self) -> Option<Symmetric> {
+        None
+    }
+    /// Extra fields of a particle of a solid with this deviatoric stress \[Pa\]; defaults if it is of no solid.
+    fn of_stress(_: Symmetric) -> Self {
+        Self::default()
+    }
 
     /// Writes set number `k`.
     #[inline(always)]
@@ -77,7 +85,7 @@ pub type In<N, V> = <N as Numbers>::In<V>;
 
 /// Implements [`Numbers`] for a struct of numbers, field by field.
 macro_rules! fields_of_numbers {
-    ($Struct:ident ($($field:ident),+)) => {
+    ($Struct:ident ($($field:ident),+); $($more:item)*) => {
         impl Numbers for $Struct<f64> {
             type In<V: Each> = $Struct<V>;
 
@@ -105,11 +113,12 @@ macro_rules! fields_of_numbers {
             fn is_finite(&self) -> bool {
                 true $(&& self.$field.is_finite())+
             }
+            $($more)*
         }
     };
 }
 
-fields_of_numbers! { Vector2 (x, y) }
+fields_of_numbers! { Vector2 (x, y); }
 
 /// A symmetric tensor of the plane: three numbers, not four.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -127,6 +136,11 @@ impl<V> Symmetric<V> {
     #[inline(always)]
     pub fn new(xx: V, yy: V, xy: V) -> Self {
         Self { xx, yy, xy }
+    }
+
+    /// xx, yy and xy.
+    pub fn components(self) -> [V; 3] {
+        [self.xx, self.yy, self.xy]
     }
 }
 
@@ -156,7 +170,15 @@ impl<V: Lane> std::ops::Mul<V> for Symmetric<V> {
     }
 }
 
-fields_of_numbers! { Symmetric (xx, yy, xy) }
+fields_of_numbers! {
+    Symmetric (xx, yy, xy);
+    fn stress(&self) -> Option<Symmetric> {
+        Some(*self)
+    }
+    fn of_stress(stress: Symmetric) -> Self {
+        stress
+    }
+}
 
 /// Implements [`Numbers`] for a tuple, member by member.
 macro_rules! tuple_of_numbers {

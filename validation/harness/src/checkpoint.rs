@@ -16,13 +16,9 @@ use base::{
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Interval, Numbers, Particle, Past, Progress, Stepper, Work};
+use solver::{Checkpoint, Interval, Numbers, Particle, Past, Progress, Stepper, Symmetric, Work};
 
-use crate::{
-    error::RunError,
-    frames::{stress, stressed},
-    outline,
-};
+use crate::{error::RunError, outline};
 
 /// How far a simulation is, apart from its particles and from what is observed of it.
 #[derive(Default)]
@@ -52,6 +48,7 @@ fn state<X: Numbers>(of: &Checkpoint<X>) -> State {
     let Checkpoint { progress, lag, particles, built_at, past } = of;
     let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
     let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
+    let stress = |extra: &X| extra.stress().map(Symmetric::components);
     let (mut stored, mut earlier, mut stresses) = (Vec::new(), Vec::new(), Vec::new());
     for ((id, p), at) in particles.iter().zip(built_at) {
         stored.push((*id, p.role as u8, [p.position, p.velocity, *at], [p.density, p.mass]));
@@ -76,7 +73,8 @@ fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError
     let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
     let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
     let mut stresses = stresses.into_iter();
-    let mut extra = || stresses.next().map_or_else(X::default, stressed);
+    let of_stress = |[xx, yy, xy]: [f64; 3]| X::of_stress(Symmetric { xx, yy, xy });
+    let mut extra = || stresses.next().map_or_else(X::default, of_stress);
     let (mut particles, mut built_at, mut past) = (Vec::new(), Vec::new(), Vec::new());
     for (id, role, [position, velocity, at], [density, mass]) in stored {
         let role = outline::role(role.into());
@@ -96,7 +94,7 @@ pub(crate) fn save<X: Numbers>(
     stage: &Stage,
     seen: &dyn Bits,
 ) -> Result<Vec<u8>, RunError> {
-    if size_of::<X>() > 0 && stress(&X::default()).is_none() {
+    if size_of::<X>() > 0 && X::default().stress().is_none() {
         return Err(RunError::Checkpoint(
             "particles with other extra fields than a deviatoric stress",
         ));

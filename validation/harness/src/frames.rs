@@ -1,7 +1,6 @@
 //! Frames for ParaView, written between the steps of a run. Writing them must not change the run, so no step
 //! is shortened to reach the time of a frame.
 
-use std::any::Any;
 use std::path::PathBuf;
 
 use base::{
@@ -77,21 +76,6 @@ impl<'a> Frames<'a> {
 /// Name of the deviatoric stress of a solid: xx, yy, xy \[Pa\].
 const STRESS: &str = "deviatoric stress";
 
-/// The deviatoric stress among the extra fields of a particle \[Pa\], if it is one of a solid.
-pub(crate) fn stress<X: Numbers>(extra: &X) -> Option<[f64; 3]> {
-    let extra: &dyn Any = extra;
-    extra.downcast_ref().map(|Symmetric { xx, yy, xy }| [*xx, *yy, *xy])
-}
-
-/// The extra fields of a particle of a solid that has this stress.
-pub(crate) fn stressed<X: Numbers>([xx, yy, xy]: [f64; 3]) -> X {
-    let mut extra = X::default();
-    if let Some(stress) = (&mut extra as &mut dyn Any).downcast_mut() {
-        *stress = Symmetric { xx, yy, xy };
-    }
-    extra
-}
-
 /// All fields of the particles at one time, as columns. A particle keeps its number through a run.
 pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> f64) -> Profile {
     let column = |f: &dyn Fn(&Particle<X>) -> f64| particles.iter().map(f).collect();
@@ -104,7 +88,8 @@ pub fn columns<X: Numbers>(particles: &[Particle<X>], pressure: &dyn Fn(f64) -> 
         .with("v", "m/s", column(&|p| p.velocity.y))
         .with("density", "kg/m^3", column(&|p| p.density))
         .with("pressure", "Pa", column(&|p| pressure(p.density)));
-    let stress: Vec<_> = particles.iter().filter_map(|p| stress(&p.extra)).collect();
+    let stress: Vec<_> =
+        particles.iter().filter_map(|p| p.extra.stress()).map(Symmetric::components).collect();
     let names = ["xx", "yy", "xy"].into_iter().enumerate().filter(|_| !stress.is_empty());
     let profile = names.fold(profile, |profile, (k, name)| {
         profile.with(&format!("{STRESS} {name}"), "Pa", stress.iter().map(|s| s[k]).collect())

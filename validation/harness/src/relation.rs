@@ -6,9 +6,8 @@ use base::{
     text::short,
 };
 use nalgebra::{Matrix2, Vector2};
-use solver::{Domain, Numbers, Particle, PlaneWall};
+use solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
 
-use crate::frames::{stress, stressed};
 use crate::medium::Medium;
 
 /// How another observer differs. A solver of the equations must tell both the same.
@@ -220,9 +219,9 @@ impl View {
     /// A particle at the start.
     pub fn particle<X: Numbers>(&self, p: &Particle<X>) -> Particle<X> {
         let scaled = X::default().advanced(self.scale(PRESSURE), p.extra);
-        let extra = stress(&scaled).map_or(scaled, |[xx, yy, xy]| {
+        let extra = scaled.stress().map_or(scaled, |Symmetric { xx, yy, xy }| {
             let turned = self.turn * Matrix2::new(xx, xy, xy, yy) * self.turn.transpose();
-            stressed([turned.m11, turned.m22, turned.m12])
+            X::of_stress(Symmetric::new(turned.m11, turned.m22, turned.m12))
         });
         let (position, velocity) = (self.place(p.position), self.velocity(p.velocity));
         let (density, mass) = (p.density * self.scale(DENSITY), p.mass * self.units[2]);

@@ -6,7 +6,7 @@
 use std::time::{Duration, Instant};
 
 use base::{bits::Bits, lock, mutation::Constant, record::*};
-use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper};
+use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper, Symmetric};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -45,7 +45,7 @@ fn state<X: Numbers>(simulation: &dyn Stepper<X>) -> String {
     let mut numbers = Vec::new();
     for p in simulation.particles() {
         numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
-        numbers.extend(frames::stress(&p.extra).into_iter().flatten());
+        numbers.extend(p.extra.stress().map(Symmetric::components).into_iter().flatten());
     }
     digest(&numbers)
 }
