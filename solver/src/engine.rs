@@ -1,6 +1,10 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
-//! a state and then makes the pair sweeps. What does not depend on the equations of the scene knows them as
-//! `Equations`, and is compiled once, not for each scheme.
+//! a state and then makes the pair sweeps.
+//!
+//! Five things stand between an integrator and a term: an [`Engine`] has particles and [`Equations`], the terms
+//! of the scene with their columns; a [`Sweep`] sums some of these terms, each a [`crate::terms::PairSum`], over
+//! neighbour lists. Code that need not know their types, here and in `sweep.rs`, sees `dyn Equations` and
+//! `dyn PairSweep`, and is compiled once, not for each scheme.
 
 use std::mem::take;
 
@@ -14,206 +18,178 @@ use crate::{
     particle_data::{Checkpoint, Counts, Extent, Fault, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
-    sweep::{self, BlockUpdate, PairSweep, Select, Sweep, first, nothing, second, whole},
-    terms::{News, Term, moments::InverseMoments},
-    walls::Walls,
+    sweep::{self, BlockUpdate, PairSweep, Sweep},
+    terms::{PairSum, Term, moments::InverseMoments},
+    walls::{Extrapolation, WallState, Walls},
 };
-
-/// What becomes of a particle: its number in the order of storage, the particle, and its rates.
-pub trait Update<X>: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {}
-impl<X, F: Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync> Update<X> for F {}
 
 /// Terms of a scene, and the columns that they derive, without their types.
 pub(crate) trait Equations<X>: Sync {
-    /// Tells the terms the largest speed \[m/s\].
+    /// Gives the terms the largest speed \[m/s\].
     fn prepare(&mut self, speed: f64);
-    /// Makes room for so many columns, the last of them the sentinel. Returns their memory \[bytes\].
+    /// Allocates `count` columns; the last is the sentinel. Returns their memory \[bytes\].
     fn make_room(&mut self, count: usize) -> usize;
-    /// Derives the columns of these particles, the first ones, and what is found in each block of them.
+    /// Derives the columns of these particles, the first ones, and the extent of each block of them.
     fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [Extent]);
     /// Refills the images of particles from `first` on, with this share of the walls' own motion.
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64);
     /// Derives the columns of wall particles from these.
     fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]);
-    /// Shows the pair sweep over wall particles, if their terms are any.
-    fn wall_sweep(&self, of: &ParticleData<X>, show: &mut dyn FnMut(&dyn PairSweep<X>));
+    /// Calls `run` with the pair sweep over wall particles, if they have terms.
+    fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>));
+    /// Calls `run` with the pair sweep that extrapolates to wall particles, if they extrapolate.
+    fn extrapolate(&self, of: &ParticleData<X>, run: &mut dyn FnMut(&dyn PairSweep<WallState>));
 }
 
-/// What an engine does that does not depend on its equations.
-pub(crate) struct Core<'a, X> {
-    data: &'a mut ParticleData<X>,
-    equations: &'a mut dyn Equations<X>,
-}
-
-impl<X: Numbers> Core<'_, X> {
+/// The work of an engine on particles that needs no type of its equations.
+impl<X: Numbers> ParticleData<X> {
     fn begin(
         &mut self,
+        equations: &mut dyn Equations<X>,
         state: &mut [Evolved<X>],
         along: &mut dyn FnMut(usize, usize),
     ) -> Result<(), Fault> {
-        if self.data.slips {
-            for wall in self.data.neighbours.mirrors() {
-                let fluid = &mut state[..self.data.counts.fluid];
+        if self.slips {
+            let fluid = &mut state[..self.counts.fluid];
+            for wall in self.neighbours.mirrors() {
                 fluid.iter_mut().for_each(|particle| wall.put_back(particle));
             }
         }
-        let mut extent = self.fill(state)?;
-        if self.data.progress.built_inside_a_step || self.data.is_stale_soon(extent) {
-            self.data.sort(state, along);
-            self.build_lists(&mut places(state));
-            self.data.progress.built_inside_a_step = false;
-            extent = self.fill(state)?;
+        let mut extent = self.fill(equations, state)?;
+        if self.progress.built_inside_a_step || self.is_stale_soon(extent) {
+            self.sort(state, along);
+            self.build_lists(equations, &mut places(state));
+            self.progress.built_inside_a_step = false;
+            extent = self.fill(equations, state)?;
         }
-        self.equations.prepare(extent.speed());
-        self.refresh_walls(state, 1.0);
+        equations.prepare(extent.speed());
+        self.refresh_walls(equations, state, 1.0);
         Ok(())
     }
 
-    fn refresh(&mut self, state: &[Evolved<X>]) -> Result<(), Fault> {
-        let extent = self.fill(state)?;
-        if self.data.is_stale(extent) {
-            self.build_lists(&mut places(state));
+    fn refresh(
+        &mut self,
+        equations: &mut dyn Equations<X>,
+        state: &[Evolved<X>],
+    ) -> Result<(), Fault> {
+        let extent = self.fill(equations, state)?;
+        if self.is_stale(extent) {
+            self.build_lists(equations, &mut places(state));
             // Particles may have left the period by more than images make up for: wrap soon.
-            self.data.progress.built_inside_a_step = true;
-            self.fill(state)?;
+            self.progress.built_inside_a_step = true;
+            self.fill(equations, state)?;
         }
-        self.refresh_walls(state, 1.0);
+        self.refresh_walls(equations, state, 1.0);
         Ok(())
     }
 
     /// Builds neighbour lists and images for particles at these places, and makes room for their columns.
-    fn build_lists(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
-        let data = &mut *self.data;
-        data.enter(Phase::Search);
-        data.neighbours.place(positions);
-        data.neighbours.build(
-            data.counts.fluid,
-            data.counts.walls,
-            data.extrapolates,
-            data.parallel,
-        );
-        data.progress.work.list_builds += 1;
-        data.buffers.still = None;
-        let columns = data.fixed.len() + data.neighbours.images.len();
-        data.column_bytes = self.equations.make_room(columns + 1);
-    }
-
-    /// Goes back or on to a checkpoint.
-    pub fn restore(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
-        self.data.replace(from)?;
-        self.build_lists(&mut from.built_at.iter().copied());
-        self.data.progress = from.progress;
-        Ok(())
-    }
-
-    fn build_first_lists(&mut self) {
-        let state = take(&mut self.data.state);
-        self.build_lists(&mut places(&state));
-        self.data.state = state;
+    fn build_lists(
+        &mut self,
+        equations: &mut dyn Equations<X>,
+        positions: &mut dyn Iterator<Item = Vector2<f64>>,
+    ) {
+        self.enter(Phase::Search);
+        let Counts { fluid, walls } = self.counts;
+        self.neighbours.place(positions);
+        self.neighbours.build(fluid, walls, self.extrapolates, self.parallel);
+        self.progress.work.list_builds += 1;
+        self.buffers.still = None;
+        let columns = self.fixed.len() + self.neighbours.images.len();
+        self.column_bytes = equations.make_room(columns + 1);
     }
 
     /// Derives the columns of the particles, and finds out how far they moved since the neighbour lists
     /// were built.
-    fn fill(&mut self, state: &[Evolved<X>]) -> Result<Extent, Fault> {
-        let data = &mut *self.data;
-        data.enter(Phase::Refresh);
-        let Counts { fluid, walls } = data.counts;
-        let filled = if data.buffers.still.is_some() { fluid } else { state.len() };
+    fn fill(
+        &mut self,
+        equations: &mut dyn Equations<X>,
+        state: &[Evolved<X>],
+    ) -> Result<Extent, Fault> {
+        self.enter(Phase::Refresh);
+        let Counts { fluid, walls } = self.counts;
+        let filled = if self.buffers.still.is_some() { fluid } else { state.len() };
         let count = filled.div_ceil(BLOCK);
-        let mut extents = take(&mut data.buffers.extents);
+        let mut extents = take(&mut self.buffers.extents);
         extents.resize(count + 1, Extent::NIL);
-        extents[count] = data.buffers.still.unwrap_or(Extent::NIL);
-        self.equations.derive(data, &state[..filled], &mut extents);
+        extents[count] = self.buffers.still.unwrap_or(Extent::NIL);
+        equations.derive(self, &state[..filled], &mut extents);
         // Columns of interface particles, if there are any, are filled by nobody else.
-        if data.extrapolates && fluid + walls == state.len() && data.buffers.still.is_none() {
-            data.buffers.still =
-                Some(data.extent(&state[fluid..], &data.neighbours.built_at[fluid..]));
+        if self.extrapolates && fluid + walls == state.len() && self.buffers.still.is_none() {
+            let still = self.extent(&state[fluid..], &self.neighbours.built_at[fluid..]);
+            self.buffers.still = Some(still);
         }
-        let checked = data.check(state, &extents);
-        data.buffers.extents = extents;
+        let checked = self.check(state, &extents);
+        self.buffers.extents = extents;
         checked
     }
 
-    /// Refreshes images, and what wall particles extrapolate, with this share of the walls' own motion.
-    fn refresh_walls(&mut self, state: &[Evolved<X>], motion: f64) {
-        self.equations.fill_images(&self.data.neighbours, 0, motion);
-        if self.data.extrapolates && self.data.counts.walls > 0 {
-            self.extrapolate(state, motion);
+    /// Refreshes images, and the states that wall particles extrapolate. `motion` is the share of the walls' own
+    /// motion that images have.
+    fn refresh_walls(
+        &mut self,
+        equations: &mut dyn Equations<X>,
+        state: &[Evolved<X>],
+        motion: f64,
+    ) {
+        equations.fill_images(&self.neighbours, 0, motion);
+        if self.extrapolates && self.counts.walls > 0 {
+            self.extrapolate(equations, state, motion);
         }
-        self.data.enter(Phase::Rest);
+        self.enter(Phase::Rest);
     }
 
-    /// Gives the columns of wall particles that extrapolate what the fluid before them implies, and
-    /// their images too.
-    fn extrapolate(&mut self, state: &[Evolved<X>], motion: f64) {
-        let Self { data, equations } = self;
-        let own = &state[data.neighbours.wall_lists.of.clone()];
-        let mut implied = take(&mut data.buffers.extrapolated);
+    /// Gives the columns of wall particles, and their images, the state that is extrapolated from the fluid
+    /// before them.
+    fn extrapolate(&mut self, equations: &mut dyn Equations<X>, state: &[Evolved<X>], motion: f64) {
+        let own = &state[self.neighbours.wall_lists.of.clone()];
+        let mut implied = take(&mut self.buffers.extrapolated);
         implied.clear();
         implied.extend_from_slice(own);
         // Sums are made at the foot of a wall particle, if it has one; its column is derived again below.
-        for (wall, foot) in implied.iter_mut().zip(&data.neighbours.feet) {
+        for (wall, foot) in implied.iter_mut().zip(&self.neighbours.feet) {
             wall.position += foot;
         }
-        // They read what wall particles have, and their columns hold what was extrapolated last.
-        equations.derive_walls(data, &implied);
-        let update = each(|_, target: &mut Evolved<X>, rate: &Rate<X>| {
-            target.velocity += rate.velocity;
-            target.density = rate.density;
+        // Sums read the wall particles' own state, and columns hold the state that was extrapolated last.
+        equations.derive_walls(self, &implied);
+        self.enter(Phase::Walls);
+        equations.extrapolate(self, &mut |sweep| {
+            sweep::run(sweep, &self.neighbours.wall_lists, &mut implied, &|_, walls, states| {
+                for (wall, state) in walls.iter_mut().zip(states) {
+                    wall.velocity += state.velocity;
+                    wall.density = state.density;
+                }
+            });
         });
-        data.sweep_walls(*equations, &mut implied, &update);
-        data.enter(Phase::Refresh);
+        self.enter(Phase::Refresh);
         for (wall, own) in implied.iter_mut().zip(own) {
             wall.position = own.position;
         }
-        equations.derive_walls(data, &implied);
-        data.buffers.extrapolated = implied;
-        equations.fill_images(&data.neighbours, data.counts.fluid, motion);
+        equations.derive_walls(self, &implied);
+        self.buffers.extrapolated = implied;
+        equations.fill_images(&self.neighbours, self.counts.fluid, motion);
     }
-}
 
-impl<X: Numbers> ParticleData<X> {
-    /// Updates fluid particles by this sweep, and wall particles by that of the walls' own terms, if these
-    /// give rates and not only forces are summed.
+    /// Updates fluid particles by this sweep, and wall particles by the sweep over their own terms, if the phase
+    /// is more than a sum of forces.
     fn sweep(
         &mut self,
         phase: Phase,
-        sweep: &dyn PairSweep<X>,
+        sweep: &dyn PairSweep<Rate<X>>,
         equations: &dyn Equations<X>,
         targets: &mut [Evolved<X>],
         update: &BlockUpdate<X>,
     ) {
         self.count(phase);
         sweep::run(sweep, &self.neighbours.lists, targets, update);
-        if phase != Phase::Forces && !self.extrapolates {
-            self.sweep_walls(equations, &mut targets[self.counts.fluid..], update);
-        }
-        self.enter(Phase::Rest);
-    }
-
-    fn sweep_walls(
-        &self,
-        equations: &dyn Equations<X>,
-        targets: &mut [Evolved<X>],
-        update: &BlockUpdate<X>,
-    ) {
-        if self.counts.walls > 0 {
-            equations.wall_sweep(self, &mut |sweep| {
+        if phase != Phase::Forces && self.counts.walls > 0 {
+            let walls = &mut targets[self.counts.fluid..];
+            equations.sweep_walls(&mut |sweep| {
                 self.enter(Phase::Walls);
-                sweep::run(sweep, &self.neighbours.wall_lists, targets, update);
+                sweep::run(sweep, &self.neighbours.wall_lists, walls, update);
             });
         }
-    }
-
-    /// The rates of wall particles by the terms of the walls, for the state that the columns were
-    /// refreshed for last; none where these do not give rates but extrapolate.
-    pub(crate) fn wall_rates(&self, equations: &dyn Equations<X>) -> Vec<Rate<X>> {
-        let mut rates = Vec::new();
-        if !self.extrapolates {
-            let lists = &self.neighbours.wall_lists;
-            equations.wall_sweep(self, &mut |sweep| rates = sweep::rates(sweep, lists));
-        }
-        rates
+        self.enter(Phase::Rest);
     }
 
     /// The role and the extra fields of a particle, in the fluid without any of images.
@@ -223,30 +199,33 @@ impl<X: Numbers> ParticleData<X> {
     }
 }
 
-/// Terms and columns of a scene.
-pub(crate) struct Typed<P: Physics> {
+/// Terms and columns of a scene, with their types.
+pub(crate) struct TypedEquations<P: Physics> {
     pub kernel: Smoothing<P::Kernel>,
     /// Of the forces, and of the drift.
     pub terms: (P::Forces, P::Drift),
     wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
+    extrapolation: Extrapolated<P>,
     /// Of the particles, of their images, and the sentinel.
     pub columns: Vec<Column<Derived<P>>>,
     /// Inverses of moments: empty where no force needs them.
-    inverses: Vec<Rate<Symmetric>>,
+    inverses: Vec<Symmetric>,
 }
 
-impl<P: Physics> Typed<P> {
-    fn sweep<'a, T: Term<P::Extra>>(
+type Extrapolated<P> = <<P as Physics>::Walls as Walls<<P as Physics>::Extra>>::Extrapolation;
+
+impl<P: Physics> TypedEquations<P> {
+    fn sweep<'a, O: Copy + Default, T: PairSum<O>>(
         &'a self,
         terms: &'a T,
-        select: impl Select<Derived<P>, T::Derived>,
+        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
         moving: bool,
-    ) -> impl PairSweep<P::Extra> {
+    ) -> impl PairSweep<O> {
         Sweep { kernel: &self.kernel, terms, columns: &self.columns, select, moving }
     }
 }
 
-impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for Typed<P> {
+impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
     fn prepare(&mut self, speed: f64) {
         self.terms.prepare(speed);
     }
@@ -273,26 +252,36 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for Typed<P> {
         derive_all(&self.terms, &of.fixed[at.clone()], walls, &mut self.columns[at]);
     }
 
-    fn wall_sweep(&self, of: &ParticleData<X>, show: &mut dyn FnMut(&dyn PairSweep<X>)) {
+    fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>)) {
         if !<P::Walls as Walls<X>>::Terms::IS_EMPTY {
-            let select = at_feet::<X, P::Walls, _>(of.counts.fluid, &of.neighbours.feet);
-            show(&self.sweep(&self.wall_terms, select, false));
+            run(&self.sweep(&self.wall_terms, |_, _| Default::default(), false));
+        }
+    }
+
+    fn extrapolate(&self, of: &ParticleData<X>, run: &mut dyn FnMut(&dyn PairSweep<WallState>)) {
+        if !Extrapolated::<P>::IS_EMPTY {
+            let (fluid, feet) = (of.counts.fluid, &of.neighbours.feet[..]);
+            run(&self.sweep(
+                &self.extrapolation,
+                at_feet::<_, Extrapolated<P>>(fluid, feet),
+                false,
+            ));
         }
     }
 }
 
-/// What terms of walls read of the feet of wall particles, of which this is the number of the first.
-fn at_feet<X, W: Walls<X>, S>(
+/// Selects the foot of a wall particle, of which `first` is the number of the first.
+fn at_feet<S, E: Extrapolation>(
     first: usize,
     feet: &[Vector2<f64>],
-) -> impl Select<S, <W::Terms as Term<X>>::Derived> {
+) -> impl Fn(usize, &S) -> E::Foot + Sync {
     // Fluid has numbers below those of walls, and images have numbers above, for which there are no feet.
-    move |k: usize, _: &S| W::foot(feet.get(k.wrapping_sub(first)))
+    move |k: usize, _: &S| E::foot(feet.get(k.wrapping_sub(first)))
 }
 
 /// Terms and particles of a scene.
 pub struct Engine<P: Physics> {
-    pub(crate) typed: Typed<P>,
+    pub(crate) equations: TypedEquations<P>,
     /// Boxed, for it is moved by code that is compiled for each scheme.
     pub(crate) data: Box<ParticleData<P::Extra>>,
 }
@@ -305,24 +294,36 @@ impl<P: Physics> Engine<P> {
         walls: &P::Walls,
         mut data: Box<ParticleData<P::Extra>>,
     ) -> Self {
-        let (kernel, wall_terms) = (Smoothing::new(h), walls.terms());
-        let typed = Typed { kernel, terms, wall_terms, columns: vec![], inverses: vec![] };
+        let mut equations = TypedEquations {
+            kernel: Smoothing::new(h),
+            terms,
+            wall_terms: walls.terms(),
+            extrapolation: walls.extrapolation(),
+            columns: vec![],
+            inverses: vec![],
+        };
         data.slips = P::Walls::SLIPS;
-        data.extrapolates = P::Walls::EXTRAPOLATES;
-        let mut engine = Self { typed, data };
-        engine.core().build_first_lists();
-        engine
+        data.extrapolates = !Extrapolated::<P>::IS_EMPTY;
+        let state = take(&mut data.state);
+        data.build_lists(&mut equations, &mut places(&state));
+        data.state = state;
+        Self { equations, data }
     }
 
-    pub(crate) fn core(&mut self) -> Core<'_, P::Extra> {
-        Core { data: &mut self.data, equations: &mut self.typed }
+    /// Goes back or on to a checkpoint.
+    pub(crate) fn restore(&mut self, from: &Checkpoint<P::Extra>) -> Result<(), &'static str> {
+        let Self { equations, data } = self;
+        data.replace(from)?;
+        data.build_lists(equations, &mut from.built_at.iter().copied());
+        data.progress = from.progress;
+        Ok(())
     }
 
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
     /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
     /// that is derived from the state.
     pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
-        self.core().begin(state, &mut |_, _| ())
+        self.data.begin(&mut self.equations, state, &mut |_, _| ())
     }
 
     /// Starts a step likewise, with something `kept` of each of the first particles, or of none, which stays
@@ -333,27 +334,31 @@ impl<P: Physics> Engine<P> {
                 kept.swap(i, j);
             }
         };
-        self.core().begin(state, &mut along)
+        self.data.begin(&mut self.equations, state, &mut along)
     }
 
     /// Refreshes everything that is derived from a state inside a step.
     pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
-        self.core().refresh(state)
+        self.data.refresh(&mut self.equations, state)
     }
 
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
     pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
-        self.core().fill(state)?;
-        self.core().refresh_walls(state, 0.0);
+        self.data.fill(&mut self.equations, state)?;
+        self.data.refresh_walls(&mut self.equations, state, 0.0);
         Ok(())
     }
 
     /// Sums the forces: `update` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
-        let sweep = self.typed.sweep(&self.typed.terms.0, first(), true);
-        self.data.sweep(Phase::Forces, &sweep, &self.typed, targets, update);
+        let sweep = self.equations.sweep(
+            &self.equations.terms.0,
+            |_, derived: &Derived<P>| derived.0,
+            true,
+        );
+        self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
 
     /// Sums a part of the forces, whose derived numbers `select` reads: `update` with dv/dt, for fluid
@@ -362,33 +367,38 @@ impl<P: Physics> Engine<P> {
         &mut self,
         targets: &mut State<P>,
         part: &T,
-        select: impl Select<Derived<P>, T::Derived>,
+        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
         update: &BlockUpdate<P::Extra>,
     ) {
-        let sweep = self.typed.sweep(part, select, true);
-        self.data.sweep(Phase::Forces, &sweep, &self.typed, targets, update);
+        let sweep = self.equations.sweep(part, select, true);
+        self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
 
     /// Sums the drift: `update` with dx/dt, dρ/dt and the terms' own rates.
     pub fn sweep_drift(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
-        let sweep = self.typed.sweep(&self.typed.terms.1, second(), true);
-        self.data.sweep(Phase::Drift, &sweep, &self.typed, targets, update);
+        let sweep = self.equations.sweep(
+            &self.equations.terms.1,
+            |_, derived: &Derived<P>| derived.1,
+            true,
+        );
+        self.data.sweep(Phase::Drift, &sweep, &self.equations, targets, update);
     }
 
     /// Sums forces and drift in one pair sweep: `update` with the whole rate.
     pub fn sweep_all(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
-        let sweep = self.typed.sweep(&self.typed.terms, whole(), true);
-        self.data.sweep(Phase::Both, &sweep, &self.typed, targets, update);
+        let sweep =
+            self.equations.sweep(&self.equations.terms, |_, derived: &Derived<P>| *derived, true);
+        self.data.sweep(Phase::Both, &sweep, &self.equations, targets, update);
     }
 
     /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
     /// the state that the columns were refreshed for last. dx/dt is without v.
     pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
-        let (kernel, neighbours) = (&self.typed.kernel, &self.data.neighbours);
-        let mut columns = vec![Column::sentinel(); self.typed.columns.len()];
+        let (kernel, neighbours) = (&self.equations.kernel, &self.data.neighbours);
+        let mut columns = vec![Column::sentinel(); self.equations.columns.len()];
         for (k, column) in columns.iter_mut().enumerate() {
-            let Column { position, velocity, common, .. } = self.typed.columns[k];
+            let Column { position, velocity, common, .. } = self.equations.columns[k];
             let (role, extra) = self.data.own(k);
             let derived = derived(terms, role, &common, &extra);
             *column = Column { position, velocity, common, derived };
@@ -397,46 +407,71 @@ impl<P: Physics> Engine<P> {
         if T::NORMALISES {
             normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
         }
-        let sweep = Sweep { kernel, terms, columns: &columns, select: whole(), moving: false };
+        let sweep = Sweep {
+            kernel,
+            terms,
+            columns: &columns,
+            select: |_: usize, derived: &T::Derived| *derived,
+            moving: false,
+        };
         sweep::rates(&sweep, &neighbours.lists)
     }
 
     /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
     pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
-        let sweep = self.typed.sweep(&self.typed.terms, whole(), false);
+        let sweep =
+            self.equations.sweep(&self.equations.terms, |_, derived: &Derived<P>| *derived, false);
         sweep::rates(&sweep, &self.data.neighbours.lists)
     }
 
     /// The same with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
     /// [`Engine::sweep_drift`].
     pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
-        let forces = self.typed.sweep(&self.typed.terms.0, first(), false);
-        let drift = self.typed.sweep(&self.typed.terms.1, second(), false);
+        let forces = self.equations.sweep(
+            &self.equations.terms.0,
+            |_, derived: &Derived<P>| derived.0,
+            false,
+        );
+        let drift = self.equations.sweep(
+            &self.equations.terms.1,
+            |_, derived: &Derived<P>| derived.1,
+            false,
+        );
         together(&forces, &drift, &self.data.neighbours.lists)
+    }
+
+    /// The rates of wall particles by their terms, for the state that the columns were refreshed for last.
+    pub(crate) fn wall_rates(&self) -> Vec<Rate<P::Extra>> {
+        let (mut rates, lists) = (Vec::new(), &self.data.neighbours.wall_lists);
+        self.equations.sweep_walls(&mut |sweep| rates = sweep::rates(sweep, lists));
+        rates
     }
 
     /// Number of particles that have rates, the first of a state: those of the fluid, and of walls whose
     /// terms give rates.
     pub(crate) fn swept(&self) -> usize {
         let Counts { fluid, walls } = self.data.counts;
-        let only = P::Walls::EXTRAPOLATES || <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
-        if only { fluid } else { fluid + walls }
+        let is_empty = <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
+        if is_empty { fluid } else { fluid + walls }
     }
 
     /// Memory held \[bytes\].
     pub(crate) fn bytes(&self) -> usize {
         self.data.bytes()
-            + self.typed.columns.capacity() * size_of::<Column<Derived<P>>>()
-            + self.typed.inverses.capacity() * size_of::<Rate<Symmetric>>()
+            + self.equations.columns.capacity() * size_of::<Column<Derived<P>>>()
+            + self.equations.inverses.capacity() * size_of::<Symmetric>()
     }
 
-    /// Tells the forces the inverses of the moments, if they need them.
+    /// Gives the forces the inverses of the moments, if they need them.
     pub(crate) fn normalise(&mut self) {
-        const { assert!(!(P::Forces::NORMALISES && P::Walls::EXTRAPOLATES), "moments of fluid alone") };
+        const {
+            let is_sound = !P::Forces::NORMALISES || Extrapolated::<P>::IS_EMPTY;
+            assert!(is_sound, "moments of fluid alone");
+        };
         const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
         if P::Forces::NORMALISES {
             self.data.count(Phase::Forces);
-            let Typed { kernel, columns, inverses, .. } = &mut self.typed;
+            let TypedEquations { kernel, columns, inverses, .. } = &mut self.equations;
             let neighbours = &self.data.neighbours;
             normalise::<P, (P::Forces, P::Drift)>(kernel, neighbours, columns, inverses);
         }
@@ -445,8 +480,8 @@ impl<P: Physics> Engine<P> {
 
 /// The rates of velocities by the forces, and the others by the drift.
 fn together<X: Numbers>(
-    forces: &dyn PairSweep<X>,
-    drift: &dyn PairSweep<X>,
+    forces: &dyn PairSweep<Rate<X>>,
+    drift: &dyn PairSweep<Rate<X>>,
     lists: &Lists,
 ) -> Vec<Rate<X>> {
     let mut drift = sweep::rates(drift, lists);
@@ -480,22 +515,23 @@ fn fill_images<D: Numbers>(
     }
 }
 
-/// Sums the moments of all particles, and tells the columns and their images the inverses.
+/// Sums the moments of all particles, and gives the columns and their images the inverses.
 fn normalise<P: Physics, T: Term<P::Extra>>(
     kernel: &Smoothing<P::Kernel>,
     neighbours: &Neighbours,
     columns: &mut [Column<T::Derived>],
-    inverses: &mut Vec<Rate<Symmetric>>,
+    inverses: &mut Vec<Symmetric>,
 ) {
     let terms = &InverseMoments;
-    let sweep = Sweep { kernel, terms, columns, select: nothing(), moving: false };
+    let sweep =
+        Sweep { kernel, terms, columns, select: |_: usize, _: &T::Derived| (), moving: false };
     let Neighbours { lists, wall_lists, .. } = neighbours;
-    inverses.resize(lists.of.end.max(wall_lists.of.end), Rate::default());
+    inverses.resize(lists.of.end.max(wall_lists.of.end), Symmetric::default());
     for lists in [lists, wall_lists] {
         sweep::fill(&sweep, lists, &mut inverses[lists.of.clone()]);
     }
     for (column, inverse) in columns.iter_mut().zip(inverses) {
-        T::tell(&mut column.derived, News::Inverse(inverse.extra));
+        T::set_inverse(&mut column.derived, *inverse);
     }
     fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
 }
@@ -556,13 +592,15 @@ fn derive<X, T: Term<X>>(
 fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common, extra: &X) -> T::Derived {
     let mut derived = terms.derived(own, extra);
     if role != Role::Fluid {
-        T::tell(&mut derived, News::OnBoundary);
+        T::set_on_boundary(&mut derived);
     }
     derived
 }
 
-/// An update of one particle as that of a block: called once for so many, it costs no time to call.
-pub fn each<X>(update: impl Update<X>) -> impl Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync {
+/// Turns an update of one particle into an update of a block, so that a closure is called once a block.
+pub fn each<X>(
+    update: impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync,
+) -> impl Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync {
     move |first, targets, rates| {
         for (k, (target, rate)) in (first..).zip(targets.iter_mut().zip(rates)) {
             update(k, target, rate);

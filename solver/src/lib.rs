@@ -18,7 +18,7 @@
 //! that integrators evaluate. Imports between modules go in one direction:
 //!
 //! ```text
-//! lane, numbers, kernel, eos, domain <- particles <- terms <- walls <- neighbours
+//! lane, numbers, inverse, kernel, eos, domain <- particles <- terms <- walls <- neighbours
 //!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene
 //! ```
 //!
@@ -29,6 +29,7 @@ pub mod domain;
 pub mod engine;
 pub mod eos;
 pub mod integrator;
+pub mod inverse;
 pub mod kernel;
 mod neighbours;
 pub mod numbers;

@@ -246,8 +246,9 @@ pub struct ParticleData<X = ()> {
     pub(crate) state: Vec<Evolved<X>>,
     pub(crate) fixed: Vec<Fixed>,
     pub(crate) counts: Counts,
-    /// Those of the walls, [`crate::Walls::SLIPS`] and [`crate::Walls::EXTRAPOLATES`].
+    /// [`crate::Walls::SLIPS`].
     pub(crate) slips: bool,
+    /// Whether [`crate::Walls::Extrapolation`] is not `()`.
     pub(crate) extrapolates: bool,
     pub(crate) neighbours: Neighbours,
     pub(crate) limits: Limits,

@@ -13,7 +13,7 @@ use crate::{
     particle_data::{Limits, ParticleData},
     particles::{Particle, Role},
     simulation::Simulation,
-    walls::{PlaneWall, RIGHT_ANGLE, Walls},
+    walls::{Extrapolation, PlaneWall, RIGHT_ANGLE, Walls},
 };
 
 /// Why a scene cannot be simulated: a number that is not allowed.
@@ -65,7 +65,7 @@ pub struct Setting<X = ()> {
     /// The particles. Results list them in the same order.
     pub particles: Vec<Particle<X>>,
     /// From each wall particle, in the order of the particles, to its foot, the nearest point of the surface
-    /// \[m\]: for walls that read it, [`Walls::FEET`]; else empty.
+    /// \[m\]: for walls that read it, [`Extrapolation::FEET`]; else empty.
     pub feet: Vec<Vector2<f64>>,
     /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger skin the
     /// lists are longer and are rebuilt less often.
@@ -96,7 +96,8 @@ impl<S: Scheme> Scene<S> {
     /// Checks the scene, and builds a simulation that is ready to step.
     pub fn build(self) -> Result<Simulation<S>, SceneError> {
         let (h, mirrors) = (self.setting.h, self.walls.mirrors());
-        let data = self.setting.ready(S::Kernel::SUPPORT, mirrors, S::Walls::FEET)?;
+        let reads = <S::Walls as Walls<S::Extra>>::Extrapolation::FEET;
+        let data = self.setting.ready(S::Kernel::SUPPORT, mirrors, reads)?;
         let engine = Engine::new(h, (self.forces, self.drift), &self.walls, data);
         Ok(Simulation { engine, memory: Default::default() })
     }

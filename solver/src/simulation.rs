@@ -228,12 +228,12 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         let memory = MemoryOf::<S>::at(from)?;
-        self.engine.core().restore(from)?;
+        self.engine.restore(from)?;
         self.memory = memory;
         Ok(())
     }
     fn weight(&self, r2: f64) -> f64 {
-        self.engine.typed.kernel.w(r2)
+        self.engine.equations.kernel.w(r2)
     }
     fn plain_columns(&self) -> Vec<Column> {
         Column::plain(self.columns())
@@ -242,7 +242,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         S::Integrator::rates(&self.engine)
     }
     fn wall_rates(&self) -> Vec<Rate<S::Extra>> {
-        self.engine.data.wall_rates(&self.engine.typed)
+        self.engine.wall_rates()
     }
     fn bytes(&self) -> usize {
         self.engine.bytes() + self.memory.bytes()
@@ -279,7 +279,7 @@ impl<S: Scheme> Simulation<S> {
     /// The forces and the drift, which may be changed between two calls of [`Stepper::advance`], for
     /// example a body force that drives the flow. They are not part of a checkpoint.
     pub fn terms_mut(&mut self) -> &mut (S::Forces, S::Drift) {
-        &mut self.engine.typed.terms
+        &mut self.engine.equations.terms
     }
 
     /// Rates of each particle of [`ParticleData::fluid`] by the given terms alone, after
@@ -294,7 +294,7 @@ impl<S: Scheme> Simulation<S> {
     /// The derived data of particles and of their images, as pair sweeps read them, after
     /// [`Stepper::advance`].
     pub fn columns(&self) -> &[Column<Derived<S>>] {
-        let columns = &self.engine.typed.columns;
+        let columns = &self.engine.equations.columns;
         &columns[..columns.len() - 1]
     }
 }

@@ -3,7 +3,7 @@
 //! neighbour outside of its support adds an exact zero. Only its own data are written: there are no locks and
 //! no atomics, and results are bitwise equal for any number of threads and of lanes.
 //!
-//! A sweep writes the rates of a few particles into a buffer, from which the integrator then updates them.
+//! A sweep writes the results of a few particles into a buffer, from which the integrator then updates them.
 //! So the loop over pairs depends only on the kernel, the terms and the columns (derived data), and is
 //! compiled once for each combination of these. Code that is compiled only once calls it through
 //! [`PairSweep`].
@@ -19,7 +19,7 @@ use crate::{
     numbers::{In, MANY, Many, Numbers},
     parallel,
     particles::{Column, Common, Evolved, Rate},
-    terms::{Pair, Term},
+    terms::{Pair, PairSum},
 };
 
 /// Where cache lines begin. Elsewhere, which depends on who calls, a sweep takes up to half as long again.
@@ -33,107 +33,85 @@ static APART: [f64; 2 * GROUP] = {
     numbers
 };
 
-/// What becomes of some particles: the number of the first, the particles, and their rates.
-pub type BlockUpdate<'a, X, T = Evolved<X>> = dyn Fn(usize, &mut [T], &[Rate<X>]) + Sync + 'a;
+/// Updates some particles: receives the number of the first, the particles, and their rates.
+pub type BlockUpdate<'a, X> = dyn Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync + 'a;
 
-/// Gives the rates of particles.
-pub(crate) trait PairSweep<X>: Sync {
-    /// Passes on the rates of the particles in these columns, a few at a time, with the column of the first.
-    /// Their neighbour lists are those of the block.
-    fn rates(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[Rate<X>]));
+/// Gives an `O` for each particle, such as its rates.
+pub(crate) trait PairSweep<O>: Sync {
+    /// Passes on the results of the particles in these columns, a few at a time, with the column of the first.
+    /// `block` has their neighbour lists.
+    fn results(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O]));
 }
 
-/// Updates `targets`, which begin with the particles that the lists are of.
-pub(crate) fn run<X: Numbers, T: Send>(
-    sweep: &dyn PairSweep<X>,
+/// Updates `targets`, which begin with the particles of these lists.
+pub(crate) fn run<O, T: Send>(
+    sweep: &dyn PairSweep<O>,
     lists: &Lists,
     targets: &mut [T],
-    update: &BlockUpdate<X, T>,
+    update: &(dyn Fn(usize, &mut [T], &[O]) + Sync),
 ) {
     let targets = targets[..lists.of.len()].chunks_mut(BLOCK);
     let blocks = targets.zip(&lists.blocks).enumerate();
     parallel::for_each(blocks, lists.parallel, &|(b, (targets, block))| {
         let start = lists.of.start + b * BLOCK;
-        sweep.rates(block, start..start + targets.len(), &mut |first, rates| {
-            update(first, &mut targets[first - start..][..rates.len()], rates);
+        sweep.results(block, start..start + targets.len(), &mut |first, results| {
+            update(first, &mut targets[first - start..][..results.len()], results);
         });
     });
 }
 
 /// Compiled for itself, for it is long.
 #[inline(never)]
-fn zeros<X: Numbers>() -> Aligned<[Rate<X>; MANY]> {
-    Aligned([Rate::default(); MANY])
+fn buffer<O: Copy + Default>() -> Aligned<[O; MANY]> {
+    Aligned([O::default(); MANY])
 }
 
-/// The rates of the particles that the lists are of.
-pub(crate) fn rates<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists) -> Vec<Rate<X>> {
+/// The rates of the particles of these lists.
+pub(crate) fn rates<X: Numbers>(sweep: &dyn PairSweep<Rate<X>>, lists: &Lists) -> Vec<Rate<X>> {
     let mut rates = vec![Rate::default(); lists.of.len()];
     fill(sweep, lists, &mut rates);
     rates
 }
 
-/// Writes the rates of the particles that the lists are of.
-pub(crate) fn fill<X: Numbers>(sweep: &dyn PairSweep<X>, lists: &Lists, rates: &mut [Rate<X>]) {
-    run(sweep, lists, rates, &|_, rates, found| rates.copy_from_slice(found));
+/// Writes the results of the particles of these lists.
+pub(crate) fn fill<O: Copy + Send>(sweep: &dyn PairSweep<O>, lists: &Lists, results: &mut [O]) {
+    run(sweep, lists, results, &|_, results, found| results.copy_from_slice(found));
 }
 
-/// Which of the derived numbers of a column terms read: from its number and these to theirs. Each closure is
-/// a type of its own, which depends on no scheme.
-pub trait Select<S, D>: Fn(usize, &S) -> D + Sync {}
-impl<S, D, F: Fn(usize, &S) -> D + Sync> Select<S, D> for F {}
-
-/// Those of the forces.
-pub(crate) fn first<A: Copy, B>() -> impl Select<(A, B), A> {
-    |_, derived| derived.0
-}
-
-/// Those of the drift.
-pub(crate) fn second<A, B: Copy>() -> impl Select<(A, B), B> {
-    |_, derived| derived.1
-}
-
-/// All.
-pub(crate) fn whole<S: Copy>() -> impl Select<S, S> {
-    |_, derived| *derived
-}
-
-/// None: zeros.
-pub(crate) fn nothing<S, D: Default>() -> impl Select<S, D> {
-    |_, _| D::default()
-}
-
-/// A sum of terms over the columns.
+/// A sum over the neighbours of particles, which reads columns.
 pub(crate) struct Sweep<'a, K, T, S, C> {
     pub kernel: &'a Smoothing<K>,
+    /// What is summed: a [`PairSum`].
     pub terms: &'a T,
     pub columns: &'a [Column<S>],
+    /// Selects the derived data that the terms read, from the number of a column and its derived data. A closure
+    /// is a type that depends on no scheme.
     pub select: C,
-    /// Whether the particles move: dx/dt = v, to which terms may add.
+    /// Whether particles move: dx/dt = v, to which terms may add.
     pub moving: bool,
 }
 
 impl<K, T, S, C> Sweep<'_, K, T, S, C> {
-    /// Passes on the rates of these particles, of which `sum` forms the sums over neighbours.
+    /// Passes on the results of these particles, of which `sum` forms the sums over neighbours.
     #[inline(always)]
-    fn rates_by<X: Numbers>(
+    fn results_by<O: Copy + Default>(
         &self,
-        sum: impl Fn(Particles<Self, T, X>),
+        sum: impl Fn(Particles<Self, T, O>),
         block: &Block,
         of: Range<usize>,
-        pass: &mut dyn FnMut(usize, &[Rate<X>]),
+        pass: &mut dyn FnMut(usize, &[O]),
     ) where
-        T: Term<X>,
+        T: PairSum<O>,
         S: Numbers,
-        C: Select<S, T::Derived>,
+        C: Fn(usize, &S) -> T::Derived,
     {
         let &Sweep { terms, columns, ref select, moving, .. } = self;
-        let mut rates = zeros();
+        let mut results = buffer();
         let mut own = Aligned(Seen::<T::Derived>::default().spread::<Many>());
         let mut sums = Aligned(T::Sum::default().spread::<Many>());
         for first in of.clone().step_by(MANY) {
             let end = (first + MANY).min(of.end);
-            if !T::IS_EMPTY {
+            if !T::NOTHING {
                 // The last group may lack some.
                 for k in 0..(end - first).next_multiple_of(GROUP) {
                     let number = if first + k < end { first + k } else { columns.len() - 1 };
@@ -144,27 +122,23 @@ impl<K, T, S, C> Sweep<'_, K, T, S, C> {
                 let (list, own, sums) = (first - of.start, &own.0, &mut sums.0);
                 sum(Particles { sweep: self, block, list, of: first..end, own, sums });
             }
-            for (k, (rate, number)) in rates.0.iter_mut().zip(first..end).enumerate() {
+            for (k, (result, number)) in results.0.iter_mut().zip(first..end).enumerate() {
                 let own = &columns[number];
-                let mut all = Rate::default();
-                if moving {
-                    all.position = own.velocity;
-                }
                 let derived = select(number, &own.derived);
-                terms.finish(&own.common, derived, T::Sum::take(&sums.0, k), &mut all);
-                terms.place(own.position, &mut all);
-                *rate = all;
+                *result = terms.result(own, derived, T::Sum::take(&sums.0, k), moving);
             }
-            pass(first, &rates.0[..end - first]);
+            pass(first, &results.0[..end - first]);
         }
     }
 }
 
-impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> PairSweep<X>
+impl<O: Copy + Default, K: Kernel, T: PairSum<O>, S: Numbers, C> PairSweep<O>
     for Sweep<'_, K, T, S, C>
+where
+    C: Fn(usize, &S) -> T::Derived + Sync,
 {
-    fn rates(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[Rate<X>])) {
-        self.rates_by(|particles| on_widest(particles), block, of, pass);
+    fn results(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O])) {
+        self.results_by(|particles| on_widest(particles), block, of, pass);
     }
 }
 
@@ -174,7 +148,7 @@ type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 /// The sums of some particles of a block. In a profile it is `with_registers_for_eight` or
 /// `with_registers_for_four` with this type (the search for neighbours is the same with its own); the
 /// portable form is inlined into its caller.
-struct Particles<'a, W, T: Term<X>, X> {
+struct Particles<'a, W, T: PairSum<O>, O> {
     sweep: &'a W,
     block: &'a Block,
     list: usize,
@@ -183,8 +157,10 @@ struct Particles<'a, W, T: Term<X>, X> {
     sums: &'a mut In<T::Sum, Many>,
 }
 
-impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> OnLanes
-    for Particles<'_, Sweep<'_, K, T, S, C>, T, X>
+impl<K: Kernel, T: PairSum<O>, S: Numbers, C, O> OnLanes
+    for Particles<'_, Sweep<'_, K, T, S, C>, T, O>
+where
+    C: Fn(usize, &S) -> T::Derived,
 {
     #[inline(always)]
     fn run<V: Lane>(self) {
@@ -212,7 +188,7 @@ impl<K: Kernel, T: Term<X>, S: Numbers, C: Select<S, T::Derived>, X: Numbers> On
                 let (f, others) = (kernel.f(r2), other.common.spread::<V>());
                 let derived = [derived, select(column as usize, &other.derived).spread::<V>()];
                 let pair = Pair { r, r2, v, f, own: common, other: others, derived, kernel };
-                terms.pair(&pair, &mut sum);
+                terms.add(&pair, &mut sum);
             }
             T::Sum::store(sum, self.sums, start);
         }
@@ -225,7 +201,7 @@ mod tests {
 
     use super::*;
     use crate::{
-        Continuity, Domain, Pressure, QuinticSpline, Tait, Viscosity,
+        Continuity, Domain, Pressure, QuinticSpline, Tait, Term, Viscosity,
         neighbours::{Neighbours, Reach},
     };
 
@@ -256,6 +232,10 @@ mod tests {
         neighbours.place(&mut columns[..count].iter().map(|column| column.position));
         neighbours.build(count, 0, false, false);
         neighbours
+    }
+
+    fn whole<S: Copy>() -> impl Fn(usize, &S) -> S + Sync {
+        |_, derived| *derived
     }
 
     /// Σ W in the place of the rate of the density: most terms have nothing of a particle with itself.
@@ -306,9 +286,9 @@ mod tests {
         for (b, block) in neighbours.lists.blocks.iter().enumerate() {
             let of = b * BLOCK..((b + 1) * BLOCK).min(count);
             let of = || of.clone();
-            sweep.rates_by(|p| p.run::<Portable>(), block, of(), &mut |_, r| portable.extend(r));
-            sweep.rates_by(|p| p.run::<f64>(), block, of(), &mut |_, r| one.extend(r));
-            sweep.rates(block, of(), &mut |_, r| widest.extend(r));
+            sweep.results_by(|p| p.run::<Portable>(), block, of(), &mut |_, r| portable.extend(r));
+            sweep.results_by(|p| p.run::<f64>(), block, of(), &mut |_, r| one.extend(r));
+            sweep.results(block, of(), &mut |_, r| widest.extend(r));
         }
         assert!(neighbours.lists.blocks.len() > 1);
         let bits =

@@ -176,9 +176,11 @@ struct Held;
 
 impl Walls<Symmetric> for Held {
     type Terms = Drift;
+    type Extrapolation = ();
     fn terms(&self) -> Drift {
         DRIFT
     }
+    fn extrapolation(&self) {}
 }
 
 #[test]

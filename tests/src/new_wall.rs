@@ -11,9 +11,11 @@ pub struct SmoothedWall {
 
 impl<X> Walls<X> for SmoothedWall {
     type Terms = (Continuity, DensityDiffusion); // how particles of Role::Wall evolve
+    type Extrapolation = (); // nor do they follow from the fluid at once
 
     fn terms(&self) -> Self::Terms {
         (Continuity, self.diffusion)
     }
+    fn extrapolation(&self) {}
     // fn mirrors(&self) -> &[PlaneWall]: straight walls that mirror the fluid; none by default
 }

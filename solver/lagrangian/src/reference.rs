@@ -5,12 +5,10 @@ use lanes::LANES;
 use nalgebra::{Matrix2, Vector2};
 use solver::{
     Domain, Kernel, ParticleData, SceneError, Smoothing, Symmetric,
+    inverse::{Inverse, LEAST_DETERMINANT, of_two},
     scene::{Part, require},
     walls::Map,
 };
-
-/// Least determinant of the moments over the volume: 1 inside a body, 0 where neighbours lie on a line.
-const SINGULAR: f64 = 1e-3;
 
 /// An image of a particle, or of an image of it: mirrored at a wall, or a period away.
 #[derive(Clone, Copy, Debug)]
@@ -81,17 +79,6 @@ pub struct Reference {
     pairs: u64,
 }
 
-fn determinant(m: &Matrix2<f64>) -> f64 {
-    m.m11 * m.m22 - m.m21 * m.m12
-}
-
-/// The inverse of two by two numbers; that of nalgebra is compiled with what inverts any size.
-pub fn inverse(m: &Matrix2<f64>) -> Option<Matrix2<f64>> {
-    let determinant = determinant(m);
-    let inverse = || Matrix2::new(m.m22, -m.m12, -m.m21, m.m11).map(|x| x / determinant);
-    (determinant != 0.0).then(inverse)
-}
-
 impl Reference {
     /// The reference of these particles, whose lists reach at least the support of the kernel. Particles of
     /// different bodies are no neighbours.
@@ -153,18 +140,21 @@ impl Reference {
         }
         self.starts.push(self.fours.len() as u32);
         self.pairs += near.len() as u64;
-        let determinant = determinant(&moments) / (volume * volume);
-        let inverse = inverse(&moments).filter(|_| determinant > SINGULAR);
+        let Inverse { determinant, matrix } = of_two(&moments);
+        let inverse = Inverse { determinant: determinant / (volume * volume), matrix };
+        let determinant = inverse.determinant;
+        let inverse = inverse.above(LEAST_DETERMINANT);
         self.inverse.extend(inverse);
         let quantity = "determinant of the moments of its neighbourhood";
-        let allowed = format!("above {SINGULAR}: neighbours on both axes within the support");
+        let allowed =
+            format!("above {LEAST_DETERMINANT}: neighbours on both axes within the support");
         require(Part::Particle(i), [(inverse.is_some(), quantity, determinant, &allowed)])
     }
 
     /// Σ V F X² of each particle, the mean of both axes.
     fn factors(&self) -> impl Iterator<Item = f64> {
         let of = |(inverse, volume): (&Matrix2<f64>, &f64)| {
-            0.5 * inverse.trace() / determinant(inverse) / volume
+            0.5 * inverse.trace() / of_two(inverse).determinant / volume
         };
         self.inverse.iter().zip(&self.volumes).map(of)
     }

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::{Integrator, Memory, Stepped};
 use crate::{
-    engine::{Engine, Update, each},
+    engine::{Engine, each},
     numbers::Numbers,
     particle_data::Checkpoint,
     particles::{Evolved, Rate},
@@ -68,7 +68,7 @@ impl<P: Physics> Kick<P> for ForwardKick {
     }
 }
 
-fn kick<X: Numbers>(times: KickTimes) -> impl Update<X> {
+fn kick<X: Numbers>(times: KickTimes) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
     move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| {
         evolved.kick(times.velocity, rate);
         evolved.position += evolved.velocity * times.position;
@@ -76,7 +76,7 @@ fn kick<X: Numbers>(times: KickTimes) -> impl Update<X> {
 }
 
 /// Advances all but the velocity by dt; the first `fluid` particles, which move, from the middle of this time.
-fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Update<X> {
+fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
     move |i, evolved: &mut Evolved<X>, rate: &Rate<X>| {
         evolved.drift(dt, rate);
         if i < fluid {

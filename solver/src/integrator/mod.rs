@@ -13,7 +13,7 @@ pub use single_sweep::SingleSweep;
 pub use super_steps::{SuperSteps, stages};
 
 use crate::{
-    engine::{Engine, Update},
+    engine::Engine,
     kernel::Kernel,
     numbers::Numbers,
     particle_data::{Checkpoint, Fault},
@@ -110,6 +110,6 @@ pub type PhysicsOf<S> = Compose<
 >;
 
 /// Advances a particle by dt \[s\]. Like all updates it does not depend on the scheme, and is compiled once.
-fn advance<X: Numbers>(dt: f64) -> impl Update<X> {
+fn advance<X: Numbers>(dt: f64) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
     move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| *evolved = evolved.advanced(dt, rate)
 }

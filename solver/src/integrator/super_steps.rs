@@ -69,7 +69,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
         times: KickTimes,
     ) -> Stepped {
         const { assert!(!T::NORMALISES, "moments are not summed for a part") };
-        let Split(_, stiff, limit) = engine.typed.terms.0.clone();
+        let Split(_, stiff, limit) = engine.equations.terms.0.clone();
         let count = super::stages(times.velocity / limit);
         let s = f64::from(count);
         let length = 4.0 * times.velocity / (s * s + s - 2.0);

@@ -13,8 +13,8 @@
 //! neither a gradient nor a stress that acts.
 
 use super::{
-    Common, EquationOfState, In, JaumannRate, Kernel, Lane, News, Pair, Rate, Symmetric, Tensile,
-    Term, Vector2,
+    Common, EquationOfState, In, JaumannRate, Kernel, Lane, Pair, Rate, Symmetric, Tensile, Term,
+    Vector2,
     moments::{inverse, weights},
 };
 
@@ -75,10 +75,8 @@ impl<E: EquationOfState, R: Tensile<Symmetric>> Term<Symmetric> for ConjugateStr
     }
 
     #[inline(always)]
-    fn tell((rows, _): &mut Self::Derived, news: News) {
-        if let News::Inverse(inverse) = news {
-            *rows = (inverse.times(rows.0), inverse.times(rows.1));
-        }
+    fn set_inverse((rows, _): &mut Self::Derived, inverse: Symmetric) {
+        *rows = (inverse.times(rows.0), inverse.times(rows.1));
     }
 
     #[inline(always)]

@@ -1,4 +1,4 @@
-use super::{Common, In, Kernel, Lane, News, Pair, Rate, Term, Vector2};
+use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// A term without its pairs with boundary particles, [`crate::Role::Wall`] and [`crate::Role::Interface`].
 ///
@@ -22,11 +22,13 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
         (self.0.derived(own, extra), 1.0)
     }
     #[inline(always)]
-    fn tell(derived: &mut Self::Derived, news: News) {
-        T::tell(&mut derived.0, news);
-        if matches!(news, News::OnBoundary) {
-            derived.1 = 0.0;
-        }
+    fn set_on_boundary(derived: &mut Self::Derived) {
+        T::set_on_boundary(&mut derived.0);
+        derived.1 = 0.0;
+    }
+    #[inline(always)]
+    fn set_inverse(derived: &mut Self::Derived, inverse: Symmetric) {
+        T::set_inverse(&mut derived.0, inverse);
     }
     #[inline(always)]
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<T::Sum, V>) {

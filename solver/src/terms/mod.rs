@@ -51,7 +51,7 @@ use crate::{
     eos::EquationOfState,
     kernel::{Kernel, Smoothing},
     numbers::{In, Numbers, Symmetric},
-    particles::{Common, Rate},
+    particles::{Column, Common, Rate},
 };
 
 /// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all, as a term
@@ -96,15 +96,6 @@ impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
     }
 }
 
-/// What the derived data of a column are told after they were derived.
-#[derive(Clone, Copy, Debug)]
-pub enum News {
-    /// That they are those of a boundary particle.
-    OnBoundary,
-    /// The inverse of the [`moments`] of the particle, once a state.
-    Inverse(Symmetric),
-}
-
 /// One term of the equations. `X` holds the extra fields that a particle integrates besides x, v and ρ.
 pub trait Term<X>: Clone + Send + Sync + 'static {
     /// The derived data of a particle that its neighbours read for this term.
@@ -113,7 +104,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     type Sum: Numbers;
     /// Whether this is the empty tuple, so that no pair sweep is needed.
     const IS_EMPTY: bool = false;
-    /// Whether [`News::Inverse`] is read, for which each sweep of forces needs one of moments before.
+    /// Whether [`Term::set_inverse`] is read, for which each sweep of forces needs a sweep of moments before.
     const NORMALISES: bool = false;
 
     /// Receives the largest speed of the scene \[m/s\], before each step.
@@ -124,9 +115,12 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
         const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
         Self::Derived::default()
     }
-    /// Takes note of news in the derived data.
+    /// Changes the derived data of a boundary particle, after they were derived.
     #[inline(always)]
-    fn tell(_derived: &mut Self::Derived, _news: News) {}
+    fn set_on_boundary(_derived: &mut Self::Derived) {}
+    /// Puts the inverse of the [`moments`] of the particle into its derived data, after they were derived.
+    #[inline(always)]
+    fn set_inverse(_derived: &mut Self::Derived, _inverse: Symmetric) {}
     /// Adds the contributions of the neighbours j of `pair` to the sums.
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -138,6 +132,43 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Adds the rates that depend on where a particle is \[m\], such as those of a force field.
     #[inline(always)]
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
+}
+
+/// A sum over neighbours from which an `O` follows: the rates of terms, or what walls extrapolate, or moments.
+pub(crate) trait PairSum<O>: Sync {
+    /// The derived data of a particle that the sum reads.
+    type Derived: Numbers;
+    /// What a particle sums over its neighbours.
+    type Sum: Numbers;
+    /// Whether there is nothing to sum.
+    const NOTHING: bool = false;
+
+    /// Adds the contributions of the neighbours j of `pair`.
+    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<Self::Sum, V>);
+    /// The result for a particle, which `moves` with its velocity or does not.
+    fn result<S>(&self, own: &Column<S>, derived: Self::Derived, sum: Self::Sum, moves: bool) -> O;
+}
+
+impl<X: Numbers, T: Term<X>> PairSum<Rate<X>> for T {
+    type Derived = T::Derived;
+    type Sum = T::Sum;
+    const NOTHING: bool = T::IS_EMPTY;
+
+    #[inline(always)]
+    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, T::Derived>, sum: &mut In<T::Sum, V>) {
+        self.pair(pair, sum);
+    }
+
+    #[inline(always)]
+    fn result<S>(&self, own: &Column<S>, derived: T::Derived, sum: T::Sum, moves: bool) -> Rate<X> {
+        let mut rate = Rate::default();
+        if moves {
+            rate.position = own.velocity;
+        }
+        self.finish(&own.common, derived, sum, &mut rate);
+        self.place(own.position, &mut rate);
+        rate
+    }
 }
 
 /// Implements [`Term`] for a tuple: each member in turn, in the order of the equation.
@@ -158,8 +189,12 @@ macro_rules! tuple_of_terms {
                 ($(self.$index.derived(own, extra),)*)
             }
             #[inline(always)]
-            fn tell(derived: &mut Self::Derived, news: News) {
-                $($member::tell(&mut derived.$index, news);)*
+            fn set_on_boundary(derived: &mut Self::Derived) {
+                $($member::set_on_boundary(&mut derived.$index);)*
+            }
+            #[inline(always)]
+            fn set_inverse(derived: &mut Self::Derived, inverse: Symmetric) {
+                $($member::set_inverse(&mut derived.$index, inverse);)*
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(

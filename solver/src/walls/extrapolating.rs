@@ -4,13 +4,14 @@
 use lanes::Lane;
 use nalgebra::{Matrix3, Vector2};
 
-use super::Walls;
+use super::{Extrapolation, WallState, Walls};
 use crate::{
     eos::EquationOfState,
+    inverse::of_three,
     kernel::Kernel,
     numbers::{In, Numbers, Symmetric},
-    particles::{Common, Rate},
-    terms::{Pair, Term, moments::inverse_of_three},
+    particles::Common,
+    terms::Pair,
 };
 
 /// Walls represented by layers of boundary particles, [`crate::Role::Wall`], behind the surface, the first
@@ -54,7 +55,7 @@ pub trait WallVelocity: Copy + Send + Sync + 'static {
     type Sum: Numbers;
     /// Whether there are feet.
     const FEET: bool = false;
-    /// That of this vector, if the particle has one.
+    /// The foot of a wall particle; of any other particle `None`.
     fn foot(_: Option<&Vector2<f64>>) -> Self::Foot {
         Self::Foot::default()
     }
@@ -107,7 +108,7 @@ pub struct CurvedNoSlip;
 
 /// Least determinant of the moments of a fit over the product of their diagonal: 0.003 to 0.02 where three
 /// rows of fluid are in reach, 0 where one is.
-const SINGULAR: f64 = 1e-4;
+const LEAST_OF_FIT: f64 = 1e-4;
 
 impl WallVelocity for CurvedNoSlip {
     type Foot = Vector2<f64>;
@@ -144,9 +145,8 @@ impl WallVelocity for CurvedNoSlip {
         let Symmetric { xx, yy, xy } = kk;
         let moments = Matrix3::new(xx, xy, k3.x, xy, yy, k3.y, k3.x, k3.y, m33);
         // The field at η = −1, ξ = 0; the sums have the opposite sign.
-        let (determinant, inverse) = inverse_of_three(&moments);
-        let weight = |k| inverse[(k, 0)] - 0.5 * inverse[(k, 1)];
-        if determinant > SINGULAR * xx * yy * m33 {
+        if let Some(inverse) = of_three(&moments).above(LEAST_OF_FIT * xx * yy * m33) {
+            let weight = |k| inverse[(k, 0)] - 0.5 * inverse[(k, 1)];
             return a * weight(0) + b * weight(1) + c * weight(2);
         }
         if xx > 0.0 { a / xx } else { Vector2::zeros() }
@@ -154,27 +154,22 @@ impl WallVelocity for CurvedNoSlip {
 }
 
 impl<X, E: EquationOfState, U: WallVelocity> Walls<X> for ExtrapolatingWall<E, U> {
-    type Terms = Self;
-    const EXTRAPOLATES: bool = true;
-    const FEET: bool = U::FEET;
-
-    fn terms(&self) -> Self {
+    type Terms = ();
+    type Extrapolation = Self;
+    fn terms(&self) {}
+    fn extrapolation(&self) -> Self {
         *self
-    }
-    fn foot(foot: Option<&Vector2<f64>>) -> U::Foot {
-        U::foot(foot)
     }
 }
 
-/// The sums over the fluid f, and from them ρ_w and u_w − u_wall in the places of their rates.
-impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U> {
-    type Derived = U::Foot;
+impl<E: EquationOfState, U: WallVelocity> Extrapolation for ExtrapolatingWall<E, U> {
+    const FEET: bool = U::FEET;
+    type Foot = U::Foot;
     /// Σ W \[1/m²\], Σ \[p + ρ (g − a_w)·r\] W \[Pa/m²\], and what is summed of the velocity.
     type Sum = (f64, f64, U::Sum);
 
-    #[inline(always)]
-    fn derived(&self, _: &Common, _: &X) -> U::Foot {
-        U::Foot::default()
+    fn foot(foot: Option<&Vector2<f64>>) -> U::Foot {
+        U::foot(foot)
     }
 
     #[inline(always)]
@@ -189,14 +184,13 @@ impl<X, E: EquationOfState, U: WallVelocity> Term<X> for ExtrapolatingWall<E, U>
     }
 
     #[inline(always)]
-    fn finish(&self, own: &Common, _: U::Foot, sum: Self::Sum, rate: &mut Rate<X>) {
-        let (weight, pressure, velocity) = sum;
+    fn finish(&self, own: &Common, (weight, pressure, velocity): Self::Sum) -> WallState {
         if weight > 0.0 {
             let pressure = (pressure / weight).max(self.least_pressure);
-            rate.density = self.eos.density(pressure);
-            rate.velocity = U::beyond(velocity, weight);
+            let density = self.eos.density(pressure);
+            WallState { density, velocity: U::beyond(velocity, weight) }
         } else {
-            rate.density = own.density;
+            WallState { density: own.density, velocity: Vector2::zeros() }
         }
     }
 }

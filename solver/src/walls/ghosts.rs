@@ -90,7 +90,9 @@ pub type SlipGhosts = Mirrors<true>;
 
 impl<X, const SLIPS: bool> Walls<X> for Mirrors<SLIPS> {
     type Terms = ();
+    type Extrapolation = ();
     fn terms(&self) {}
+    fn extrapolation(&self) {}
     const SLIPS: bool = SLIPS;
     fn mirrors(&self) -> &[PlaneWall] {
         &self.walls

@@ -11,32 +11,88 @@ pub use ghosts::{Ghosts, Mirrors, PlaneWall, SlipGhosts};
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
 pub use image::Map;
 
-use crate::terms::{Continuity, Term};
+use lanes::Lane;
 use nalgebra::Vector2;
+
+use crate::{
+    kernel::Kernel,
+    numbers::{In, Numbers},
+    particles::{Column, Common},
+    terms::{Continuity, Pair, PairSum, Term},
+};
 
 /// How a scene treats its walls.
 pub trait Walls<X>: Clone + Send + Sync + 'static {
     /// The terms by which wall particles evolve, or `()` if there are none; then no pair sweep over wall
-    /// particles is compiled.
+    /// particles is compiled. They read no derived data.
     type Terms: Term<X>;
-    /// Whether [`Walls::Terms`] extrapolate from the fluid. They are then summed over fluid particles only,
-    /// before each pair sweep, and their result is not a rate: it is the density of the wall particle, and
-    /// what is added to its velocity, in the derived data.
-    const EXTRAPOLATES: bool = false;
-    /// Whether walls that extrapolate sum over the neighbours of the foot of each wall particle, the nearest
-    /// point of the surface, in place of its own: [`crate::scene::Setting::feet`].
-    const FEET: bool = false;
-    /// What [`Walls::Terms`] read of the vector from a wall particle to its foot \[m\], if it has one.
-    fn foot(_: Option<&Vector2<f64>>) -> <Self::Terms as Term<X>>::Derived {
-        Default::default()
-    }
+    /// How wall particles get velocity and density from the fluid; `()` if they do not.
+    type Extrapolation: Extrapolation;
     /// The values of [`Walls::Terms`].
     fn terms(&self) -> Self::Terms;
+    /// The values of [`Walls::Extrapolation`].
+    fn extrapolation(&self) -> Self::Extrapolation;
     /// Whether mirror particles behind [`Walls::mirrors`] keep the tangential velocity (free slip).
     const SLIPS: bool = false;
     /// The straight walls that mirror the fluid.
     fn mirrors(&self) -> &[PlaneWall] {
         &[]
+    }
+}
+
+/// Velocity and density of wall particles, extrapolated from the fluid before each pair sweep by sums over
+/// fluid particles alone; `()` extrapolates nothing.
+pub trait Extrapolation: Copy + Send + Sync + 'static {
+    /// Whether nothing is extrapolated.
+    const IS_EMPTY: bool = false;
+    /// Whether the sums are made at the foot of each wall particle, the nearest point of the surface, in place
+    /// of its own: [`crate::scene::Setting::feet`].
+    const FEET: bool = false;
+    /// From a wall particle to its foot \[m\]; `()` where the sums do not need it.
+    type Foot: Numbers;
+    /// What a wall particle sums over the fluid.
+    type Sum: Numbers;
+    /// The foot of a wall particle; of any other particle `None`.
+    fn foot(foot: Option<&Vector2<f64>>) -> Self::Foot;
+    /// Adds the contributions of the fluid particles j of `pair`.
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Foot>, sum: &mut In<Self::Sum, V>);
+    /// The state of a wall particle, whose density so far is among `own`.
+    fn finish(&self, own: &Common, sum: Self::Sum) -> WallState;
+}
+
+/// The extrapolated state of a wall particle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct WallState {
+    /// Density \[kg/m³\].
+    pub density: f64,
+    /// Velocity beyond that of the wall \[m/s\].
+    pub velocity: Vector2<f64>,
+}
+
+impl Extrapolation for () {
+    const IS_EMPTY: bool = true;
+    type Foot = ();
+    type Sum = ();
+    fn foot(_: Option<&Vector2<f64>>) {}
+    fn pair<V: Lane, K: Kernel>(&self, _: &Pair<V, K>, (): &mut ()) {}
+    fn finish(&self, own: &Common, (): ()) -> WallState {
+        WallState { density: own.density, velocity: Vector2::zeros() }
+    }
+}
+
+impl<E: Extrapolation> PairSum<WallState> for E {
+    type Derived = E::Foot;
+    type Sum = E::Sum;
+    const NOTHING: bool = E::IS_EMPTY;
+
+    #[inline(always)]
+    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, E::Foot>, sum: &mut In<E::Sum, V>) {
+        self.pair(pair, sum);
+    }
+
+    #[inline(always)]
+    fn result<S>(&self, own: &Column<S>, _: E::Foot, sum: E::Sum, _: bool) -> WallState {
+        self.finish(&own.common, sum)
     }
 }
 
@@ -46,7 +102,9 @@ pub struct Open;
 
 impl<X> Walls<X> for Open {
     type Terms = ();
+    type Extrapolation = ();
     fn terms(&self) {}
+    fn extrapolation(&self) {}
 }
 
 /// Walls represented by boundary particles (section 4.2 of the paper), which do not move: a layer of
@@ -58,7 +116,9 @@ pub struct InterfaceWall;
 
 impl<X> Walls<X> for InterfaceWall {
     type Terms = Continuity;
+    type Extrapolation = ();
     fn terms(&self) -> Continuity {
         Continuity
     }
+    fn extrapolation(&self) {}
 }

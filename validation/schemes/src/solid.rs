@@ -79,9 +79,11 @@ pub struct Clamp {
 
 impl Walls<Symmetric> for Clamp {
     type Terms = (Continuity, JaumannRate);
+    type Extrapolation = ();
     fn terms(&self) -> Self::Terms {
         (Continuity, JaumannRate { shear_modulus: self.shear_modulus })
     }
+    fn extrapolation(&self) {}
 }
 
 impl Boundary for Clamp {

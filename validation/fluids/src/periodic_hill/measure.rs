@@ -1,7 +1,10 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
-use solver::{EquationOfState, Particle, Role, Stepper, terms::moments::inverse_of_three};
+use solver::{
+    EquationOfState, Particle, Role, Stepper,
+    inverse::{Inverse, of_three},
+};
 
 use super::{Setup, reference::KNOWN_SETTINGS};
 use base::functions::hypot;
@@ -110,10 +113,10 @@ impl<'a> Field<'a> {
                 }
             }
         }
-        let (determinant, inverse) = inverse_of_three(&moments);
+        let Inverse { determinant, matrix } = of_three(&moments);
         match determinant {
             0.0 => [f64::NAN; N],
-            _ => sums.map(|sum| inverse.row(0).transpose().dot(&sum)),
+            _ => sums.map(|sum| matrix.row(0).transpose().dot(&sum)),
         }
     }
 

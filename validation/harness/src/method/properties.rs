@@ -2,7 +2,10 @@
 
 use maths::theory::{Stepping, lattice::SquareLattice, time_step};
 use nalgebra::Vector2;
-use solver::{Integrator as _, Kernel, Scheme, Smoothing, Tait, Term, walls::Walls as _};
+use solver::{
+    Integrator as _, Kernel, Scheme, Smoothing, Tait, Term,
+    walls::{Extrapolation as _, Walls},
+};
 
 use super::terms::{Boundary, FirstRow, FromMedium};
 use crate::{
@@ -69,7 +72,7 @@ impl Properties {
             integrator: S::Integrator::NAME,
             walls: S::Walls::NAME,
             first_row: S::Walls::FIRST_ROW,
-            has_feet: S::Walls::FEET,
+            has_feet: <S::Walls as Walls<S::Extra>>::Extrapolation::FEET,
             law: None,
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,

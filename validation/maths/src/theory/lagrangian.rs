@@ -10,9 +10,12 @@
 //! [`fastest_of_block`] finds them by power iteration.
 
 use base::functions::sin;
-use lagrangian::{body::hourglass, reference::inverse};
+use lagrangian::body::hourglass;
 use nalgebra::{Matrix2, Vector2};
-use solver::kernel::{Kernel, Smoothing};
+use solver::{
+    inverse::{Inverse, of_two},
+    kernel::{Kernel, Smoothing},
+};
 
 use super::lattice::SquareLattice;
 
@@ -49,7 +52,11 @@ impl Block {
         let moments = |near: &Neighbours| {
             near.iter().fold(Matrix2::zeros(), |sum, (_, x, g)| sum + x * x.transpose() * *g)
         };
-        let inverse = neighbours.iter().map(|near| inverse(&moments(near)).unwrap_or_default());
+        let inverse = |near: &Neighbours| {
+            let Inverse { determinant, matrix } = of_two(&moments(near));
+            if determinant == 0.0 { Matrix2::zeros() } else { matrix }
+        };
+        let inverse = neighbours.iter().map(inverse);
         let factor = SquareLattice::of::<K>(h_over_dx, 0.0).gradient_factor();
         let moduli = [longitudinal - 2.0 * shear, shear, hourglass(shear, HOURGLASS, factor)];
         Self { inverse: inverse.collect(), neighbours, moduli }
