@@ -27,7 +27,7 @@ impl Domain {
         Self { low: Vector2::zeros(), period: [Some(length), Some(height)] }
     }
 
-    /// The same point inside the period. A point already inside keeps its bits.
+    /// The copy of a point inside the period. A point already inside keeps its bits.
     pub fn wrap(&self, mut point: Vector2<f64>) -> Vector2<f64> {
         for axis in 0..2 {
             if let Some(period) = self.period[axis] {

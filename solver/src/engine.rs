@@ -15,10 +15,10 @@ use crate::{
     neighbours::{BLOCK, Lists, Neighbours},
     numbers::{Numbers, Symmetric},
     parallel,
-    particle_data::{Checkpoint, Counts, Extent, Fault, ParticleData, Phase},
+    particle_data::{BlockExtrema, Checkpoint, Counts, InvalidState, ParticleData, Phase},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
-    sweep::{self, BlockUpdate, PairSweep, Sweep},
+    sweep::{self, BlockUpdate, PairSweep, Sweep, all, drift, forces, none},
     terms::{PairSum, Term, moments::InverseMoments},
     walls::{Extrapolation, WallState, Walls},
 };
@@ -30,7 +30,7 @@ pub(crate) trait Equations<X>: Sync {
     /// Allocates `count` columns; the last is the sentinel. Returns their memory \[bytes\].
     fn make_room(&mut self, count: usize) -> usize;
     /// Derives the columns of these particles, the first ones, and the extent of each block of them.
-    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [Extent]);
+    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [BlockExtrema]);
     /// Refills the images of particles from `first` on, with this share of the walls' own motion.
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64);
     /// Derives the columns of wall particles from these.
@@ -48,7 +48,7 @@ impl<X: Numbers> ParticleData<X> {
         equations: &mut dyn Equations<X>,
         state: &mut [Evolved<X>],
         along: &mut dyn FnMut(usize, usize),
-    ) -> Result<(), Fault> {
+    ) -> Result<(), InvalidState> {
         if self.slips {
             let fluid = &mut state[..self.counts.fluid];
             for wall in self.neighbours.mirrors() {
@@ -71,7 +71,7 @@ impl<X: Numbers> ParticleData<X> {
         &mut self,
         equations: &mut dyn Equations<X>,
         state: &[Evolved<X>],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), InvalidState> {
         let extent = self.fill(equations, state)?;
         if self.is_stale(extent) {
             self.build_lists(equations, &mut places(state));
@@ -105,14 +105,14 @@ impl<X: Numbers> ParticleData<X> {
         &mut self,
         equations: &mut dyn Equations<X>,
         state: &[Evolved<X>],
-    ) -> Result<Extent, Fault> {
+    ) -> Result<BlockExtrema, InvalidState> {
         self.enter(Phase::Refresh);
         let Counts { fluid, walls } = self.counts;
         let filled = if self.buffers.still.is_some() { fluid } else { state.len() };
         let count = filled.div_ceil(BLOCK);
         let mut extents = take(&mut self.buffers.extents);
-        extents.resize(count + 1, Extent::NIL);
-        extents[count] = self.buffers.still.unwrap_or(Extent::NIL);
+        extents.resize(count + 1, BlockExtrema::NIL);
+        extents[count] = self.buffers.still.unwrap_or(BlockExtrema::NIL);
         equations.derive(self, &state[..filled], &mut extents);
         // Columns of interface particles, if there are any, are filled by nobody else.
         if self.extrapolates && fluid + walls == state.len() && self.buffers.still.is_none() {
@@ -236,7 +236,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
         size_of_val(&self.columns[..])
     }
 
-    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [Extent]) {
+    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [BlockExtrema]) {
         let terms = &self.terms;
         derive_blocks(&mut self.columns, of, state, extents, &|columns, state, fixed| {
             derive_all(terms, fixed, state, columns);
@@ -254,7 +254,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
 
     fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>)) {
         if !<P::Walls as Walls<X>>::Terms::IS_EMPTY {
-            run(&self.sweep(&self.wall_terms, |_, _| Default::default(), false));
+            run(&self.sweep(&self.wall_terms, none(), false));
         }
     }
 
@@ -322,13 +322,17 @@ impl<P: Physics> Engine<P> {
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
     /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
     /// that is derived from the state.
-    pub fn begin(&mut self, state: &mut State<P>) -> Result<(), Fault> {
+    pub fn begin(&mut self, state: &mut State<P>) -> Result<(), InvalidState> {
         self.data.begin(&mut self.equations, state, &mut |_, _| ())
     }
 
     /// Starts a step likewise, with something `kept` of each of the first particles, or of none, which stays
     /// in their order.
-    pub fn begin_with<T>(&mut self, state: &mut State<P>, kept: &mut [T]) -> Result<(), Fault> {
+    pub fn begin_with<T>(
+        &mut self,
+        state: &mut State<P>,
+        kept: &mut [T],
+    ) -> Result<(), InvalidState> {
         let mut along = |i, j| {
             if !kept.is_empty() {
                 kept.swap(i, j);
@@ -338,13 +342,13 @@ impl<P: Physics> Engine<P> {
     }
 
     /// Refreshes everything that is derived from a state inside a step.
-    pub fn refresh(&mut self, state: &State<P>) -> Result<(), Fault> {
+    pub fn refresh(&mut self, state: &State<P>) -> Result<(), InvalidState> {
         self.data.refresh(&mut self.equations, state)
     }
 
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
-    pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), Fault> {
+    pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), InvalidState> {
         self.data.fill(&mut self.equations, state)?;
         self.data.refresh_walls(&mut self.equations, state, 0.0);
         Ok(())
@@ -353,11 +357,7 @@ impl<P: Physics> Engine<P> {
     /// Sums the forces: `update` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
-        let sweep = self.equations.sweep(
-            &self.equations.terms.0,
-            |_, derived: &Derived<P>| derived.0,
-            true,
-        );
+        let sweep = self.equations.sweep(&self.equations.terms.0, forces(), true);
         self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
 
@@ -376,19 +376,14 @@ impl<P: Physics> Engine<P> {
 
     /// Sums the drift: `update` with dx/dt, dρ/dt and the terms' own rates.
     pub fn sweep_drift(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
-        let sweep = self.equations.sweep(
-            &self.equations.terms.1,
-            |_, derived: &Derived<P>| derived.1,
-            true,
-        );
+        let sweep = self.equations.sweep(&self.equations.terms.1, drift(), true);
         self.data.sweep(Phase::Drift, &sweep, &self.equations, targets, update);
     }
 
     /// Sums forces and drift in one pair sweep: `update` with the whole rate.
     pub fn sweep_all(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
-        let sweep =
-            self.equations.sweep(&self.equations.terms, |_, derived: &Derived<P>| *derived, true);
+        let sweep = self.equations.sweep(&self.equations.terms, all(), true);
         self.data.sweep(Phase::Both, &sweep, &self.equations, targets, update);
     }
 
@@ -407,36 +402,21 @@ impl<P: Physics> Engine<P> {
         if T::NORMALISES {
             normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
         }
-        let sweep = Sweep {
-            kernel,
-            terms,
-            columns: &columns,
-            select: |_: usize, derived: &T::Derived| *derived,
-            moving: false,
-        };
+        let sweep = Sweep { kernel, terms, columns: &columns, select: all(), moving: false };
         sweep::rates(&sweep, &neighbours.lists)
     }
 
     /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
     pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
-        let sweep =
-            self.equations.sweep(&self.equations.terms, |_, derived: &Derived<P>| *derived, false);
+        let sweep = self.equations.sweep(&self.equations.terms, all(), false);
         sweep::rates(&sweep, &self.data.neighbours.lists)
     }
 
-    /// The same with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
+    /// The rates of fluid particles by all terms, with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
     /// [`Engine::sweep_drift`].
     pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
-        let forces = self.equations.sweep(
-            &self.equations.terms.0,
-            |_, derived: &Derived<P>| derived.0,
-            false,
-        );
-        let drift = self.equations.sweep(
-            &self.equations.terms.1,
-            |_, derived: &Derived<P>| derived.1,
-            false,
-        );
+        let forces = self.equations.sweep(&self.equations.terms.0, forces(), false);
+        let drift = self.equations.sweep(&self.equations.terms.1, drift(), false);
         together(&forces, &drift, &self.data.neighbours.lists)
     }
 
@@ -523,8 +503,7 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     inverses: &mut Vec<Symmetric>,
 ) {
     let terms = &InverseMoments;
-    let sweep =
-        Sweep { kernel, terms, columns, select: |_: usize, _: &T::Derived| (), moving: false };
+    let sweep = Sweep { kernel, terms, columns, select: none(), moving: false };
     let Neighbours { lists, wall_lists, .. } = neighbours;
     inverses.resize(lists.of.end.max(wall_lists.of.end), Symmetric::default());
     for lists in [lists, wall_lists] {
@@ -536,7 +515,7 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
 }
 
-/// What derives columns of particles.
+/// Derives columns of particles.
 type Derives<'a, X, D> = dyn Fn(&mut [Column<D>], &[Evolved<X>], &[Fixed]) + Sync + 'a;
 
 /// [`Equations::derive`], block by block.
@@ -544,7 +523,7 @@ fn derive_blocks<X: Numbers, D: Numbers>(
     columns: &mut [Column<D>],
     of: &ParticleData<X>,
     state: &[Evolved<X>],
-    extents: &mut [Extent],
+    extents: &mut [BlockExtrema],
     derive: &Derives<X, D>,
 ) {
     let blocks = columns[..state.len()].chunks_mut(BLOCK).zip(extents).enumerate();

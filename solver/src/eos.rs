@@ -10,12 +10,11 @@ pub trait EquationOfState: Copy + Send + Sync + 'static {
     fn pressure<V: Lane>(&self, density: V) -> V;
     /// ρ(p) \[kg/m³\], the inverse.
     fn density(&self, pressure: f64) -> f64;
-    /// What a particle derives for its sound speed c(ρ) = √(dp/dρ): that \[m/s\], or nothing where all have
-    /// the same.
+    /// Derived number of a particle for its sound speed c(ρ) = √(dp/dρ) \[m/s\]; `()` if c is a constant.
     type Sound: Numbers;
-    /// Derives it from the density \[kg/m³\].
+    /// [`EquationOfState::Sound`] from the density \[kg/m³\].
     fn sound(&self, density: f64) -> Self::Sound;
-    /// c \[m/s\] from what was derived.
+    /// c \[m/s\] from [`EquationOfState::Sound`].
     fn speed_of<V: Lane>(&self, sound: In<Self::Sound, V>) -> V;
 }
 
@@ -112,7 +111,7 @@ impl EquationOfState for Linear {
 #[inline(always)]
 fn power<V: Lane>(x: V, n: i32) -> V {
     let (x2, x4) = (x * x, (x * x) * (x * x));
-    // Those of water without a loop, which takes 3 % of the time step of a dam break.
+    // Without a loop for the powers of water: the loop takes 3 % of the time step of a dam break.
     match n {
         3 => return x * x2,
         6 => return x2 * x4,

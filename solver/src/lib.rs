@@ -37,6 +37,8 @@ pub mod parallel;
 pub mod particle_data;
 pub mod particles;
 pub mod physics;
+#[cfg(test)]
+mod random;
 pub mod scene;
 pub mod simulation;
 mod sweep;
@@ -55,7 +57,8 @@ pub use lanes as lane;
 pub use neighbours::GROUP;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
-    Checkpoint, Fault, Interval, Limits, ParticleData, Past, Phase, PhaseWatch, Progress, Work,
+    Checkpoint, Interval, InvalidState, Limits, ParticleData, Phase, PhaseWatch, PreviousStep,
+    Progress, Work,
 };
 pub use particles::{Evolved, Particle, Rate, Role};
 pub use physics::{Compose, Physics};

@@ -139,9 +139,9 @@ pub(crate) struct Neighbours {
     pub domain: Domain,
     pub maps: Vec<Map>,
     pub images: Vec<Image>,
-    /// Those of the fluid particles.
+    /// Lists of the fluid particles.
     pub lists: Lists,
-    /// Those of the wall particles.
+    /// Lists of the wall particles.
     pub wall_lists: Lists,
     /// From each wall particle to the place whose neighbours it lists \[m\]; empty if to itself.
     pub feet: Vec<Vector2<f64>>,
@@ -462,21 +462,11 @@ mod tests {
     use lanes::Portable;
 
     use super::*;
+    use crate::random::random;
 
-    /// Splitmix64: the same points on every machine.
-    struct Random(u64);
-
-    impl Random {
-        fn unit(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-            let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-        }
-
-        fn point(&mut self, size: [f64; 2]) -> Vector2<f64> {
-            Vector2::new(self.unit() * size[0], self.unit() * size[1])
-        }
+    /// A point of the rectangle of this size from the origin.
+    fn point(random: &mut impl FnMut() -> f64, [width, height]: [f64; 2]) -> Vector2<f64> {
+        Vector2::new((random() + 0.5) * width, (random() + 0.5) * height)
     }
 
     /// An entry of a list: which particle, and the position of it or of its image.
@@ -618,8 +608,8 @@ mod tests {
     /// On a processor with registers for four these are not the same program.
     #[test]
     fn lists_are_the_same_in_portable_lanes() {
-        let (mut random, domain) = (Random(3), Domain::torus(4.0, 3.0));
-        let points: Vec<_> = (0..500).map(|_| random.point([4.0, 3.0])).collect();
+        let (mut random, domain) = (random(3), Domain::torus(4.0, 3.0));
+        let points: Vec<_> = (0..500).map(|_| point(&mut random, [4.0, 3.0])).collect();
         let mut neighbours =
             Neighbours::new(Reach { support: 0.5, skin: 0.1, spacing: 0.15 }, domain, &[]);
         neighbours.place(&mut points.into_iter());
@@ -650,8 +640,8 @@ mod tests {
         let side = PlaneWall::new(end, Vector2::new(-1.0, 0.0), Vector2::zeros());
         let shifted = Domain { low: Vector2::new(-1.0, 7.0), ..Domain::torus(4.0, 3.0) };
         for seed in 0..2 {
-            let mut random = Random(seed);
-            let points: Vec<_> = (0..520).map(|_| random.point([4.0, 3.0])).collect();
+            let mut random = random(seed);
+            let points: Vec<_> = (0..520).map(|_| point(&mut random, [4.0, 3.0])).collect();
             for radius in [0.05, 0.31, 0.9] {
                 check(&points, radius, &Domain::open(), &[]);
                 check(&points, radius, &Domain::channel(4.0), &[]);
@@ -668,20 +658,20 @@ mod tests {
 
     #[test]
     fn lists_reach_across_a_period_of_just_two_radii_and_past_its_edges() {
-        let mut random = Random(9);
+        let mut random = random(9);
         let domain = Domain::torus(2.0, 2.0);
         // Between two wraps particles may stand outside of the period by a few displacements.
         let outside = Vector2::repeat(0.2);
-        let points: Vec<_> = (0..150).map(|_| random.point([2.4, 2.4]) - outside).collect();
+        let points: Vec<_> = (0..150).map(|_| point(&mut random, [2.4, 2.4]) - outside).collect();
         check(&points, 1.0, &domain, &[]);
     }
 
     #[test]
     fn lists_of_awkward_sets_are_those_of_brute_force() {
-        let mut random = Random(3);
+        let mut random = random(3);
         let open = Domain::open();
-        let mut clustered: Vec<_> = (0..400).map(|_| random.point([1e-3, 1e-3])).collect();
-        clustered.extend((0..200).map(|_| random.point([50.0, 50.0])));
+        let mut clustered: Vec<_> = (0..400).map(|_| point(&mut random, [1e-3, 1e-3])).collect();
+        clustered.extend((0..200).map(|_| point(&mut random, [50.0, 50.0])));
         check(&clustered, 0.3, &open, &[]);
         let along = |axis: usize| {
             move |k: i32| {
@@ -711,8 +701,8 @@ mod tests {
         let (support, skin) = (0.4, 0.08);
         let domain = Domain::channel(3.0);
         let mirrors = [horizontal(0.0, 1.0), horizontal(2.0, -1.0)];
-        let mut random = Random(77);
-        let mut points: Vec<_> = (0..200).map(|_| random.point([3.0, 2.0])).collect();
+        let mut random = random(77);
+        let mut points: Vec<_> = (0..200).map(|_| point(&mut random, [3.0, 2.0])).collect();
         let mut neighbours =
             Neighbours::new(Reach { support, skin, spacing: 0.17 }, domain, &mirrors);
         let mut lost = 0;
@@ -721,7 +711,7 @@ mod tests {
         neighbours.build(n, 0, false, false);
         for _ in 0..60 {
             for point in &mut points {
-                *point += (random.point([1.0, 1.0]) - Vector2::repeat(0.5)) * 0.03;
+                *point += Vector2::new(random(), random()) * 0.03;
                 point.y = point.y.clamp(0.0, 2.0);
             }
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
@@ -811,8 +801,8 @@ mod tests {
 
     #[test]
     fn the_order_does_not_depend_on_the_order_the_particles_came_in() {
-        let mut random = Random(5);
-        let mut points: Vec<_> = (0..300).map(|_| random.point([2.0, 5.0])).collect();
+        let mut random = random(5);
+        let mut points: Vec<_> = (0..300).map(|_| point(&mut random, [2.0, 5.0])).collect();
         let sorted = |points: &[Vector2<f64>]| {
             let mut order = Vec::new();
             let mut neighbours = Neighbours::new(
@@ -826,7 +816,7 @@ mod tests {
         };
         let first = sorted(&points);
         for k in (1..points.len()).rev() {
-            points.swap(k, (random.unit() * (k + 1) as f64) as usize);
+            points.swap(k, ((random() + 0.5) * (k + 1) as f64) as usize);
         }
         assert_eq!(sorted(&points), first);
     }

@@ -6,24 +6,24 @@
 
 use nalgebra::Vector2;
 
-use lanes::{Each, Lane};
+use lanes::{Lane, PerParticle};
 
 /// Particles whose numbers and rates are buffered: few enough to stay in the nearest cache.
 pub const MANY: usize = 64;
 /// A number for each of them.
-pub type Many = [f64; MANY];
+pub type Buffer = [f64; MANY];
 
 /// A fixed set of numbers.
 pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 'static {
-    /// The same set with a lane, or the numbers of many particles, in place of each number.
-    type In<V: Each>: Copy;
+    /// This set with a lane, or with the numbers of many particles, in place of each number.
+    type In<V: PerParticle>: Copy;
 
-    /// The same set for each.
-    fn spread<V: Each>(self) -> Self::In<V>;
+    /// Copies of this set for each lane or particle.
+    fn spread<V: PerParticle>(self) -> Self::In<V>;
     /// The sets from number `from` on, one a lane.
-    fn load<V: Lane>(many: &Self::In<Many>, from: usize) -> Self::In<V>;
+    fn load<V: Lane>(many: &Self::In<Buffer>, from: usize) -> Self::In<V>;
     /// Writes the sets of the lanes from number `from` on.
-    fn store<V: Lane>(lanes: Self::In<V>, many: &mut Self::In<Many>, from: usize);
+    fn store<V: Lane>(lanes: Self::In<V>, many: &mut Self::In<Buffer>, from: usize);
     /// The set of a single lane.
     fn one(lane: Self::In<f64>) -> Self;
     /// self + dt rate.
@@ -41,29 +41,29 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
 
     /// Writes set number `k`.
     #[inline(always)]
-    fn put(self, many: &mut Self::In<Many>, k: usize) {
+    fn put(self, many: &mut Self::In<Buffer>, k: usize) {
         Self::store::<f64>(self.spread(), many, k);
     }
     /// Set number `k`.
     #[inline(always)]
-    fn take(many: &Self::In<Many>, k: usize) -> Self {
+    fn take(many: &Self::In<Buffer>, k: usize) -> Self {
         Self::one(Self::load::<f64>(many, k))
     }
 }
 
 impl Numbers for f64 {
-    type In<V: Each> = V;
+    type In<V: PerParticle> = V;
 
     #[inline(always)]
-    fn spread<V: Each>(self) -> V {
+    fn spread<V: PerParticle>(self) -> V {
         V::all(self)
     }
     #[inline(always)]
-    fn load<V: Lane>(many: &Many, from: usize) -> V {
+    fn load<V: Lane>(many: &Buffer, from: usize) -> V {
         V::load(&many[from..])
     }
     #[inline(always)]
-    fn store<V: Lane>(lanes: V, many: &mut Many, from: usize) {
+    fn store<V: Lane>(lanes: V, many: &mut Buffer, from: usize) {
         lanes.store(&mut many[from..]);
     }
     #[inline(always)]
@@ -87,18 +87,18 @@ pub type In<N, V> = <N as Numbers>::In<V>;
 macro_rules! fields_of_numbers {
     ($Struct:ident ($($field:ident),+); $($more:item)*) => {
         impl Numbers for $Struct<f64> {
-            type In<V: Each> = $Struct<V>;
+            type In<V: PerParticle> = $Struct<V>;
 
             #[inline(always)]
-            fn spread<V: Each>(self) -> $Struct<V> {
+            fn spread<V: PerParticle>(self) -> $Struct<V> {
                 $Struct::new($(V::all(self.$field)),+)
             }
             #[inline(always)]
-            fn load<V: Lane>(many: &$Struct<Many>, from: usize) -> $Struct<V> {
+            fn load<V: Lane>(many: &$Struct<Buffer>, from: usize) -> $Struct<V> {
                 $Struct::new($(V::load(&many.$field[from..])),+)
             }
             #[inline(always)]
-            fn store<V: Lane>(lanes: $Struct<V>, many: &mut $Struct<Many>, from: usize) {
+            fn store<V: Lane>(lanes: $Struct<V>, many: &mut $Struct<Buffer>, from: usize) {
                 $(lanes.$field.store(&mut many.$field[from..]);)+
             }
             #[inline(always)]
@@ -185,18 +185,18 @@ macro_rules! tuple_of_numbers {
     ($($member:ident $index:tt),*) => {
         #[allow(unused_variables, clippy::unused_unit)] // of the empty tuple
         impl<$($member: Numbers),*> Numbers for ($($member,)*) {
-            type In<V: Each> = ($($member::In<V>,)*);
+            type In<V: PerParticle> = ($($member::In<V>,)*);
 
             #[inline(always)]
-            fn spread<V: Each>(self) -> Self::In<V> {
+            fn spread<V: PerParticle>(self) -> Self::In<V> {
                 ($(self.$index.spread(),)*)
             }
             #[inline(always)]
-            fn load<V: Lane>(many: &Self::In<Many>, from: usize) -> Self::In<V> {
+            fn load<V: Lane>(many: &Self::In<Buffer>, from: usize) -> Self::In<V> {
                 ($($member::load(&many.$index, from),)*)
             }
             #[inline(always)]
-            fn store<V: Lane>(lanes: Self::In<V>, many: &mut Self::In<Many>, from: usize) {
+            fn store<V: Lane>(lanes: Self::In<V>, many: &mut Self::In<Buffer>, from: usize) {
                 $($member::store(lanes.$index, &mut many.$index, from);)*
             }
             #[inline(always)]

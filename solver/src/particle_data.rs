@@ -10,7 +10,7 @@ use crate::{
     walls::Map,
 };
 
-/// What was done, counted.
+/// Counts of the work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Time steps.
@@ -23,8 +23,7 @@ pub struct Work {
     pub list_builds: u64,
 }
 
-/// A part of a step. Only that one begins is told, to whom [`ParticleData::watch`] names: the solver itself
-/// reads no clock.
+/// A part of a step. [`ParticleData::watch`] is called when one begins; the solver itself reads no clock.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
     /// The pair sweep over the forces.
@@ -41,16 +40,16 @@ pub enum Phase {
     Search,
     /// Putting particles in the order of storage, along strips.
     Sorting,
-    /// What integrators do beside the calls of their engine.
+    /// The integrator's own work between calls of the engine.
     Rest,
 }
 
-/// Is told that a phase begins, which ends the one before.
+/// Called at the start of each phase, which also ends the previous one.
 pub type PhaseWatch = Box<dyn Fn(Phase) + Send + Sync>;
 
 /// A state that no simulation may reach, and where.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fault {
+pub struct InvalidState {
     /// Number of the particle, in the order of the scene.
     pub particle: u32,
     /// The quantity.
@@ -93,7 +92,7 @@ pub struct Progress {
     pub time: f64,
     /// Length of the last step \[s\].
     pub dt: f64,
-    /// What was done so far.
+    /// The work done so far.
     pub work: Work,
     /// Half of what two particles came nearer to each other at most since the neighbour lists were built, at
     /// the start of the last step \[m\].
@@ -106,9 +105,9 @@ pub struct Progress {
     pub made: u64,
 }
 
-/// What an integrator keeps of earlier steps, of a particle: its density \[kg/m³\] and its extra fields.
+/// Density \[kg/m³\] and extra fields of a particle in earlier steps, as an integrator keeps them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Past<X> {
+pub struct PreviousStep<X> {
     /// Their values by the rates of all steps but the present one.
     pub drifted: (f64, X),
     /// Their rates in the step before, in these units per second.
@@ -131,8 +130,8 @@ pub struct Checkpoint<X = ()> {
     pub particles: Vec<(u32, Particle<X>)>,
     /// Where each was when the neighbour lists were built \[m\].
     pub built_at: Vec<Vector2<f64>>,
-    /// What the integrator keeps of earlier steps, of the first particles; empty for most integrators.
-    pub past: Vec<Past<X>>,
+    /// Earlier steps of the first particles; empty for most integrators.
+    pub past: Vec<PreviousStep<X>>,
 }
 
 impl<X: Numbers> Checkpoint<X> {
@@ -151,7 +150,7 @@ impl<X: Numbers> Checkpoint<X> {
         let ids: std::collections::BTreeSet<u32> = particles.iter().map(|(id, _)| *id).collect();
         let sum = built_at.iter().fold(progress.time + lag, |sum, p| sum + p.x + p.y);
         let moving = particles.iter().filter(|(_, p)| p.role == Role::Fluid).count();
-        let is_past = |past: &Past<X>| past.drifted.is_finite() && past.rate.is_finite();
+        let is_past = |past: &PreviousStep<X>| past.drifted.is_finite() && past.rate.is_finite();
         let has_past = past.is_empty() || (moving..=particles.len()).contains(&past.len());
         let Interval { start, until, .. } = progress.call;
         let is_under_way = (0.0..=progress.time).contains(&start) && progress.time <= until;
@@ -181,7 +180,7 @@ pub(crate) struct Counts {
 /// The largest speed and displacements in a state. Displacements are those since lists were built, along an
 /// axis and against it.
 #[derive(Clone, Copy)]
-pub(crate) struct Extent {
+pub(crate) struct BlockExtrema {
     displacement2: f64,
     speed2: f64,
     right: f64,
@@ -191,7 +190,7 @@ pub(crate) struct Extent {
     within_limits: bool,
 }
 
-impl Extent {
+impl BlockExtrema {
     pub const NIL: Self = Self {
         displacement2: 0.0,
         speed2: 0.0,
@@ -223,12 +222,12 @@ impl Extent {
     }
 }
 
-/// What preparing pair sweeps uses again.
+/// Buffers with which pair sweeps are prepared.
 pub(crate) struct SweepBuffers<X> {
     /// Of each block of particles whose columns were filled, and of the particles whose columns were not.
-    pub extents: Vec<Extent>,
+    pub extents: Vec<BlockExtrema>,
     /// Of wall particles that extrapolate and do not move: their columns are filled once after lists are built.
-    pub still: Option<Extent>,
+    pub still: Option<BlockExtrema>,
     /// Wall particles with the velocities and densities that they extrapolate; empty where they do not.
     pub extrapolated: Vec<Evolved<X>>,
 }
@@ -332,7 +331,7 @@ impl<X: Numbers> ParticleData<X> {
         &self.state[..self.counts.fluid]
     }
 
-    /// The same, to be advanced.
+    /// The moving particles, to be advanced.
     pub fn fluid_mut(&mut self) -> &mut [Evolved<X>] {
         &mut self.state[..self.counts.fluid]
     }
@@ -373,7 +372,7 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Looks for a particle that is out of bounds.
-    pub fn check_bounds(&self) -> Result<(), Fault> {
+    pub fn check_bounds(&self) -> Result<(), InvalidState> {
         let extent = self.extent(&self.state, &self.neighbours.built_at);
         self.check(&self.state, &[extent]).map(|_| ())
     }
@@ -395,7 +394,7 @@ impl<X: Numbers> ParticleData<X> {
         self.state.capacity() * size_of::<Evolved<X>>()
             + self.fixed.capacity() * size_of::<Fixed>()
             + self.order.capacity() * size_of::<u32>()
-            + self.buffers.extents.capacity() * size_of::<Extent>()
+            + self.buffers.extents.capacity() * size_of::<BlockExtrema>()
             + self.buffers.extrapolated.capacity() * size_of::<Evolved<X>>()
             + self.neighbours.bytes()
     }
@@ -418,10 +417,10 @@ impl<X: Numbers> ParticleData<X> {
         });
     }
 
-    /// Tells that a phase begins.
+    /// Begins a phase.
     pub fn enter(&self, phase: Phase) {
-        if let Some(tell) = &self.watch {
-            tell(phase);
+        if let Some(watch) = &self.watch {
+            watch(phase);
         }
     }
 
@@ -440,8 +439,8 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// The extremes of a part of a state that was built at these places.
-    pub(crate) fn extent(&self, state: &[Evolved<X>], built_at: &[Vector2<f64>]) -> Extent {
-        let mut extent = Extent::NIL;
+    pub(crate) fn extent(&self, state: &[Evolved<X>], built_at: &[Vector2<f64>]) -> BlockExtrema {
+        let mut extent = BlockExtrema::NIL;
         for (evolved, built_at) in state.iter().zip(built_at) {
             let d = evolved.position - built_at;
             let excess = self.excess(evolved, d.norm_squared());
@@ -449,36 +448,47 @@ impl<X: Numbers> ParticleData<X> {
             let speed2 = evolved.velocity.norm_squared();
             let (displacement2, [right, left, up, down]) =
                 (d.norm_squared(), [d.x, -d.x, d.y, -d.y]);
-            extent =
-                extent.and(Extent { displacement2, speed2, right, left, up, down, within_limits });
+            extent = extent.and(BlockExtrema {
+                displacement2,
+                speed2,
+                right,
+                left,
+                up,
+                down,
+                within_limits,
+            });
         }
         extent
     }
 
     /// The extremes of a whole state from those of its parts.
-    pub(crate) fn check(&self, state: &[Evolved<X>], of: &[Extent]) -> Result<Extent, Fault> {
-        let extent = of.iter().copied().fold(Extent::NIL, Extent::and);
+    pub(crate) fn check(
+        &self,
+        state: &[Evolved<X>],
+        of: &[BlockExtrema],
+    ) -> Result<BlockExtrema, InvalidState> {
+        let extent = of.iter().copied().fold(BlockExtrema::NIL, BlockExtrema::and);
         if extent.within_limits { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 
     /// Half of what two particles, or their images, have come nearer to each other at most since the lists
     /// were built \[m\]: not more than half the diagonal of the box of all displacements and 0, for a period
     /// moves all images alike; nor than the largest displacement, which a mirror turns.
-    fn approach(&self, extent: Extent) -> f64 {
+    fn approach(&self, extent: BlockExtrema) -> f64 {
         let diagonal = Vector2::new(extent.right + extent.left, extent.up + extent.down).norm();
         let has_mirrors = self.neighbours.maps.iter().any(|map| !map.walls().is_empty());
         extent.displacement2.sqrt().min(if has_mirrors { f64::MAX } else { 0.5 * diagonal })
     }
 
     /// Whether neighbour lists are not exact any more.
-    pub(crate) fn is_stale(&self, extent: Extent) -> bool {
+    pub(crate) fn is_stale(&self, extent: BlockExtrema) -> bool {
         // Negated, so that a slack that is not a number means "always".
         !(self.approach(extent) <= self.slack)
     }
 
     /// Whether neighbour lists will be stale within a step like the last one: better built now, in
     /// order, than inside the step and again after it.
-    pub(crate) fn is_stale_soon(&mut self, extent: Extent) -> bool {
+    pub(crate) fn is_stale_soon(&mut self, extent: BlockExtrema) -> bool {
         let approach = self.approach(extent);
         let ahead = approach + (approach - self.progress.last_approach).max(0.0);
         let stale = !(ahead <= self.slack);
@@ -487,11 +497,11 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// The first particle, in the order of the scene, that is out of bounds.
-    fn find_fault(&self, state: &[Evolved<X>]) -> Fault {
+    fn find_fault(&self, state: &[Evolved<X>]) -> InvalidState {
         let fault = |((evolved, fixed), built_at): ((&Evolved<X>, &Fixed), &Vector2<f64>)| {
             let displacement2 = (evolved.position - built_at).norm_squared();
             let (field, value) = evolved.fault().or_else(|| self.excess(evolved, displacement2))?;
-            Some(Fault { particle: fixed.id, field, value })
+            Some(InvalidState { particle: fixed.id, field, value })
         };
         let particles = state.iter().zip(&self.fixed).zip(&self.neighbours.built_at);
         let first = particles.filter_map(fault).min_by_key(|f| f.particle);

@@ -32,7 +32,7 @@ pub struct Particle<X = ()> {
     pub density: f64,
     /// Mass per unit depth \[kg/m\].
     pub mass: f64,
-    /// What the terms integrate beyond these.
+    /// Further fields that the terms integrate.
     pub extra: X,
 }
 
@@ -48,13 +48,13 @@ impl<X: Numbers> Particle<X> {
         Self { role: Role::Fluid, position, velocity, density, mass, extra }
     }
 
-    /// The same particle in another role.
+    /// This particle in another role.
     pub fn with_role(self, role: Role) -> Self {
         Self { role, ..self }
     }
 }
 
-/// What never changes.
+/// Numbers of a particle that never change.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fixed {
     pub mass: f64,
@@ -62,7 +62,7 @@ pub(crate) struct Fixed {
     pub role: Role,
 }
 
-/// What the integrator advances: `X` is what terms integrate of their own, `()` for a fluid.
+/// Numbers of a particle that the integrator advances; `X` holds the extra fields of terms, `()` for a fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Evolved<X> {
     /// Position \[m\].
@@ -71,7 +71,7 @@ pub struct Evolved<X> {
     pub velocity: Vector2<f64>,
     /// Density \[kg/m³\].
     pub density: f64,
-    /// Fields of the terms' own.
+    /// Extra fields of the terms.
     pub extra: X,
 }
 
@@ -86,7 +86,7 @@ pub struct Rate<X> {
     pub velocity: Vector2<f64>,
     /// dρ/dt \[kg/m³/s\].
     pub density: f64,
-    /// d/dt of the terms' own fields.
+    /// d/dt of the extra fields.
     pub extra: X,
 }
 
@@ -105,7 +105,7 @@ impl<X: Numbers> Evolved<X> {
         self.extra = self.extra.advanced(dt, rate.extra);
     }
 
-    /// All of it advanced by dt.
+    /// All numbers advanced by dt.
     #[inline(always)]
     pub fn advanced(mut self, dt: f64, rate: &Rate<X>) -> Self {
         self.drift(dt, rate);
@@ -127,7 +127,7 @@ impl<X: Numbers> Evolved<X> {
     }
 }
 
-/// What every term may ask of a particle, or of one a lane.
+/// Numbers of a particle, or of one a lane, that every term may read.
 #[derive(Clone, Copy, Debug)]
 pub struct Common<V = f64> {
     /// Mass per unit depth \[kg/m\].
@@ -139,7 +139,7 @@ pub struct Common<V = f64> {
 }
 
 impl Common {
-    /// The same particle in every lane.
+    /// This particle in every lane.
     #[inline(always)]
     pub fn spread<V: Lane>(self) -> Common<V> {
         Common {
@@ -150,8 +150,8 @@ impl Common {
     }
 }
 
-/// A particle as pair sweeps read it; `S` is what the terms derive for its neighbours. Columns are packed:
-/// what terms derive takes the room that it needs.
+/// A particle as pair sweeps read it; `S` holds the numbers that the terms derive for its neighbours. Columns
+/// are packed: derived numbers take the memory that they need.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Column<S = ()> {
@@ -175,7 +175,7 @@ impl<S: Numbers> Column<S> {
         Self { position: far, velocity: Vector2::zeros(), common, derived: S::default() }
     }
 
-    /// The same without derived numbers.
+    /// Columns without derived numbers.
     pub(crate) fn plain(columns: &[Self]) -> Vec<Column> {
         let mut plain = Vec::with_capacity(columns.len());
         for &Self { position, velocity, common, .. } in columns {

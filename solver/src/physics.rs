@@ -7,7 +7,7 @@ use crate::{kernel::Kernel, numbers::Numbers, particles::Evolved, terms::Term, w
 /// The right-hand side of d(x, v, ρ, …)/dt as types. Schemes that differ in their integrator alone have the
 /// same physics, and share what is compiled for it.
 pub trait Physics: Sized + 'static {
-    /// What a particle integrates beyond x, v and ρ; `()` for a fluid.
+    /// Fields that a particle integrates beyond x, v and ρ; `()` for a fluid.
     type Extra: Numbers;
     /// Smoothing kernel.
     type Kernel: Kernel;
@@ -35,7 +35,7 @@ impl<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, I: 'static, X: Numbers> Phy
     type Walls = W;
 }
 
-/// What the integrator advances in the physics `P`, particle by particle.
+/// The particles of the physics `P` as the integrator advances them.
 pub type State<P> = [Evolved<<P as Physics>::Extra>];
 
 /// The derived numbers of a particle in the physics `P`: those that the forces read, and the drift.

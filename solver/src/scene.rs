@@ -20,8 +20,8 @@ use crate::{
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{of}: the {quantity} is {value}, but must be {allowed}")]
 pub struct SceneError {
-    /// What the number belongs to.
-    pub of: Part,
+    /// The owner of the number.
+    pub of: Component,
     /// The quantity.
     pub quantity: &'static str,
     /// Its value.
@@ -30,9 +30,9 @@ pub struct SceneError {
     pub allowed: String,
 }
 
-/// What a number of a scene belongs to.
+/// The owner of a number of a scene.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum Part {
+pub enum Component {
     /// The scene itself.
     #[error("scene")]
     Scene,
@@ -46,7 +46,7 @@ pub enum Part {
 
 /// A scene whose method is the scheme `S`.
 pub struct Scene<S: Scheme> {
-    /// What does not depend on the scheme.
+    /// The data that do not depend on the scheme.
     pub setting: Setting<S::Extra>,
     /// Terms of dv/dt.
     pub forces: S::Forces,
@@ -56,7 +56,7 @@ pub struct Scene<S: Scheme> {
     pub walls: S::Walls,
 }
 
-/// What of a scene does not depend on its scheme; `X` is what its particles integrate beyond x, v and ρ.
+/// The data of a scene that do not depend on its scheme; `X` holds the extra fields of its particles.
 pub struct Setting<X = ()> {
     /// Smoothing length h \[m\].
     pub h: f64,
@@ -132,7 +132,7 @@ impl<X: Numbers> Setting<X> {
             (h > 0.0 && h.is_finite(), "smoothing length in m", h, "finite and above 0"),
             (skin >= 0.0 && skin.is_finite(), "skin in m", skin, "finite and at least 0"),
         ];
-        require(Part::Scene, lengths)?;
+        require(Component::Scene, lengths)?;
         check_particles(&particles)?;
         check_walls(mirrors)?;
         check_domain(&domain, support * h, skin)?;
@@ -169,8 +169,8 @@ pub type Condition<'a> = (bool, &'static str, f64, &'a str);
 /// Refuses the first quantity that does not meet its condition.
 ///
 /// # Errors
-/// What the quantity belongs to, its value, and what is allowed.
-pub fn require<const N: usize>(of: Part, all: [Condition; N]) -> Result<(), SceneError> {
+/// The owner of the quantity, its value, and the allowed values.
+pub fn require<const N: usize>(of: Component, all: [Condition; N]) -> Result<(), SceneError> {
     let Some((_, quantity, value, allowed)) = all.into_iter().find(|(is_met, ..)| !is_met) else {
         return Ok(());
     };
@@ -189,7 +189,7 @@ fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
         let Some(period) = domain.period[axis] else { continue };
         let (low, long) = (domain.low[axis], period >= least && period.is_finite());
         let low = (low.is_finite(), "lower corner in m", low, "finite");
-        require(Part::Scene, [(long, name, period, &*allowed), low])?;
+        require(Component::Scene, [(long, name, period, &*allowed), low])?;
     }
     Ok(())
 }
@@ -212,7 +212,7 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
             (sum.is_finite(), "sum of its components", sum, "finite"),
             (is_square, "cosine between its normal and another", cosine, "0 (corner) or 1"),
         ];
-        require(Part::Wall(wall), all)?;
+        require(Component::Wall(wall), all)?;
     }
     Ok(())
 }
@@ -228,7 +228,7 @@ fn check_feet(reads: bool, feet: &[Vector2<f64>], walls: usize) -> Checked {
         (count == expected, "number of feet", count as f64, &*allowed),
         (is_off, "depth of a wall particle in m", depth, "finite and above 0"),
     ];
-    require(Part::Scene, all)
+    require(Component::Scene, all)
 }
 
 fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
@@ -239,7 +239,7 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
         (count <= most, "number of particles", count as f64, &*format!("at most {most}")),
         (fluid > 0, "number of fluid particles", fluid as f64, "above 0"),
     ];
-    require(Part::Scene, numbers)?;
+    require(Component::Scene, numbers)?;
     for (particle, p) in particles.iter().enumerate() {
         let Particle { position: x, velocity: v, density, mass, extra, .. } = p;
         let is_positive = |value: f64| value > 0.0 && value.is_finite();
@@ -250,7 +250,7 @@ fn check_particles<X: Numbers>(particles: &[Particle<X>]) -> Checked {
             (is_positive(*mass), "mass", *mass, "finite and above 0"),
             (extra.is_finite(), "extra field", f64::NAN, "finite"),
         ];
-        require(Part::Particle(particle), all)?;
+        require(Component::Particle(particle), all)?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@ use crate::{
     engine::Engine,
     integrator::{Integrator, Memory, PhysicsOf, Scheme, Stepped},
     numbers::Numbers,
-    particle_data::{Checkpoint, Fault, Interval, ParticleData, Work},
+    particle_data::{Checkpoint, Interval, InvalidState, ParticleData, Work},
     particles::{Column, Particle, Rate},
     physics::Derived,
     terms::Term,
@@ -34,7 +34,7 @@ pub struct Divergence {
     /// Simulated time \[s\].
     pub time: f64,
     /// Particle, quantity and value.
-    pub fault: Fault,
+    pub fault: InvalidState,
 }
 
 /// Whether the run continues.
@@ -102,7 +102,7 @@ pub trait Stepper<X: Numbers> {
     fn advance(&mut self, until: f64, dt_max: f64, observer: &mut dyn Observer<X>) -> Outcome {
         advance(self.stepper(), until, dt_max, observer)
     }
-    /// One time step by dt \[s\], of which [`Stepper::advance`] makes some.
+    /// Makes one time step of dt \[s\]; [`Stepper::advance`] calls it.
     fn step(&mut self, dt: f64) -> Stepped;
     /// Brings every quantity to the same time, and refreshes the derived data, for [`Stepper::advance`].
     fn synchronise(&mut self) -> Stepped;
@@ -112,7 +112,7 @@ pub trait Stepper<X: Numbers> {
     /// replace the present ones, and what follows has the bits of that simulation.
     ///
     /// # Errors
-    /// What is wrong with a checkpoint that no simulation can have made; then nothing has changed.
+    /// The fault of a checkpoint that no simulation of this scheme can have made; nothing has changed then.
     fn restore(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str>;
     /// The kernel W(r) \[1/m²\] from r² \[m²\].
     fn weight(&self, r2: f64) -> f64;
@@ -191,7 +191,7 @@ fn advance<X: Numbers>(
     }
 }
 
-fn diverged<X: Numbers>(simulation: &dyn Stepper<X>, fault: Fault) -> Outcome {
+fn diverged<X: Numbers>(simulation: &dyn Stepper<X>, fault: InvalidState) -> Outcome {
     let (step, time) = (simulation.work().steps, simulation.time());
     Outcome::Diverged(Divergence { step, time, fault })
 }

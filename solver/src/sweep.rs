@@ -16,7 +16,7 @@ use nalgebra::Vector2;
 use crate::{
     kernel::{Kernel, Smoothing},
     neighbours::{BLOCK, Block, GROUP, Lists},
-    numbers::{In, MANY, Many, Numbers},
+    numbers::{Buffer, In, MANY, Numbers},
     parallel,
     particles::{Column, Common, Evolved, Rate},
     terms::{Pair, PairSum},
@@ -34,7 +34,10 @@ static APART: [f64; 2 * GROUP] = {
 };
 
 /// Updates some particles: receives the number of the first, the particles, and their rates.
-pub type BlockUpdate<'a, X> = dyn Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync + 'a;
+pub type BlockUpdate<'a, X> = Receive<'a, Evolved<X>, Rate<X>>;
+
+/// Receives the number of the first of some targets, these, and their results.
+type Receive<'a, T, O> = dyn Fn(usize, &mut [T], &[O]) + Sync + 'a;
 
 /// Gives an `O` for each particle, such as its rates.
 pub(crate) trait PairSweep<O>: Sync {
@@ -48,7 +51,7 @@ pub(crate) fn run<O, T: Send>(
     sweep: &dyn PairSweep<O>,
     lists: &Lists,
     targets: &mut [T],
-    update: &(dyn Fn(usize, &mut [T], &[O]) + Sync),
+    update: &Receive<T, O>,
 ) {
     let targets = targets[..lists.of.len()].chunks_mut(BLOCK);
     let blocks = targets.zip(&lists.blocks).enumerate();
@@ -78,14 +81,36 @@ pub(crate) fn fill<O: Copy + Send>(sweep: &dyn PairSweep<O>, lists: &Lists, resu
     run(sweep, lists, results, &|_, results, found| results.copy_from_slice(found));
 }
 
+// Functions that select the derived data that terms read, from the number of a column and its derived data. A
+// closure in generic code has a type for each scheme, and the sweep would be compiled for each; these have not.
+
+/// Selects the derived data of the forces.
+pub(crate) fn forces<A: Copy, B>() -> impl Fn(usize, &(A, B)) -> A + Sync {
+    |_, derived| derived.0
+}
+
+/// Selects the derived data of the drift.
+pub(crate) fn drift<A, B: Copy>() -> impl Fn(usize, &(A, B)) -> B + Sync {
+    |_, derived| derived.1
+}
+
+/// Selects all derived data.
+pub(crate) fn all<S: Copy>() -> impl Fn(usize, &S) -> S + Sync {
+    |_, derived| *derived
+}
+
+/// Selects no derived data: zeros.
+pub(crate) fn none<S, D: Default>() -> impl Fn(usize, &S) -> D + Sync {
+    |_, _| D::default()
+}
+
 /// A sum over the neighbours of particles, which reads columns.
 pub(crate) struct Sweep<'a, K, T, S, C> {
     pub kernel: &'a Smoothing<K>,
-    /// What is summed: a [`PairSum`].
+    /// The sum, a [`PairSum`].
     pub terms: &'a T,
     pub columns: &'a [Column<S>],
-    /// Selects the derived data that the terms read, from the number of a column and its derived data. A closure
-    /// is a type that depends on no scheme.
+    /// Selects the derived data that the terms read.
     pub select: C,
     /// Whether particles move: dx/dt = v, to which terms may add.
     pub moving: bool,
@@ -107,8 +132,8 @@ impl<K, T, S, C> Sweep<'_, K, T, S, C> {
     {
         let &Sweep { terms, columns, ref select, moving, .. } = self;
         let mut results = buffer();
-        let mut own = Aligned(Seen::<T::Derived>::default().spread::<Many>());
-        let mut sums = Aligned(T::Sum::default().spread::<Many>());
+        let mut own = Aligned(Seen::<T::Derived>::default().spread::<Buffer>());
+        let mut sums = Aligned(T::Sum::default().spread::<Buffer>());
         for first in of.clone().step_by(MANY) {
             let end = (first + MANY).min(of.end);
             if !T::NOTHING {
@@ -142,7 +167,8 @@ where
     }
 }
 
-/// What a term sees of a particle that derives `D`: position and velocity; mass, density and volume; `D`.
+/// The numbers of a particle that a term reads: position and velocity; mass, density and volume; its derived
+/// data `D`.
 type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 
 /// The sums of some particles of a block. In a profile it is `with_registers_for_eight` or
@@ -153,8 +179,8 @@ struct Particles<'a, W, T: PairSum<O>, O> {
     block: &'a Block,
     list: usize,
     of: Range<usize>,
-    own: &'a In<Seen<T::Derived>, Many>,
-    sums: &'a mut In<T::Sum, Many>,
+    own: &'a In<Seen<T::Derived>, Buffer>,
+    sums: &'a mut In<T::Sum, Buffer>,
 }
 
 impl<K: Kernel, T: PairSum<O>, S: Numbers, C, O> OnLanes
@@ -234,10 +260,6 @@ mod tests {
         neighbours
     }
 
-    fn whole<S: Copy>() -> impl Fn(usize, &S) -> S + Sync {
-        |_, derived| *derived
-    }
-
     /// Σ W in the place of the rate of the density: most terms have nothing of a particle with itself.
     #[derive(Clone)]
     struct Weights;
@@ -259,7 +281,7 @@ mod tests {
         let columns = columns(&Weights, 23);
         let (neighbours, kernel) = (listed(&columns), Smoothing::<QuinticSpline>::new(DX));
         let (terms, columns) = (&Weights, &columns[..]);
-        let sweep = Sweep { kernel: &kernel, terms, columns, select: whole(), moving: false };
+        let sweep = Sweep { kernel: &kernel, terms, columns, select: all(), moving: false };
         let particles = &columns[..columns.len() - 1];
         assert_ne!(particles.len() % GROUP, 0, "the last group lacks some");
         for (k, rate) in rates(&sweep, &neighbours.lists).iter().enumerate() {
@@ -281,7 +303,7 @@ mod tests {
         let neighbours = listed(&columns);
         let kernel = Smoothing::<QuinticSpline>::new(DX);
         let (terms, columns) = (&terms, &columns[..]);
-        let sweep = Sweep { kernel: &kernel, terms, columns, select: whole(), moving: true };
+        let sweep = Sweep { kernel: &kernel, terms, columns, select: all(), moving: true };
         let [mut portable, mut one, mut widest] = [const { Vec::<Rate<()>>::new() }; 3];
         for (b, block) in neighbours.lists.blocks.iter().enumerate() {
             let of = b * BLOCK..((b + 1) * BLOCK).min(count);

@@ -1,5 +1,5 @@
-//! Stress and its rate with corrected gradients: what holds to round-off on particles that lie anyhow, at
-//! free surfaces, across a period, and before particles that are held.
+//! Stress and its rate with corrected gradients: exact to round-off on disordered particles, at free surfaces,
+//! across a period, and before particles that are held.
 
 use nalgebra::{Matrix2, Vector2};
 use solver::{
@@ -8,6 +8,8 @@ use solver::{
     ParticleData, PredictorCorrector, PrincipalStress, Rate, Role, Scene, Scheme, Simulation,
     Smoothing, Stepper, Symmetric, lattice, terms::Tensile, walls::Walls,
 };
+
+use crate::random::random;
 
 type Drift = (ConsistentContinuity, ConsistentJaumannRate);
 type Method<W = Open, I = Leapfrog> =
@@ -22,17 +24,8 @@ const DRIFT: Drift =
     (ConsistentContinuity, ConsistentJaumannRate(JaumannRate { shear_modulus: MU }));
 const ROUND_OFF: f64 = 1e-13;
 
-/// Numbers in -0.5..0.5.
-fn random(seed: u32) -> impl FnMut() -> f64 {
-    let mut state = seed;
-    move || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state >> 8) / f64::from(1_u32 << 24) - 0.5
-    }
-}
-
 /// A disordered square with random densities, masses, stresses and velocities.
-fn cloud(seed: u32) -> Vec<Particle<Symmetric>> {
+fn cloud(seed: u64) -> Vec<Particle<Symmetric>> {
     let mut random = random(seed);
     lattice(Vector2::repeat(0.5 * DX), DX, N, N)
         .map(|x| {
@@ -154,7 +147,7 @@ fn any_stress_on_any_particles_adds_up_to_no_force_and_no_torque() {
             "force along x and y and torque over their sizes: expected none, not {found:?}"
         );
     }
-    // What shows that the test can fail: forces that are not corrected, and artificial stress.
+    // The test can fail: with forces that are not corrected, and with artificial stress.
     let (simulation, _) = begun(scene::<Method>(cloud(0), stress(()), Open));
     let uncorrected = simulation.rates(&CauchyStress { eos: EOS, tensile: () });
     let [x, y, torque] = force_and_torque(simulation.data(), &uncorrected);
@@ -294,7 +287,7 @@ fn particles_on_a_line_and_alone_have_no_stress_that_acts() {
     }
 }
 
-/// What a scene does not use is not in its types.
+/// Data that a scene does not use are not in its types.
 #[test]
 fn only_conjugate_forces_have_moments() {
     use solver::Term;

@@ -3,4 +3,6 @@
 mod consistent_solid;
 mod lists;
 mod phases;
+#[path = "../src/random.rs"]
+mod random;
 mod super_steps;

@@ -1,5 +1,4 @@
-//! Who watches a simulation is told of each phase of a step in turn, and what the lists are that sweeps go
-//! through.
+//! A watch is called at the start of each phase of a step; lists are those that sweeps go through.
 
 use std::sync::{Arc, Mutex};
 
@@ -15,7 +14,7 @@ type Method<W, I> = Compose<CubicSpline, Pressure<Tait>, Continuity, W, I>;
 const DX: f64 = 0.1;
 const H: f64 = 1.2 * DX;
 
-/// A periodic lattice whose rows move at a speed, each against the next, so many of them wall particles.
+/// A periodic lattice whose rows move at a speed, each against the next; the first `rows` are wall particles.
 fn simulation<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     (walls, rows): (W, usize),
     speed: f64,

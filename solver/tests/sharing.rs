@@ -1,4 +1,4 @@
-//! What schemes share, counted in the symbols of this test's program, which runs one physics with three
+//! Code that schemes share, counted in the symbols of this test's program, which runs one physics with three
 //! integrators, and with one of these two more kinds of walls.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64", target_endian = "little"))]

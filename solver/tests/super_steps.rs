@@ -259,7 +259,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     }
 }
 
-/// Stops after so many steps.
+/// Stops after this number of steps.
 struct After(u64);
 
 impl Observer<()> for After {

@@ -85,7 +85,7 @@ fn artanh_over(z: f64) -> f64 {
     if z > 0.08 {
         return libm::atanh(z) / z;
     }
-    // What is left out is less than z¹⁴/15, 3e-17.
+    // The omitted rest is less than z¹⁴/15, 3e-17.
     let z2 = z * z;
     let (z4, third) = (z2 * z2, 1.0 + z2 / 3.0);
     let far = 1.0 / 9.0 + z2 / 11.0 + z4 / 13.0;

@@ -1,4 +1,4 @@
-//! What acts on a solid in its present configuration: weight, and contact between bodies. Each
+//! Loads of a solid in its present configuration: weight, and contact between bodies. Each
 //! derives from an energy.
 
 use nalgebra::Vector2;
@@ -80,7 +80,7 @@ pub fn contact_stiffness(moduli: &Moduli) -> f64 {
 
 /// Contact between the faces of bodies, also of a body with itself: without friction and attraction.
 ///
-/// What a face particle a sees of other faces is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and s_b,
+/// The density of other faces at a face particle a is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and s_b,
 /// whose mean is s, and the kernel W, which reaches 2 s. Beside a straight row of particles at the distance d
 /// it is Ψ(d) on the mean. Along the row it varies so little that the pressure of faces that overlap by 5, 20
 /// and 40 % of s varies by 0.7, 2 and 4 %: particles do not catch on each other.

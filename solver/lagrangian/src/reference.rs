@@ -6,7 +6,7 @@ use nalgebra::{Matrix2, Vector2};
 use solver::{
     Domain, Kernel, ParticleData, SceneError, Smoothing, Symmetric,
     inverse::{Inverse, LEAST_DETERMINANT, of_two},
-    scene::{Part, require},
+    scene::{Component, require},
     walls::Map,
 };
 
@@ -148,7 +148,7 @@ impl Reference {
         let quantity = "determinant of the moments of its neighbourhood";
         let allowed =
             format!("above {LEAST_DETERMINANT}: neighbours on both axes within the support");
-        require(Part::Particle(i), [(inverse.is_some(), quantity, determinant, &allowed)])
+        require(Component::Particle(i), [(inverse.is_some(), quantity, determinant, &allowed)])
     }
 
     /// Σ V F X² of each particle, the mean of both axes.

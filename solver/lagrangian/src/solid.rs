@@ -7,7 +7,7 @@ use solver::{
     Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
     particles::{Column, Common},
-    scene::{Part, require},
+    scene::{Component, require},
     walls::Walls,
 };
 
@@ -75,7 +75,7 @@ fn check(
 ) -> Result<(), SceneError> {
     for (k, particle) in particles.iter().enumerate() {
         let moves = particle.role == Role::Fluid;
-        require(Part::Particle(k), [(moves, "number of its role", 1.0, "0: it moves")])?;
+        require(Component::Particle(k), [(moves, "number of its role", 1.0, "0: it moves")])?;
     }
     let (count, has_all) = (bodies.len(), bodies.len() == particles.len());
     let is_sound = |value: f64| value >= 0.0 && value.is_finite();
@@ -86,7 +86,7 @@ fn check(
         (is_sound(shear), "shear modulus in Pa", shear, allowed),
         (is_sound(hourglass), "hourglass strength", hourglass, allowed),
     ];
-    require(Part::Scene, all)
+    require(Component::Scene, all)
 }
 
 /// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. The densities and the extra fields (the

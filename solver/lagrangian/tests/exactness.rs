@@ -1,4 +1,4 @@
-//! What is exact at every state: gradients of linear fields, forces as derivatives of the energy, momentum.
+//! Exact at every state: gradients of linear fields, forces as derivatives of the energy, momentum.
 
 use crate::common::{
     DENSITY, MODULI, block, build, energy, forces, free, number, put, scene, stored,
@@ -83,7 +83,7 @@ fn forces_are_derivatives_of_the_stored_energy() {
     let block = || block(7, 5, 0.15);
     check_forces::<Hencky, _, _>(scene(block(), Open, ()), 0.1);
     check_forces::<SaintVenantKirchhoff, _, _>(scene(block(), Open, ()), 0.1);
-    // What resists modes that deform no particle alone, and stress without it.
+    // The force against modes that deform no particle alone, and stress without it.
     let soft = lagrangian::Moduli { bulk: 0.0, ..MODULI };
     check_forces::<Hencky, _, _>(
         SolidScene { moduli: soft, hourglass: 50.0, ..scene(block(), Open, ()) },
@@ -179,7 +179,7 @@ fn contact_pushes_and_never_pulls() {
         if apart < 0.2 {
             assert!(push > 0.1, "{apart}: {push}");
         } else if apart >= 1.3 {
-            // What is left is the round-off of internal forces at a displacement.
+            // The rest is the round-off of internal forces at a displacement.
             assert!(push.abs() < 1e-12 && stored(&solid) < 1e-24, "{apart}: {push}");
         }
         assert!(push > -1e-12);

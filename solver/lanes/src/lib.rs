@@ -19,12 +19,12 @@ pub const LANES: usize = 4;
 pub const MOST: usize = 8;
 
 /// A real number for each of several particles.
-pub trait Each: Copy + Scalar + Send + Sync {
-    /// The same number for every one.
+pub trait PerParticle: Copy + Scalar + Send + Sync {
+    /// This number for every particle.
     fn all(x: f64) -> Self;
 }
 
-impl<const N: usize> Each for [f64; N] {
+impl<const N: usize> PerParticle for [f64; N] {
     fn all(x: f64) -> Self {
         [x; N]
     }
@@ -32,7 +32,12 @@ impl<const N: usize> Each for [f64; N] {
 
 /// A real number per lane.
 pub trait Lane:
-    Each + Neg<Output = Self> + ClosedAddAssign + ClosedSubAssign + ClosedMulAssign + ClosedDivAssign
+    PerParticle
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
 {
     /// How many lanes there are.
     const LANES: usize;
@@ -46,7 +51,7 @@ pub trait Lane:
     fn sqrt(self) -> Self;
     /// The magnitude.
     fn abs(self) -> Self;
-    /// The larger of two numbers that are not NaN.
+    /// The larger of two numbers, neither of which may be NaN.
     fn at_least(self, floor: Self) -> Self;
     /// Bit k says whether the k-th number is below the bound. For the search of neighbours; no term needs it.
     fn bits_below(self, bound: f64) -> usize;
@@ -100,7 +105,7 @@ pub fn on_widest(work: impl OnLanes) {
     work.run::<Portable>();
 }
 
-/// The same on four lanes, whatever the processor has, for loops that add lanes up.
+/// Runs the loop on four lanes on every processor, so that sums over lanes have one order.
 #[inline(never)]
 pub fn on_four(work: impl OnLanes) {
     #[cfg(target_arch = "x86_64")]
@@ -112,7 +117,7 @@ pub fn on_four(work: impl OnLanes) {
 macro_rules! lane {
     (for $Type:ty, $lanes:literal: fn all($x:ident: f64) -> Self = $all:expr;
      $(fn $name:ident($($takes:tt)*) $(-> $Gives:ty)? = $is:expr;)+) => {
-        impl $crate::Each for $Type {
+        impl $crate::PerParticle for $Type {
             #[inline(always)]
             fn all($x: f64) -> Self {
                 $all

@@ -12,7 +12,7 @@ use std::arch::x86_64::*;
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::{Each, LANES, MOST, OnLanes};
+use crate::{LANES, MOST, OnLanes, PerParticle};
 
 /// Whether the processor has AVX2, and AVX-512 too. The standard library keeps the processor's answer.
 fn has() -> [bool; 2] {
@@ -31,7 +31,7 @@ pub(crate) fn run<W: OnLanes>(work: W) -> Option<W> {
     None
 }
 
-/// The same with four lanes, 32 registers for them if there are as many.
+/// Runs the loop on four lanes, with 32 registers where the processor has them.
 pub(crate) fn run_four<W: OnLanes>(work: W) -> Option<W> {
     match has() {
         // SAFETY: each where the features that it enables are there.

@@ -28,7 +28,7 @@ pub struct Leapfrog<K = ForwardKick>(PhantomData<K>);
 pub trait Kick<P: Physics>: 'static {
     /// Name of the leapfrog that has it.
     const NAME: &'static str;
-    /// What it keeps beside the memory of the leapfrog.
+    /// Buffers beside the memory of the leapfrog; `()` for none.
     type Memory: Memory<P::Extra>;
 
     /// Advances the velocities of fluid particles, and then moves the particles with them.

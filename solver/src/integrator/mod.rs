@@ -16,7 +16,7 @@ use crate::{
     engine::Engine,
     kernel::Kernel,
     numbers::Numbers,
-    particle_data::{Checkpoint, Fault},
+    particle_data::{Checkpoint, InvalidState},
     particles::{Evolved, Rate},
     physics::{Compose, Physics, State},
     terms::Term,
@@ -24,13 +24,13 @@ use crate::{
 };
 
 /// Whether a step stayed within the bounds of its scene.
-pub type Stepped = Result<(), Fault>;
+pub type Stepped = Result<(), InvalidState>;
 
 /// An explicit time integration of (x, v, ρ) of the physics `P`.
 pub trait Integrator<P: Physics>: 'static {
     /// Its name in settings and reports.
     const NAME: &'static str;
-    /// What it keeps from one step to the next, and buffers that steps use again; `()` for nothing.
+    /// Data that it keeps from one step to the next, and buffers that steps use again; `()` for none.
     type Memory: Memory<P::Extra>;
 
     /// Advances the state by dt \[s\].
@@ -51,7 +51,7 @@ pub trait Integrator<P: Physics>: 'static {
     }
 
     /// Rates of each fluid particle in the state that was synchronised last, where dx/dt does not include v.
-    /// They are computed by the same pair sweeps that a step uses.
+    /// The pair sweeps are those of a step.
     fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_one_sweep()
     }

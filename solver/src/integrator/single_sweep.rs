@@ -7,7 +7,7 @@ use super::{
 use crate::{
     engine::{Engine, each},
     numbers::Numbers,
-    particle_data::{Checkpoint, Past},
+    particle_data::{Checkpoint, PreviousStep},
     particles::{Evolved, Rate},
     physics::{Physics, State},
 };
@@ -32,7 +32,7 @@ pub struct SingleSweep;
 pub struct SingleSweepMemory<X> {
     staggered: Staggered,
     /// Of the particles that have rates, in the order of storage; empty before the first step.
-    past: Vec<Past<X>>,
+    past: Vec<PreviousStep<X>>,
 }
 
 impl<X: Numbers> Memory<X> for SingleSweepMemory<X> {
@@ -47,7 +47,7 @@ impl<X: Numbers> Memory<X> for SingleSweepMemory<X> {
     }
 
     fn bytes(&self) -> usize {
-        self.staggered.bytes() + self.past.capacity() * size_of::<Past<X>>()
+        self.staggered.bytes() + self.past.capacity() * size_of::<PreviousStep<X>>()
     }
 }
 
@@ -67,7 +67,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         let (half, fluid) = (0.5 * dt, engine.data.fluid_count());
         let (kick, known) = (staggered.lag + half, 2.0 * staggered.lag);
         if known == 0.0 {
-            let start = |e: &Evolved<P::Extra>| Past {
+            let start = |e: &Evolved<P::Extra>| PreviousStep {
                 drifted: (e.density, e.extra),
                 rate: Default::default(),
             };

@@ -17,7 +17,7 @@ use crate::{
 /// Runge-Kutta-Legendre method of second order, RKL2 (Meyer, Balsara & Aslam 2014): vⁿ⁻½ is advanced over
 /// dt by dv/dt = T(v) + E, where the other forces E are constant and the particles stay at xⁿ.
 ///
-/// It is of second order in dt for the stiff force as well, and has no splitting error in a steady state. A
+/// The order in dt is two for the stiff force as well, and a steady state has no splitting error. A
 /// kick of s stages is stable up to (s² + s − 2)/4 steps of forward Euler, and no wave changes its sign
 /// there. s is the least odd number, from 3 on, that allows the step (for an even s the stiffest wave would
 /// not decay at the limit). So the stiff force limits no step, but costs s − 1 pair sweeps in addition to

@@ -1,3 +1,5 @@
+//! Artificial viscosity of pairs of particles that approach each other.
+
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// −Σⱼ mⱼ Πᵢⱼ ∇ᵢWᵢⱼ \[m/s²\] of (14), (15), with

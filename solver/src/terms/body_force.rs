@@ -1,3 +1,5 @@
+//! A constant force per mass.
+
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// f of (4): a constant force per mass \[m/s²\].

@@ -1,3 +1,5 @@
+//! The stress of an elastic solid, in the form that conserves linear momentum.
+
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Symmetric, Tensile, Term, Vector2};
 
 /// (9) dvᵢᵃ/dt = Σⱼ mⱼ (σᵢᵃᵇ/ρᵢ² + σⱼᵃᵇ/ρⱼ²) ∂Wᵢⱼ/∂xᵢᵇ \[m/s²\], (10) σᵃᵇ = −p δᵃᵇ + Sᵃᵇ, and the stress

@@ -1,7 +1,7 @@
 //! Terms of a fluid that are exact for linear fields (schemes of Negi & Ramachandran 2022).
 //!
-//! What they cost is conservation: the forces of a pair are not opposite any more, and nothing pushes crowded
-//! particles apart. They need [`super::Shifting`].
+//! Momentum is not conserved: the forces of a pair are not opposite any more, and nothing pushes crowded
+//! particles apart. These terms need [`super::Shifting`].
 
 use super::{
     Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2,

@@ -1,3 +1,5 @@
+//! Conservation of mass.
+
 use super::{Common, Kernel, Lane, Pair, Rate, Term};
 
 /// (3) dρᵢ/dt = Σⱼ mⱼ vᵢⱼ · ∇ᵢWᵢⱼ \[kg/m³/s\].

@@ -1,3 +1,5 @@
+//! Diffusion of density, which damps noise of the pressure.
+
 use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Term, Vector2};
 use crate::eos::Tait;
 
@@ -58,7 +60,7 @@ impl Rest for Hydrostatic {
 pub struct DensityDiffusion<R = ()> {
     /// δ h ⁰c \[m²/s\]; δ = 0.1 by custom.
     pub diffusivity: f64,
-    /// What is left alone.
+    /// The state that is left alone.
     pub rest: R,
 }
 

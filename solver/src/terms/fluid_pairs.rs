@@ -1,3 +1,5 @@
+//! A term restricted to pairs of fluid particles.
+
 use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// A term without its pairs with boundary particles, [`crate::Role::Wall`] and [`crate::Role::Interface`].
@@ -52,7 +54,8 @@ mod tests {
     use super::*;
     use crate::{
         ArtificialViscosity, Compose, Continuity, Domain, ExtrapolatingWall, InterfaceWall,
-        Leapfrog, Particle, Pressure, Role, Scene, Stepper, Tait, WendlandC2, walls::Walls,
+        Leapfrog, Particle, Pressure, Role, Scene, Stepper, Tait, WendlandC2, random::random,
+        walls::Walls,
     };
 
     type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;
@@ -69,11 +72,8 @@ mod tests {
     /// Fluid in a periodic channel, off its lattice by up to half of `disorder` spacings and off its velocity
     /// by as many m/s, above rows of boundary particles in these roles.
     fn particles(disorder: f64, boundary: &[Role]) -> Vec<Particle> {
-        let mut state = 1u32;
-        let mut random = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5) * disorder
-        };
+        let mut random = random(1);
+        let mut random = || random() * disorder;
         let fluid = crate::lattice(Vector2::repeat(0.5 * DX), DX, 10, ROWS).map(|x| {
             let place = x + Vector2::new(random(), random()) * DX;
             let velocity = Vector2::new(3.0 + random(), random());

@@ -46,7 +46,7 @@ pub use xsph::Xsph;
 use lanes::Lane;
 use nalgebra::Vector2;
 
-// What terms are written with: each file takes it from here.
+// Each file takes the types with which terms are written from here.
 use crate::{
     eos::EquationOfState,
     kernel::{Kernel, Smoothing},
@@ -69,14 +69,14 @@ pub struct Pair<'k, V: Lane, K, D: Numbers = ()> {
     pub own: Common<V>,
     /// The neighbours j.
     pub other: Common<V>,
-    /// What the term derived of the particles i and of the neighbours j.
+    /// Derived data of the particles i and of the neighbours j.
     pub derived: [In<D, V>; 2],
     /// The kernel, for terms that need W itself.
     pub kernel: &'k Smoothing<K>,
 }
 
 impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
-    /// The same particles as a term sees them that derived these numbers of them.
+    /// These particles as another term sees them, with its derived data.
     #[inline(always)]
     pub fn with<E: Numbers>(&self, derived: [In<E, V>; 2]) -> Pair<'k, V, K, E> {
         let Self { r, r2, v, f, own, other, kernel, .. } = *self;
@@ -100,7 +100,7 @@ impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
 pub trait Term<X>: Clone + Send + Sync + 'static {
     /// The derived data of a particle that its neighbours read for this term.
     type Derived: Numbers;
-    /// What a particle sums over its neighbours.
+    /// Sums of a particle over its neighbours.
     type Sum: Numbers;
     /// Whether this is the empty tuple, so that no pair sweep is needed.
     const IS_EMPTY: bool = false;
@@ -138,7 +138,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
 pub(crate) trait PairSum<O>: Sync {
     /// The derived data of a particle that the sum reads.
     type Derived: Numbers;
-    /// What a particle sums over its neighbours.
+    /// Sums of a particle over its neighbours.
     type Sum: Numbers;
     /// Whether there is nothing to sum.
     const NOTHING: bool = false;
@@ -229,7 +229,7 @@ tuple_of_terms!(Split<A, B>: A 0, B 1);
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2, numbers::Many};
+    use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2, numbers::Buffer};
     use lanes::{OnLanes, Portable, on_widest};
 
     /// Up to eight neighbours, number k of field f; one is at the same place as the particle.
@@ -279,7 +279,7 @@ mod tests {
         };
         let wide = pair(&kernel, |field| V::gather(|k| number(field, k)));
         let together = read_wide(sum(&term, &wide, |c| {
-            let mut all = T::Derived::default().spread::<Many>();
+            let mut all = T::Derived::default().spread::<Buffer>();
             (0..V::LANES).for_each(|k| derived(c.mass.lane(k), c.density.lane(k)).put(&mut all, k));
             T::Derived::load::<V>(&all, 0)
         }));

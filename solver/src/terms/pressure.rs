@@ -1,3 +1,5 @@
+//! The pressure gradient.
+
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2};
 
 /// (5) Pᵢ = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\], and (14) with R ≠ ().

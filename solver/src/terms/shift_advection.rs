@@ -1,7 +1,9 @@
+//! The change of velocities that follows from shifted positions.
+
 use super::moments::{inverse, weights};
 use super::{Common, In, Kernel, Lane, Pair, Rate, Shifting, Symmetric, Term, Vector2};
 
-/// What shifting must do to the velocity: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of
+/// The change of velocity that belongs to shifting: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of
 /// [`Shifting`].
 ///
 /// A particle that is moved by δu beside the flow carries its velocity to where the fluid has another

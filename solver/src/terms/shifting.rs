@@ -1,3 +1,5 @@
+//! Particle shifting.
+
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// Particle shifting: drᵢ/dt −= A v_max h Σⱼ Vⱼ \[1 + 0.2 (Wᵢⱼ/W(⁰r))⁴\] ∇ᵢWᵢⱼ \[m/s\].

@@ -1,3 +1,5 @@
+//! Forces in two parts, of which one is stiff.
+
 /// The forces `E` and the stiff force `T`, whose sum it is as a term. [`crate::SuperSteps`] integrates `T`
 /// over steps that are longer than the limit of an explicit integrator.
 #[derive(Clone, Copy, Debug)]

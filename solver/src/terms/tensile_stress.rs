@@ -1,3 +1,5 @@
+//! Artificial stress in principal axes, or component by component.
+
 use std::marker::PhantomData;
 
 use super::{Kernel, Lane, Pair, Symmetric, Tensile};

@@ -1,3 +1,5 @@
+//! Laminar viscosity.
+
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// (6) Vᵢ = 2μ Σⱼ mⱼ/(ρᵢρⱼ) \[rᵢⱼ·∇ᵢWᵢⱼ/(dᵢⱼ² + η²)\] vᵢⱼ \[m/s²\] (Morris, Fox & Zhu 1997).

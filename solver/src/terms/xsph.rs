@@ -1,3 +1,5 @@
+//! Smoothing of the velocity with which particles move (XSPH).
+
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// (22) drᵢ/dt = vᵢ − ε Σⱼ 2 mⱼ vᵢⱼ/(ρᵢ+ρⱼ) Wᵢⱼ \[m/s\], 0 ≤ ε < 1 (Monaghan 1989).

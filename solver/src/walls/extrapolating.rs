@@ -46,7 +46,7 @@ impl<E, U: Default> ExtrapolatingWall<E, U> {
     }
 }
 
-/// What an [`ExtrapolatingWall`] does about the velocity: `()`, nothing, or [`NoSlip`], or [`CurvedNoSlip`].
+/// How an [`ExtrapolatingWall`] extrapolates the velocity: not at all (`()`), [`NoSlip`] or [`CurvedNoSlip`].
 pub trait WallVelocity: Copy + Send + Sync + 'static {
     /// From a wall particle to its foot, the nearest point of the surface, at which its sums are then made
     /// \[m\]; `()` where it needs none.
@@ -200,7 +200,7 @@ mod tests {
     use super::*;
     use crate::{
         Compose, Continuity, Domain, Leapfrog, Particle, Pressure, QuinticSpline, Role, Scene,
-        SceneError, Simulation, Stepper, Tait, Viscosity,
+        SceneError, Simulation, Stepper, Tait, Viscosity, random::random,
     };
 
     const DX: f64 = 0.1;
@@ -217,11 +217,8 @@ mod tests {
         disorder: f64,
         velocity: impl Fn(Vector2<f64>) -> Vector2<f64>,
     ) -> Result<Simulation<Method<U>>, SceneError> {
-        let mut state = 1u32;
-        let mut random = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5) * disorder
-        };
+        let mut random = random(1);
+        let mut random = || random() * disorder;
         let fluid = crate::lattice(Vector2::repeat(0.5 * DX), DX, 10, rows).map(|x| {
             let place = x + Vector2::new(random(), random()) * DX;
             Particle::fluid(place, WALL + velocity(place), 1.0 + 0.1 * random(), DX * DX)

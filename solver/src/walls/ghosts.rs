@@ -104,7 +104,7 @@ mod tests {
     use super::*;
     use crate::{
         Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene, Stepper,
-        Tait, Term, Viscosity, WendlandC2,
+        Tait, Term, Viscosity, WendlandC2, random::random,
     };
 
     type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;
@@ -120,11 +120,7 @@ mod tests {
 
     /// Disordered water in the tank, each velocity the next number of `random`, or all the same.
     fn water(uniform: Option<Vector2<f64>>) -> Vec<Particle> {
-        let mut state = 1u32;
-        let mut random = move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state >> 8) / f64::from(1u32 << 24) - 0.5
-        };
+        let mut random = random(1);
         crate::lattice(Vector2::repeat(0.05), 0.1, 10, 6)
             .map(|x| {
                 let place = x + Vector2::new(random(), random()) * 0.08;

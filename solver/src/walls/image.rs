@@ -118,7 +118,7 @@ mod tests {
         assert!((ghost.position + source.position - corner * 2.0).norm() < 1e-14, "half a turn");
     }
 
-    /// It had the mass of its source, and pushed the water from inside.
+    /// The image had the mass of its source, and pushed the water from inside.
     #[test]
     fn the_image_of_a_particle_that_has_crossed_a_wall_lay_in_the_fluid() {
         let wall = |n: Vector2<f64>| PlaneWall::new(Vector2::zeros(), n, Vector2::zeros());

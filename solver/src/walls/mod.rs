@@ -50,7 +50,7 @@ pub trait Extrapolation: Copy + Send + Sync + 'static {
     const FEET: bool = false;
     /// From a wall particle to its foot \[m\]; `()` where the sums do not need it.
     type Foot: Numbers;
-    /// What a wall particle sums over the fluid.
+    /// Sums of a wall particle over the fluid.
     type Sum: Numbers;
     /// The foot of a wall particle; of any other particle `None`.
     fn foot(foot: Option<&Vector2<f64>>) -> Self::Foot;

@@ -16,7 +16,9 @@ use base::{
     record::{Cost, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Interval, Numbers, Particle, Past, Progress, Stepper, Symmetric, Work};
+use solver::{
+    Checkpoint, Interval, Numbers, Particle, PreviousStep, Progress, Stepper, Symmetric, Work,
+};
 
 use crate::{error::RunError, outline};
 
@@ -54,7 +56,7 @@ fn state<X: Numbers>(of: &Checkpoint<X>) -> State {
         stored.push((*id, p.role as u8, [p.position, p.velocity, *at], [p.density, p.mass]));
         stresses.extend(stress(&p.extra));
     }
-    for Past { drifted, rate } in past {
+    for PreviousStep { drifted, rate } in past {
         earlier.push([drifted.0, rate.0]);
         stresses.extend(stress(&drifted.1).into_iter().chain(stress(&rate.1)));
     }
@@ -83,7 +85,7 @@ fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError
         built_at.push(at);
     }
     for [drifted, rate] in earlier {
-        past.push(Past { drifted: (drifted, extra()), rate: (rate, extra()) });
+        past.push(PreviousStep { drifted: (drifted, extra()), rate: (rate, extra()) });
     }
     Ok(Checkpoint { progress, lag, particles, built_at, past })
 }

@@ -8,7 +8,9 @@ use base::{
     record::{Record, Status},
 };
 use nalgebra::Vector2;
-use solver::{Checkpoint, Divergence, Domain, Fault, Numbers, Outcome, Particle, Role, Stepper};
+use solver::{
+    Checkpoint, Divergence, Domain, InvalidState, Numbers, Outcome, Particle, Role, Stepper,
+};
 
 use crate::error::RunError;
 
@@ -128,9 +130,9 @@ impl Playback<'_> {
     }
 
     /// The first particle of a frame that no measure can take, before it is put in place.
-    fn lost(&self, frame: &Frame) -> Option<Fault> {
+    fn lost(&self, frame: &Frame) -> Option<InvalidState> {
         frame.particles.iter().find_map(|placed| {
-            let fault = |field, value| Some(Fault { particle: placed.id, field, value });
+            let fault = |field, value| Some(InvalidState { particle: placed.id, field, value });
             let (far, speed) = (placed.position.amax(), placed.velocity.norm());
             let [least, most] = self.limits.density;
             match placed.density {
@@ -156,7 +158,7 @@ fn crowded<X: Numbers>(
     playback: &Playback,
     frame: &Frame,
     all: &[(u32, Particle<X>)],
-) -> Option<Fault> {
+) -> Option<InvalidState> {
     let ids: BTreeSet<u32> = frame.particles.iter().map(|placed| placed.id).collect();
     let moving: Vec<_> = all.iter().filter(|(id, _)| ids.contains(id)).collect();
     let mass = moving.iter().fold(0.0, |sum, (_, p)| sum + p.mass) / moving.len() as f64;
@@ -169,7 +171,7 @@ fn crowded<X: Numbers>(
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (value, particle) = *found.get(found.len() / 2)?;
     let is_crowded = value > MOST_CROWDED * playback.fill.density;
-    is_crowded.then_some(Fault { particle, field: "density of the places", value })
+    is_crowded.then_some(InvalidState { particle, field: "density of the places", value })
 }
 
 /// The times that have no frame \[s\], of a run that ends with the last of them.

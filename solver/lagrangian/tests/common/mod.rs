@@ -80,7 +80,7 @@ pub fn stored<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
     all.compression + all.shear + all.hourglass + all.loads
 }
 
-/// All of the energy.
+/// The whole energy.
 pub fn energy<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
     let kinetic = |(m, e): (f64, &solver::Evolved<Symmetric>)| 0.5 * m * e.velocity.norm_squared();
     stored(solid) + solid.data().fluid().map(kinetic).fold(0.0, |sum, one| sum + one)
