@@ -989,6 +989,25 @@ fn each_quantity_is_compared(folder: &tempfile::TempDir, last: usize, row: &[&st
     }
 }
 
+/// An observer who stands far away has larger numbers, which round off more.
+#[test]
+fn round_off_is_that_of_the_larger_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    for by in ["same", "shifted"] {
+        let line = format!("export elliptic_drop --set n=8 --solve --relation {by} --out {by}");
+        let made = touchstone(folder.path(), &line);
+        assert!(made.status.success(), "{}", said(&made));
+    }
+    let other = folder.path().join("shifted");
+    let results = read(&other.join("results.csv"));
+    let x: f64 = results.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap();
+    let codes = [3e-13, 1e-11].map(|by| {
+        set(&other, results.lines().count(), 2, &(x + by).to_string());
+        touchstone(folder.path(), "relate elliptic_drop same shifted").status.code()
+    });
+    assert_eq!(codes, [Some(0), Some(1)]);
+}
+
 /// Two observers of one problem, as files: our own solver tells both the same; where one number differs by a
 /// billionth, the particle is named; what is no pair of observers is refused.
 #[test]
