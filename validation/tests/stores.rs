@@ -67,6 +67,24 @@ fn records(store: &Path) -> Vec<PathBuf> {
     paths
 }
 
+/// Equal results by their names, and verdicts on the accuracy.
+fn equal_results_and_accuracies_are_told(page: &str) {
+    let told = page.split("Equal results, to the last bit").nth(1).expect("they are told");
+    let told = told.split("</p>").next().unwrap();
+    for [a, b] in [["good code 1, s", "second code 7, s"], ["good code 1, s", "good code 1, t"]] {
+        let is_told =
+            [format!("{a} and {b}"), format!("{b} and {a}")].iter().any(|two| told.contains(two));
+        assert!(is_told, "{a} and {b}: {told}");
+    }
+    assert!(!told.contains("bad code"), "{told}");
+    // Their only gate is on the error at one of the times: it judges the accuracy.
+    for (code, verdict) in [("good code 1, s", "pass"), ("bad code 1, s", "fail")] {
+        let is_its = |row: &&str| row.contains(&format!("<td>{code}</td>"));
+        let row = page.split("<tr>").find(is_its).expect(code).to_lowercase();
+        assert!(row.contains(&format!("<td>{verdict}</td><td>–</td>")), "{row}");
+    }
+}
+
 /// `judge`, `report`, verdicts.json and JUnit did not know submissions, and a store of them alone was "604
 /// gates fail".
 #[test]
@@ -132,20 +150,7 @@ fn submissions_are_judged_where_our_own_runs_are() {
     ] {
         assert!(page.contains(part), "the page lacks {part:?}");
     }
-    let told = page.split("Equal results, to the last bit").nth(1).expect("they are told");
-    let told = told.split("</p>").next().unwrap();
-    for [a, b] in [["good code 1, s", "second code 7, s"], ["good code 1, s", "good code 1, t"]] {
-        let is_told =
-            [format!("{a} and {b}"), format!("{b} and {a}")].iter().any(|two| told.contains(two));
-        assert!(is_told, "{a} and {b}: {told}");
-    }
-    assert!(!told.contains("bad code"), "{told}");
-    // Their only gate is on the error at one of the times: it judges the accuracy.
-    for (code, verdict) in [("good code 1, s", "pass"), ("bad code 1, s", "fail")] {
-        let is_its = |row: &&str| row.contains(&format!("<td>{code}</td>"));
-        let row = page.split("<tr>").find(is_its).expect(code).to_lowercase();
-        assert!(row.contains(&format!("<td>{verdict}</td><td>–</td>")), "{row}");
-    }
+    equal_results_and_accuracies_are_told(&page);
 }
 
 /// Gates of submissions were not compared, and a new version was another run.
@@ -222,7 +227,8 @@ fn a_forged_record_is_refused_by_its_results() {
     assert_eq!(of(at, "submit couette a --store st").1, 1);
     let path = &records(&at.join("st"))[0];
     let record = Record::from_json(&fs::read_to_string(path).unwrap()).unwrap();
-    let forgeries: [(fn(&mut Record), &str); 3] = [
+    type Forge = fn(&mut Record);
+    let forgeries: [(Forge, &str); 3] = [
         (|of| of.metrics.get_mut("l2@0.1").unwrap().value = 1e-5, "l2@0.1 (1e-5 there"),
         (|of| drop(of.metrics.remove("l2@0.1")), "l2@0.1 (not measured there"),
         (
