@@ -529,6 +529,72 @@ fn the_exact_flow_passes_vortices() {
     assert!(said.code == 0 && !said.gates.is_empty(), "{}", said.text);
 }
 
+/// Cells of the row of a code on a page: accuracy, other gates that fail, all gates.
+fn row_of(page: &str, code: &str) -> Vec<String> {
+    let row = page.split("<tr>").find(|row| row.contains(&format!(">{code} 0.1.0, ")));
+    let row = row.unwrap_or_else(|| panic!("no row of {code}")).split("</tr>").next().unwrap();
+    let cell = |cell: &str| {
+        let parts = cell.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text));
+        parts.collect::<String>().trim().to_string()
+    };
+    let mut cells: Vec<String> = row.split("</td>").map(cell).filter(|c| !c.is_empty()).collect();
+    cells.pop(); // how it ended
+    cells.split_off(cells.len() - 3)
+}
+
+/// "1 pass" stood for an error of 52 %: the page says of each code whether its accuracy is judged, and which
+/// other gates fail. Results of our own run under another name are told.
+#[test]
+fn the_page_tells_accuracy_from_other_gates_and_our_own_run_from_others() {
+    let operators =
+        "operators --variant quintic-density --set n=24 --set h_over_dx=1.5 --set disorder=0";
+    let store = tempfile::tempdir().unwrap();
+    let submit = |problem: &str, code: &str, by: f64, and: f64| {
+        let own = Entry::own(problem);
+        let path = own.folder.join("method.json");
+        let text = fs::read_to_string(&path).unwrap();
+        fs::write(&path, text.replace("\"touchstone\"", &format!("\"{code}\""))).unwrap();
+        let u = own.column("u");
+        let cells: Vec<_> = own.of(None).into_iter().map(|row| (row, u)).collect();
+        own.edited(&cells, |_, value| by * value + and);
+        let (folder, at) = (own.folder.display(), store.path().join("store"));
+        let line = format!("submit {} {folder} --store {}", own.case, at.display());
+        let (exit, text) = touchstone(&own.folder, &line);
+        assert!(exit < 2, "{code}: {text}");
+    };
+    submit(operators, "alike", 1.0, 0.0);
+    submit("couette --variant plain", "near", 1.0, 0.0);
+    submit("couette --variant plain", "far", 1.5, 0.0);
+    submit("hydrostatic", "astir", 1.0, 0.2);
+    let (_, plan) = touchstone(store.path(), "plan operators");
+    let is_own = |line: &&str| {
+        let is = |part| line.contains(part);
+        is("\"quintic-density\"") && is("\"n\":24") && is("\"disorder\":0.0")
+    };
+    fs::write(store.path().join("plan"), plan.lines().find(is_own).unwrap()).unwrap();
+    for line in ["run --specs plan --store store", "report --store store --partial --out page"] {
+        let (exit, text) = touchstone(store.path(), line);
+        assert!(exit < 2, "{line}: {text}");
+    }
+    let page = fs::read_to_string(store.path().join("page/index.html")).unwrap();
+    let kinetic = "hydrostatic.modern.0.01.kinetic";
+    let shear = "couette.plain.20.shear_lower@1, couette.plain.20.shear_upper@1";
+    for (code, accuracy, others) in [
+        ("alike", "none", "–"),
+        ("near", "pass", "–"),
+        ("far", "fail", shear),
+        ("astir", "pass", kinetic),
+    ] {
+        let cells = row_of(&page, code);
+        assert_eq!(cells[0].to_lowercase(), accuracy, "{code}: {cells:?}");
+        assert_eq!(cells[1], others, "{code}: {cells:?}");
+    }
+    let equal: Vec<&str> = page.split("Equal results").skip(1).collect();
+    assert!(equal.len() == 1, "one code of four handed in a run of ours");
+    let words = equal[0].split("</p>").next().unwrap();
+    assert!(words.contains("alike 0.1.0") && words.contains("and our own"), "{words}");
+}
+
 /// Honest submissions of six cases.
 const HONEST: [&str; 6] = [
     "couette --variant plain --set rows=20",
