@@ -1,10 +1,10 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
 //! a state and then makes the pair sweeps.
 //!
-//! Five things stand between an integrator and a term: an [`Engine`] has particles and [`Equations`], the terms
-//! of the scene with their columns; a [`Sweep`] sums some of these terms, each a [`crate::terms::PairSum`], over
-//! neighbour lists. Code that need not know their types, here and in `sweep.rs`, sees `dyn Equations` and
-//! `dyn PairSweep`, and is compiled once, not for each scheme.
+//! Five things stand between an integrator and a term: an [`Engine`] has particles and [`Equations`], the
+//! terms of the scene with their columns; a [`Sweep`] sums some of these terms, each a
+//! [`crate::terms::PairSum`], over neighbour lists. Code that need not know their types, here and in
+//! `sweep.rs`, sees `dyn Equations` and `dyn PairSweep`, and is compiled once, not for each scheme.
 
 use std::mem::take;
 
@@ -124,8 +124,8 @@ impl<X: Numbers> ParticleData<X> {
         checked
     }
 
-    /// Refreshes images, and the states that wall particles extrapolate. `motion` is the share of the walls' own
-    /// motion that images have.
+    /// Refreshes images, and the states that wall particles extrapolate. `motion` is the share of the walls'
+    /// own motion that images have.
     fn refresh_walls(
         &mut self,
         equations: &mut dyn Equations<X>,
@@ -170,8 +170,8 @@ impl<X: Numbers> ParticleData<X> {
         equations.fill_images(&self.neighbours, self.counts.fluid, motion);
     }
 
-    /// Updates fluid particles by this sweep, and wall particles by the sweep over their own terms, if the phase
-    /// is more than a sum of forces.
+    /// Updates fluid particles by this sweep, and wall particles by the sweep over their own terms, if the
+    /// phase is more than a sum of forces.
     fn sweep(
         &mut self,
         phase: Phase,
@@ -412,8 +412,8 @@ impl<P: Physics> Engine<P> {
         sweep::rates(&sweep, &self.data.neighbours.lists)
     }
 
-    /// The rates of fluid particles by all terms, with dv/dt from the sweep of [`Engine::sweep_forces`], and the rest from that of
-    /// [`Engine::sweep_drift`].
+    /// The rates of fluid particles by all terms, with dv/dt from the sweep of [`Engine::sweep_forces`], and
+    /// the rest from that of [`Engine::sweep_drift`].
     pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
         let forces = self.equations.sweep(&self.equations.terms.0, forces(), false);
         let drift = self.equations.sweep(&self.equations.terms.1, drift(), false);

@@ -4,8 +4,8 @@ use nalgebra::{Matrix2, Matrix3};
 
 use crate::numbers::Symmetric;
 
-/// Determinant from which the moments of a neighbourhood count as regular, where they are scaled to 1 inside a
-/// body of particles; where neighbours lie on a line, it is 0.
+/// Determinant from which the moments of a neighbourhood count as regular, where they are scaled to 1 inside
+/// a body of particles; where neighbours lie on a line, it is 0.
 pub const LEAST_DETERMINANT: f64 = 1e-3;
 
 /// The inverse of a matrix, not finite where the determinant is 0.

@@ -34,7 +34,8 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
     fn stress(&self) -> Option<Symmetric> {
         None
     }
-    /// Extra fields of a particle of a solid with this deviatoric stress \[Pa\]; defaults if it is of no solid.
+    /// Extra fields of a particle of a solid with this deviatoric stress \[Pa\]; defaults if it is of no
+    /// solid.
     fn of_stress(_: Symmetric) -> Self {
         Self::default()
     }

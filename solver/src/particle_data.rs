@@ -226,7 +226,8 @@ impl BlockExtrema {
 pub(crate) struct SweepBuffers<X> {
     /// Of each block of particles whose columns were filled, and of the particles whose columns were not.
     pub extents: Vec<BlockExtrema>,
-    /// Of wall particles that extrapolate and do not move: their columns are filled once after lists are built.
+    /// Of wall particles that extrapolate and do not move: their columns are filled once after lists are
+    /// built.
     pub still: Option<BlockExtrema>,
     /// Wall particles with the velocities and densities that they extrapolate; empty where they do not.
     pub extrapolated: Vec<Evolved<X>>,

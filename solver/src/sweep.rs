@@ -41,8 +41,8 @@ type Receive<'a, T, O> = dyn Fn(usize, &mut [T], &[O]) + Sync + 'a;
 
 /// Gives an `O` for each particle, such as its rates.
 pub(crate) trait PairSweep<O>: Sync {
-    /// Passes on the results of the particles in these columns, a few at a time, with the column of the first.
-    /// `block` has their neighbour lists.
+    /// Passes on the results of the particles in these columns, a few at a time, with the column of the
+    /// first. `block` has their neighbour lists.
     fn results(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O]));
 }
 
@@ -82,7 +82,8 @@ pub(crate) fn fill<O: Copy + Send>(sweep: &dyn PairSweep<O>, lists: &Lists, resu
 }
 
 // Functions that select the derived data that terms read, from the number of a column and its derived data. A
-// closure in generic code has a type for each scheme, and the sweep would be compiled for each; these have not.
+// closure in generic code has a type for each scheme, and the sweep would be compiled for each; these have
+// not.
 
 /// Selects the derived data of the forces.
 pub(crate) fn forces<A: Copy, B>() -> impl Fn(usize, &(A, B)) -> A + Sync {

@@ -1,5 +1,5 @@
-//! Stress and its rate with corrected gradients: exact to round-off on disordered particles, at free surfaces,
-//! across a period, and before particles that are held.
+//! Stress and its rate with corrected gradients: exact to round-off on disordered particles, at free
+//! surfaces, across a period, and before particles that are held.
 
 use nalgebra::{Matrix2, Vector2};
 use solver::{

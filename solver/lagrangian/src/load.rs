@@ -80,11 +80,11 @@ pub fn contact_stiffness(moduli: &Moduli) -> f64 {
 
 /// Contact between the faces of bodies, also of a body with itself: without friction and attraction.
 ///
-/// The density of other faces at a face particle a is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and s_b,
-/// whose mean is s, and the kernel W, which reaches 2 s. Beside a straight row of particles at the distance d
-/// it is Ψ(d) on the mean. Along the row it varies so little that the pressure of faces that overlap by 5, 20
-/// and 40 % of s varies by 0.7, 2 and 4 %: particles do not catch on each other.
-/// Where ψ exceeds Ψ(s), faces overlap by about o = e Ψ/|Ψ'| with e = ψ/Ψ(s) − 1, and the energy
+/// The density of other faces at a face particle a is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and
+/// s_b, whose mean is s, and the kernel W, which reaches 2 s. Beside a straight row of particles at the
+/// distance d it is Ψ(d) on the mean. Along the row it varies so little that the pressure of faces that
+/// overlap by 5, 20 and 40 % of s varies by 0.7, 2 and 4 %: particles do not catch on each other. Where ψ
+/// exceeds Ψ(s), faces overlap by about o = e Ψ/|Ψ'| with e = ψ/Ψ(s) − 1, and the energy
 ///
 /// U = ½ k Σ_a s_a² (Ψ/Ψ')² (e_a²/2 + e_a³/6)
 ///

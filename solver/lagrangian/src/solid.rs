@@ -89,8 +89,8 @@ fn check(
     require(Component::Scene, all)
 }
 
-/// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. The densities and the extra fields (the
-/// deviator of the Cauchy stress) follow from the positions.
+/// Elastic solids that move: kernel `K`, stored energy `L`, loads `C`. The densities and the extra fields
+/// (the deviator of the Cauchy stress) follow from the positions.
 pub struct Solid<K, L, C> {
     data: ParticleData<Symmetric>,
     /// The body: its reference, and its deformation.

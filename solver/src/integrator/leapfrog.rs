@@ -75,7 +75,8 @@ fn kick<X: Numbers>(times: KickTimes) -> impl Fn(usize, &mut Evolved<X>, &Rate<X
     }
 }
 
-/// Advances all but the velocity by dt; the first `fluid` particles, which move, from the middle of this time.
+/// Advances all but the velocity by dt; the first `fluid` particles, which move, from the middle of this
+/// time.
 fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
     move |i, evolved: &mut Evolved<X>, rate: &Rate<X>| {
         evolved.drift(dt, rate);

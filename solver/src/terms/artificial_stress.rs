@@ -3,8 +3,8 @@
 use super::{In, Kernel, Lane, Numbers, Pair};
 
 /// An addition of [`super::Pressure`] to the pair pressure, or of [`super::CauchyStress`] to the pair stress,
-/// where the material is in tension: nothing, or an artificial stress Rᵢⱼ φᵢⱼⁿ with (21) Rᵢⱼ = Rᵢ + Rⱼ. `S` is
-/// `f64` for a pressure and [`super::Symmetric`] for a stress.
+/// where the material is in tension: nothing, or an artificial stress Rᵢⱼ φᵢⱼⁿ with (21) Rᵢⱼ = Rᵢ + Rⱼ. `S`
+/// is `f64` for a pressure and [`super::Symmetric`] for a stress.
 pub trait Tensile<S: Numbers>: Copy + Send + Sync + 'static {
     /// Derived numbers of a particle.
     type Derived: Numbers;

@@ -134,7 +134,8 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
 }
 
-/// A sum over neighbours from which an `O` follows: the rates of terms, or what walls extrapolate, or moments.
+/// A sum over neighbours from which an `O` follows: the rates of terms, or what walls extrapolate, or
+/// moments.
 pub(crate) trait PairSum<O>: Sync {
     /// The derived data of a particle that the sum reads.
     type Derived: Numbers;

@@ -45,8 +45,8 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
 pub trait Extrapolation: Copy + Send + Sync + 'static {
     /// Whether nothing is extrapolated.
     const IS_EMPTY: bool = false;
-    /// Whether the sums are made at the foot of each wall particle, the nearest point of the surface, in place
-    /// of its own: [`crate::scene::Setting::feet`].
+    /// Whether the sums are made at the foot of each wall particle, the nearest point of the surface, in
+    /// place of its own: [`crate::scene::Setting::feet`].
     const FEET: bool = false;
     /// From a wall particle to its foot \[m\]; `()` where the sums do not need it.
     type Foot: Numbers;
