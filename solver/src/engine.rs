@@ -1,10 +1,10 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
 //! a state and then makes the pair sweeps.
 //!
-//! Five things stand between an integrator and a term: an [`Engine`] has particles and [`Equations`], the
-//! terms of the scene with their columns; a [`Sweep`] sums some of these terms, each a
-//! [`crate::terms::PairSum`], over neighbour lists. Code that need not know their types, here and in
-//! `sweep.rs`, sees `dyn Equations` and `dyn PairSweep`, and is compiled once, not for each scheme.
+//! Five things stand between an integrator and a term: an [`Engine`] has particles and `Equations`, the terms
+//! of the scene with their columns; a `Sweep` sums some of these terms, each a `PairSum`, over neighbour
+//! lists. Code that need not know their types, here and in `sweep.rs`, sees `dyn Equations` and
+//! `dyn PairSweep`, and is compiled once, not for each scheme.
 
 use std::mem::take;
 
@@ -270,7 +270,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
     }
 }
 
-/// Selects the foot of a wall particle, of which `first` is the number of the first.
+/// Selects the foot of a wall particle; `first` is the number of the first wall particle.
 fn at_feet<S, E: Extrapolation>(
     first: usize,
     feet: &[Vector2<f64>],

@@ -134,8 +134,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
 }
 
-/// A sum over neighbours from which an `O` follows: the rates of terms, or what walls extrapolate, or
-/// moments.
+/// A sum over neighbours from which an `O` follows: rates, an extrapolated state, or inverse moments.
 pub(crate) trait PairSum<O>: Sync {
     /// The derived data of a particle that the sum reads.
     type Derived: Numbers;
