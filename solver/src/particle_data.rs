@@ -135,13 +135,10 @@ pub struct Checkpoint<X = ()> {
 }
 
 impl<X: Numbers> Checkpoint<X> {
-    /// Checks that it is one of an integrator whose velocities lag, or do not, and which keeps earlier steps,
-    /// or does not.
-    pub(crate) fn check_memory(&self, lags: bool, keeps: bool) -> Result<(), &'static str> {
-        let (lag, past) = (self.lag != 0.0, !self.past.is_empty());
-        // Before the first step there is neither.
-        let is_of_it = if lags && keeps { lag == past } else { lag <= lags && past <= keeps };
-        if is_of_it { Ok(()) } else { Err("memory of another integrator") }
+    /// Checks that it is one of an integrator with the memory of this one; else says what is wrong.
+    pub(crate) fn check_memory(&self, of: &Self) -> Result<(), &'static str> {
+        let is_whole = (self.lag, self.past.len()) == (of.lag, of.past.len());
+        if is_whole { Ok(()) } else { Err("memory of another integrator") }
     }
 
     /// Checks that it is stored in the way in which a simulation stores it; else says what is wrong.
@@ -366,7 +363,7 @@ impl<X: Numbers> ParticleData<X> {
         if from.built_at != self.neighbours.built_at || !ids.eq(self.fixed.iter().map(|f| f.id)) {
             return Err("particles of another reference");
         }
-        from.check_memory(false, false)?;
+        from.check_memory(&self.without_memory())?;
         self.put(&from.particles);
         self.progress = from.progress;
         Ok(())

@@ -228,6 +228,9 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     }
     fn restore(&mut self, from: &Checkpoint<S::Extra>) -> Result<(), &'static str> {
         let memory = MemoryOf::<S>::at(from)?;
+        let mut taken = self.engine.data.without_memory();
+        memory.save(&mut taken);
+        from.check_memory(&taken)?;
         self.engine.restore(from)?;
         self.memory = memory;
         Ok(())

@@ -88,74 +88,53 @@ fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Fn(usize, &mut Evolved<X>, &
 
 /// Velocities that are behind the other quantities.
 #[derive(Default)]
-pub(super) struct Staggered {
+pub struct Staggered {
     /// By how much \[s\]; 0 before the first step.
-    pub lag: f64,
+    pub(super) lag: f64,
     /// The velocities of the fluid as they were before they were synchronised, until the next step \[m/s\].
     held: Vec<Vector2<f64>>,
 }
 
 impl Staggered {
-    /// Velocities that are behind by this time \[s\].
-    pub fn by(lag: f64) -> Self {
-        Self { lag, held: Vec::new() }
-    }
-
     /// Gives the state back the velocities that were held, if any were.
-    pub fn release<X>(&mut self, state: &mut [Evolved<X>]) {
+    pub(super) fn release<X>(&mut self, state: &mut [Evolved<X>]) {
         for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
             evolved.velocity = velocity;
         }
     }
 
     /// The lag of velocities that are not synchronised yet \[s\], which are held from now on.
-    pub fn hold<X>(&mut self, fluid: &[Evolved<X>]) -> KickTimes {
+    pub(super) fn hold<X>(&mut self, fluid: &[Evolved<X>]) -> KickTimes {
         self.held.extend(fluid.iter().map(|evolved| evolved.velocity));
         KickTimes { velocity: self.lag, position: 0.0 }
     }
 
     /// Whether velocities are behind.
-    pub fn is_behind(&self) -> bool {
+    pub(super) fn is_behind(&self) -> bool {
         self.lag != 0.0 && self.held.is_empty()
     }
+}
 
-    pub fn save<X>(&self, to: &mut Checkpoint<X>) {
+impl<X: Numbers> Memory<X> for Staggered {
+    fn save(&self, to: &mut Checkpoint<X>) {
         to.lag = self.lag;
         for ((_, particle), velocity) in to.particles.iter_mut().zip(&self.held) {
             particle.velocity = *velocity;
         }
     }
 
-    pub fn bytes(&self) -> usize {
-        self.held.capacity() * size_of::<Vector2<f64>>()
-    }
-}
-
-/// The memory of a [`Leapfrog`] whose kicks have the memory `M`.
-#[derive(Default)]
-pub struct LeapfrogMemory<M> {
-    staggered: Staggered,
-    kick: M,
-}
-
-impl<X: Numbers, M: Memory<X>> Memory<X> for LeapfrogMemory<M> {
-    fn save(&self, to: &mut Checkpoint<X>) {
-        self.staggered.save(to);
-    }
-
     fn at(from: &Checkpoint<X>) -> Result<Self, &'static str> {
-        from.check_memory(true, false)?;
-        Ok(Self { staggered: Staggered::by(from.lag), kick: M::default() })
+        Ok(Self { lag: from.lag, held: Vec::new() })
     }
 
     fn bytes(&self) -> usize {
-        self.staggered.bytes() + self.kick.bytes()
+        self.held.capacity() * size_of::<Vector2<f64>>()
     }
 }
 
 impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     const NAME: &'static str = K::NAME;
-    type Memory = LeapfrogMemory<K::Memory>;
+    type Memory = (Staggered, K::Memory);
 
     fn step(
         engine: &mut Engine<P>,
@@ -163,7 +142,7 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         state: &mut State<P>,
         dt: f64,
     ) -> Stepped {
-        let LeapfrogMemory { staggered, kick } = memory;
+        let (staggered, kick) = memory;
         staggered.release(state);
         engine.begin(state)?;
         let half = 0.5 * dt;
@@ -181,7 +160,7 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         memory: &mut Self::Memory,
         state: &mut State<P>,
     ) -> Stepped {
-        let LeapfrogMemory { staggered, kick } = memory;
+        let (staggered, kick) = memory;
         if staggered.is_behind() {
             engine.begin(state)?;
             let times = staggered.hold(&state[..engine.data.fluid_count()]);
