@@ -1,7 +1,7 @@
 //! A case of its own in one file: the decay of a shear wave in a periodic box.
 
 use base::{functions::*, record::*};
-use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate::*, table};
+use harness::{case::*, composed::*, declare::*, method::*, problem::Simple, table};
 use nalgebra::Vector2;
 use solver::*;
 use std::f64::consts::TAU;
@@ -20,29 +20,26 @@ base::settings! {
 const ERROR: MetricKey = MetricKey::new("error", "-", "|a/exp(-ν(2π)²t) - 1|, a = 2 mean(u sin)");
 type Flow<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
 
-fn rules(method: &Method, s: &Decay) -> Result<Rules, RunError> {
-    let medium = medium(method, s);
+fn pose(method: &Method, s: &Decay) -> Result<Simple, RunError> {
+    let (n, end, dx) = (s.n, s.end, 1.0 / s.n as f64);
+    let medium = method.medium(Tait::new(1.0, 1.0), [dx, 1.3 * dx]);
+    let medium = Medium { nu: 0.01, eta2_over_h2: 1e-6, ..medium };
     let limits = method.limits([1.3, 1e-6], 32, &medium.waves(&method.uses));
-    Ok(Rules { step: Step::share(s.step, &limits), limits, sound_speed: 1.0, end: s.end })
-}
-
-fn medium(method: &Method, s: &Decay) -> Medium {
-    let (dx, eos) = (1.0 / s.n as f64, Tait::new(1.0, 1.0));
-    Medium { nu: 0.01, eta2_over_h2: 1e-6, ..method.medium(eos, [dx, 1.3 * dx]) }
-}
-
-fn run(m: &Method, s: &Decay, context: &Context) -> Result<Record, RunError> {
-    let (medium, dt, dx) = (medium(m, s), rules(m, s)?.dt(), 1.0 / s.n as f64);
-    let wave = |x: Vector2<f64>| Vector2::new(1e-3 * sin(TAU * x.y), 0.0);
-    let places = lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n);
-    let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
-    let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
-    let mut record = begin(m, &[(PLANNED_DT, dt)], context);
-    let all = simulate(m, parts, [dt, s.end], context, &mut record)?.particles();
-    let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
-    let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;
-    record.put(ERROR, (amplitude / exp(-0.01 * TAU * TAU * s.end) - 1.0).abs());
-    Ok(record)
+    let rules = Rules { step: Step::share(s.step, &limits), limits, sound_speed: 1.0, end };
+    let scene = move || {
+        let wave = |x: Vector2<f64>| Vector2::new(1e-3 * sin(TAU * x.y), 0.0);
+        let places = lattice(Vector2::repeat(0.5 * dx), dx, n, n);
+        let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
+        Ok(Parts::new(medium, Domain::torus(1.0, 1.0), particles))
+    };
+    let measure = move |now: &dyn Stepper<()>, record: &mut Record| {
+        let all = now.particles();
+        let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
+        let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;
+        record.put(ERROR, (amplitude / exp(-0.01 * TAU * TAU * end) - 1.0).abs());
+    };
+    let size = ((n * n) as f64, "n, step or end");
+    Ok(Simple::new(method, (medium, rules), size, &[], scene, measure))
 }
 
 fn declaration(tier: Tier) -> Declaration {
@@ -68,7 +65,7 @@ pub const DECAY: Composed<Decay> = Composed {
     recommended: Recommended { variant: "quintic", because: "its error is smaller", papers: None },
     about: "A shear wave in a periodic box decays as exp(-ν(2π)²t).",
     variants: || {
-        Variants::of(run, rules)
+        Variants::of(pose)
             .with("cubic", "cubic spline", Method::of::<Flow<CubicSpline>>(), |_| {})
             .with("quintic", "quintic spline", Method::of::<Flow<QuinticSpline>>(), |_| {})
             .all

@@ -12,7 +12,7 @@ use harness::{
     case::{self, Case},
     context::Context,
     method::{Method, Properties},
-    simulate::{INTEGRATOR, KERNEL, WALLS},
+    problem::{INTEGRATOR, KERNEL, WALLS},
 };
 use maths::theory::time_step::Integrator;
 use nalgebra::DVector;
@@ -48,11 +48,11 @@ fn setup(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) -> Setu
     let [h_over_dx, eta2_over_h2] = smoothing(method.kernel);
     let s = ChannelSettings { re: 1e-9, rows, h_over_dx, eta2_over_h2, ..Default::default() };
     let s = ChannelSettings { wall_curvature, ..s };
-    Setup::new(flow, &s, method, &Context::default()).expect("settings")
+    Setup::new(flow, &s, method).expect("settings")
 }
 
 fn simulation(method: &Method, setup: &Setup) -> Box<dyn Stepper<()>> {
-    (method.build)(setup.parts(method, &Context::default())).expect("a scene")
+    (method.build)(setup.parts()).expect("a scene")
 }
 
 /// What the matrix calls the walls of a setup.
@@ -309,8 +309,7 @@ fn check_variant(case: &dyn Case, variant: &str, flow: Flow) {
         Some("super-leapfrog") => (Integrator::SuperLeapfrog, stiff),
         _ => (Integrator::PredictorCorrector, plain),
     };
-    let context = Context::of_rules();
-    let setup = Setup::new(flow, &settings, &method, &context).expect(&name);
+    let setup = Setup::new(flow, &settings, &method).expect(&name);
     let model = matrix_of(&record, &setup);
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in TIMES.into_iter().filter(|tau| *tau <= settings.end) {

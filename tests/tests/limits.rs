@@ -23,7 +23,8 @@ fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, 
             *driven.lock().unwrap() = progress.dt;
         }
     };
-    let context = Context { progress: Some(&show), interrupt: Some(&stop), ..Context::of_rules() };
+    let (progress, interrupt) = (Some(&show as _), Some(&stop));
+    let context = Context { progress, interrupt, allow_long: true, ..Context::default() };
     let spec = case::spec(case, variant, &[]).unwrap().allow_unstable();
     let spec = RunSpec { mutation: fault, ..spec };
     let record = case.run(&spec, &context).unwrap();

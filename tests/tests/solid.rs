@@ -456,7 +456,7 @@ fn collision(method: &Method<Symmetric>, xi: f64, turn: Rotation2<f64>) -> Vec<S
         exponent: N,
         ..method.medium(Tait::new(1.0, 1.0), [1.0, 1.5])
     };
-    let parts = Parts::new(medium, Domain::open(), particles, &Context::default());
+    let parts = Parts::new(medium, Domain::open(), particles);
     let mut simulation = (method.build)(parts).unwrap();
     assert_eq!(simulation.advance(30.0, 0.3, &mut ()), Outcome::Reached);
     simulation.particles()

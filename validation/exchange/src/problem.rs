@@ -9,10 +9,9 @@ use base::{
 };
 use harness::{
     case::{self, Case, RunError, Tier},
-    context::Context,
     declare::{Curve, Declaration, Fact},
     method::{Knob, Medium, Properties},
-    outline::{Outline, Sink},
+    outline::Outline,
     plan,
     relation::Relation,
     sealed,
@@ -212,9 +211,8 @@ impl Problem {
         relation: Option<Relation>,
         allow_long: bool,
     ) -> Result<Self, RunError> {
-        let sink = Sink::of(relation, false);
-        let context = Context { outline: Some(sink.clone()), allow_long, ..Context::default() };
-        let (outline, method) = sink.of_run(case.run(&spec, &context), case.name())?;
+        let outline = case.pose(&spec)?.outline(&spec, relation, allow_long)?;
+        let method = outline.method.clone();
         let Declaration { posed, curve, stepwise, of_methods, costly, .. } =
             case.declaration(Tier::Quick);
         let ours = [stepwise, of_methods, costly].concat();

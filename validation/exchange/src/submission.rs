@@ -15,7 +15,6 @@ use base::{
 };
 use harness::{
     case::{Case, RunError, Tier},
-    context::Context,
     medium::Medium,
     outline::{Outline, role},
     playback::{self, Fill, Frame, Own, Placed, Playback},
@@ -559,12 +558,8 @@ impl Entry {
         problem: &Problem,
     ) -> Result<Record, RunError> {
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
-        let measured = |fill: Fill| {
-            let playback = self.playback(problem, fill);
-            let context =
-                Context { playback: Some(&playback), allow_long: true, ..Context::default() };
-            case.run(&ours, &context)
-        };
+        let measured =
+            |fill: Fill| case.pose(&ours)?.measure_frames(&ours, &self.playback(problem, fill));
         let fill = Fill { density: problem.outline.medium.eos.density, ..Fill::default() };
         let mut record = measured(fill)?;
         for (column, other) in self.not_given(problem, fill) {

@@ -3,8 +3,13 @@
 
 use base::{gate::*, mutation::Constant, record::*, reference::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
-    simulate, table,
+    case::*,
+    composed::*,
+    declare::*,
+    method::*,
+    pictures,
+    problem::{Asked, Brief, Calls, Problem},
+    table,
 };
 use maths::metrics::norms::rms;
 use nalgebra::{SMatrix, SVector, Vector2};
@@ -52,7 +57,7 @@ fn variants() -> Compositions<Cavity> {
     let consistent = "carried with sums that are exact for linear fields, as in the vortices";
     let strong: fn(&mut Cavity) = |s| s.shift = 3.0;
     let old: fn(&mut Cavity) = |s| (s.h_over_dx, s.eta2_over_h2, s.courant) = (1.2, 0.01, 0.25);
-    Variants::of(run, |m, s| Ok(flow(s, m, &Context::of_rules())?.rules))
+    Variants::of(Closed::new)
         .with("seed", seed, flow::cavity_seed(), old)
         .with("modern", modern, flow::cavity_modern(), |_| {})
         .with("carried", carried, flow::cavity_carried(), strong)
@@ -80,8 +85,20 @@ pub static CASE: Composed<Cavity> = Composed {
     plan: |tier| table(tier).plan(),
 };
 
-fn flow(s: &Cavity, m: &Method, context: &Context) -> Result<UnitFlow, RunError> {
-    s.flow(m, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: None }, context)
+/// The numbers of one run.
+struct Closed {
+    settings: Cavity,
+    method: Method,
+    flow: UnitFlow,
+    places: Vec<Place>,
+}
+
+impl Closed {
+    fn new(method: &Method, s: &Cavity) -> Result<Self, RunError> {
+        let flow = s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: None });
+        let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
+        Ok(Self { settings: s.clone(), method: method.clone(), flow, places })
+    }
 }
 
 /// Fluid at rest on a lattice, and walls on the same lattice. All that is above the lid moves with it: it is
@@ -167,40 +184,66 @@ fn measure(places: &[Place], means: &[f64], record: &mut Record) {
     record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
 }
 
-fn run(m: &Method, s: &Cavity, context: &Context) -> Result<Record, RunError> {
-    let flow = flow(s, m, context)?;
-    let (dx, eos, start) = (flow.medium.dx, flow.medium.eos, particles(m, &flow));
-    let volume = start.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum::<f64>();
-    let parts = flow.parts(Domain::open(), start, context);
-    let numbers = flow.rules.numbers([s.h_over_dx, dx]);
-    let mut record = simulate::begin(m, &numbers, context);
-    let mut simulation = (m.build)(parts)?;
-    let time = |k: usize| s.end * (0.8 + 0.2 * k as f64 / SAMPLES as f64);
-    let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
-    let times: Vec<f64> = (1..=SAMPLES).map(time).collect();
-    let mut means = vec![0.0; places.len()];
-    Drive::new(&mut *simulation, flow.rules.dt(), &times, eos, &mut means)
-        .at("mid-lines", &|means, simulation, _| {
-            let particles = simulation.particles();
-            for (mean, place) in means.iter_mut().zip(&places) {
+/// Means of the velocity at the places of the mid-lines.
+struct Means {
+    means: Vec<f64>,
+    /// Σ m of the fluid at the start, whose density is 1.
+    volume: f64,
+}
+
+harness::observed! { Means: changes(means, volume), stays() }
+
+impl Problem for Closed {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Means;
+    const READS_START: bool = true;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        self.flow.brief()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let time = |k: usize| self.settings.end * (0.8 + 0.2 * k as f64 / SAMPLES as f64);
+        (1..=SAMPLES).map(time).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.flow.parts(Domain::open(), particles(&self.method, &self.flow)))
+    }
+
+    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Means {
+        let fluid = start.iter().filter(|p| p.role == Role::Fluid);
+        Means { means: vec![0.0; self.places.len()], volume: fluid.map(|p| p.mass).sum() }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("mid-lines", |cavity, Means { means, .. }, s, _, _| {
+            let (particles, dx) = (s.particles(), cavity.flow.medium.dx);
+            for (mean, place) in means.iter_mut().zip(&cavity.places) {
                 *mean += velocity(place, &particles, dx) / SAMPLES as f64;
             }
         })
-        .run(context)?
-        .put(&mut record);
-    let mut all = simulation.particles();
-    if record.status == Status::Completed {
-        measure(&places, &means, &mut record);
-        all.retain(|p| p.role == Role::Fluid);
-        record.put(VOLUME, all.iter().map(|p| p.mass / p.density).sum::<f64>() / volume - 1.0);
-        let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
-        record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
     }
-    if context.spec.keep.particles {
-        let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
-        pictures::keep(&mut record, pictures::END, "L", ("speed", "U"), speeds);
+
+    fn measure(&self, Means { means, volume }: Means, end: &dyn Stepper<()>, record: &mut Record) {
+        let mut all = end.particles();
+        if record.status == Status::Completed {
+            measure(&self.places, &means, record);
+            all.retain(|p| p.role == Role::Fluid);
+            record.put(VOLUME, all.iter().map(|p| p.mass / p.density).sum::<f64>() / volume - 1.0);
+            let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
+            record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
+        }
+        if Asked::of(record).particles {
+            let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
+            pictures::keep(record, pictures::END, "L", ("speed", "U"), speeds);
+        }
     }
-    Ok(record)
 }
 
 type Row = table::Row<Cavity, f64>;
@@ -345,7 +388,7 @@ mod tests {
     fn setup() -> (Method, UnitFlow) {
         let settings = CASE.chosen(RECOMMENDED, |s| s.n = 20);
         let method = flow::cavity_consistent();
-        let flow = flow(&settings, &method, &Context::of_rules()).expect("settings");
+        let Closed { flow, .. } = Closed::new(&method, &settings).expect("settings");
         (method, flow)
     }
 

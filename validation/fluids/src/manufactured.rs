@@ -4,15 +4,15 @@
 use base::{gate::*, record::*};
 use harness::orders::{self, Line, Refinement};
 use harness::{
-    case::*, composed::*, context::Context, convergence::Level, declare::Declaration, method::*,
-    runs::Runs, simulate, study::Study, table,
+    case::*, composed::*, convergence::Level, declare::Declaration, method::*, problem::Simple,
+    runs::Runs, study::Study, table,
 };
 use maths::{exact::manufactured, metrics::norms::rms};
 use nalgebra::Vector2;
 use schemes::flow;
 use solver::*;
 
-use crate::unit_flow::{Scales, UnitFlow, unit_settings};
+use crate::unit_flow::{DECISIVE, Scales, UnitFlow, unit_settings};
 
 unit_settings! {
     /// Settings of the manufactured flow. L = U = ρ = 1.
@@ -49,7 +49,7 @@ fn variants() -> Compositions<ManufacturedSettings> {
     let of_seed = "the paper's terms, kernel and predictor-corrector: what order have they?";
     let of_modern = "quintic spline, leapfrog, density diffusion, shifting: what order have they?";
     let of_consistent = "modern with sums that are exact for linear fields: what order have they?";
-    Variants::of(run, |m, s| Ok(flow(s, m, &Context::of_rules())?.rules))
+    Variants::of(pose)
         .with(SEED[0], of_seed, flow::manufactured_seed(), seed)
         .with(SEED[1], of_seed, flow::manufactured_seed_interface(), seed)
         .with(MODERN[0], of_modern, flow::manufactured_modern(), |_| {})
@@ -93,12 +93,12 @@ base::metrics! {
 /// More than the largest of each part of the force, in its own unit: 2π, and 6π² and the pressure.
 const MOST: [f64; 2] = [7.0, 80.0];
 
-fn flow(s: &ManufacturedSettings, m: &Method, context: &Context) -> Result<UnitFlow, RunError> {
+fn flow(s: &ManufacturedSettings, m: &Method) -> UnitFlow {
     let nu = 1.0 / s.re;
     let force = MOST[0] + MOST[1] * nu;
-    let mut flow = s.flow(m, Scales { speed: 1.0, force, area: 1.0, dt: None }, context)?;
+    let mut flow = s.flow(m, Scales { speed: 1.0, force, area: 1.0, dt: None });
     flow.medium.acceleration = Vector2::new(1.0, nu);
-    Ok(flow)
+    flow
 }
 
 /// Fluid at rest with the exact pressure, and rows of particles on and behind walls of particles.
@@ -122,20 +122,23 @@ fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
     fluid.chain(wall.flat_map(|(y, role)| row(y, role))).collect()
 }
 
-fn run(method: &Method, s: &ManufacturedSettings, context: &Context) -> Result<Record, RunError> {
-    let flow = flow(s, method, context)?;
-    let mirror = |y, normal| PlaneWall::new(Vector2::new(0.0, y), normal, Vector2::zeros());
-    let mut parts = flow.parts(Domain::channel(1.0), particles(method, &flow), context);
-    parts.outline = None; // no format of export states a force that depends on the place
-    parts.mirrors = vec![mirror(0.0, Vector2::y()), mirror(1.0, -Vector2::y())];
-    let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
-    let mut record = simulate::begin(method, &numbers, context);
-    let steps = [flow.rules.dt(), s.end];
-    let simulation = simulate::simulate(method, parts, steps, context, &mut record)?;
-    if record.status == Status::Completed {
-        measure(&flow.medium, &simulation.particles(), &mut record);
-    }
-    Ok(record)
+fn pose(m: &Method, s: &ManufacturedSettings) -> Result<Simple, RunError> {
+    let (flow, method) = (flow(s, m), m.clone());
+    let (medium, rules, particles) = (flow.medium, flow.rules, flow.particles);
+    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
+    let scene = move || {
+        let mirror = |y, normal| PlaneWall::new(Vector2::new(0.0, y), normal, Vector2::zeros());
+        let mirrors = vec![mirror(0.0, Vector2::y()), mirror(1.0, -Vector2::y())];
+        let particles = self::particles(&method, &flow);
+        Ok(Parts { mirrors, ..flow.parts(Domain::channel(1.0), particles) })
+    };
+    let at_end = move |end: &dyn Stepper<()>, record: &mut Record| {
+        measure(&medium, &end.particles(), record);
+    };
+    let size = (particles, DECISIVE);
+    let mut run = Simple::new(m, (medium, rules), size, &numbers, scene, at_end);
+    run.not_exported = Some("its force depends on the place, which no format states");
+    Ok(run)
 }
 
 fn measure(Medium { eos, nu, .. }: &Medium, particles: &[Particle], record: &mut Record) {
@@ -247,6 +250,7 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 mod tests {
     use base::mutation::{Constant, Mutation};
     use base::spec::RunSpec;
+    use harness::context::Context;
     use harness::runs::Judged;
 
     use super::*;
@@ -271,7 +275,7 @@ mod tests {
     fn what_was_done_to_an_exact_flow_is_measured_and_an_offset_of_the_pressure_is_none() {
         let settings = CASE.chosen("consistent", |s| s.n = 16);
         let method = flow::manufactured_consistent();
-        let flow = flow(&settings, &method, &Context::of_rules()).expect("settings");
+        let flow = flow(&settings, &method);
         let Medium { eos, nu, .. } = flow.medium;
         let measured = |share: [f64; 2], offset: f64| {
             let mut all = particles(&method, &flow);
@@ -305,7 +309,7 @@ mod tests {
             (SEED[1], flow::manufactured_seed_interface()),
         ] {
             let settings = CASE.chosen(variant, |s| s.n = 16);
-            let flow = flow(&settings, &method, &Context::of_rules()).expect("settings");
+            let flow = flow(&settings, &method);
             let dx = flow.medium.dx;
             let all = particles(&method, &flow);
             let lowest = all.iter().map(|p| p.position.y).fold(0.0, f64::min);

@@ -2,7 +2,7 @@
 
 use base::{gate::*, record::*};
 use harness::table::{Row, Table};
-use harness::{case::*, composed::*, context::Context, declare::*, method::*, simulate};
+use harness::{case::*, composed::*, declare::*, method::*, problem::Simple};
 use maths::exact::TaylorCouette;
 use maths::geometry::{Curve, Row as Particles};
 use maths::metrics::norms::l2;
@@ -66,7 +66,7 @@ struct Cylinders {
 }
 
 impl Cylinders {
-    fn new(s: &CylinderSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
+    fn new(method: &Method, s: &CylinderSettings) -> Result<Self, RunError> {
         let dx = s.gap / s.layers as f64;
         let (h, speed) = (s.h_over_dx * dx, s.re * s.nu / s.gap);
         let inner = s.gap / (s.ratio - 1.0);
@@ -86,8 +86,6 @@ impl Cylinders {
             let (what, setting) = ("the support over the inner radius", "ratio or layers");
             return Err(RunError::TooMuch { what, value: share, most: 1.0, setting });
         }
-        let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
-        simulate::check(method, &medium, &rules, area / (dx * dx), DECISIVE, context)?;
         Ok(Self { settings: s.clone(), flow, medium, rules })
     }
 
@@ -111,19 +109,18 @@ impl Cylinders {
     }
 }
 
-fn run(method: &Method, s: &CylinderSettings, context: &Context) -> Result<Record, RunError> {
-    let cylinders = Cylinders::new(s, method, context)?;
-    let common = cylinders.rules.numbers([s.h_over_dx, cylinders.medium.dx]);
-    let numbers = [&common[..], &[("V [m/s]", cylinders.flow.speed)]].concat();
-    let particles = cylinders.particles(method);
-    let parts = Parts::new(cylinders.medium, Domain::open(), particles, context);
-    let mut record = simulate::begin(method, &numbers, context);
-    let until = [cylinders.rules.dt(), cylinders.rules.end];
-    let simulation = simulate::simulate(method, parts, until, context, &mut record)?;
-    if record.status == Status::Completed {
-        measure(&cylinders.flow, &simulation.particles(), &mut record);
-    }
-    Ok(record)
+fn pose(method: &Method, s: &CylinderSettings) -> Result<Simple, RunError> {
+    let (cylinders, m) = (Cylinders::new(method, s)?, method.clone());
+    let Cylinders { medium, rules, flow, .. } = cylinders;
+    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
+    let numbers = [&numbers[..], &[("V [m/s]", flow.speed)]].concat();
+    let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
+    let size = (area / (medium.dx * medium.dx), DECISIVE);
+    let scene = move || Ok(Parts::new(medium, Domain::open(), cylinders.particles(&m)));
+    let at_end = move |end: &dyn Stepper<()>, record: &mut Record| {
+        measure(&flow, &end.particles(), record);
+    };
+    Ok(Simple::new(method, (medium, rules), size, &numbers, scene, at_end))
 }
 
 fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
@@ -153,7 +150,7 @@ fn variants() -> Compositions<CylinderSettings> {
         "interface and wall particles (section 4.2 of the paper) on and behind both cylinders";
     let extrapolating =
         "wall particles behind both cylinders that extrapolate velocity and pressure";
-    Variants::of(run, |m, s| Ok(Cylinders::new(s, m, &Context::of_rules())?.rules))
+    Variants::of(pose)
         .with(INTERFACE, interface, flow::cylinders_interface(), |_| {})
         .with(EXTRAPOLATING, extrapolating, flow::cylinders_extrapolating(), |_| {})
         .all
@@ -325,7 +322,7 @@ mod tests {
     fn speed_radii_and_end_follow_from_the_settings() {
         let method = flow::cylinders_interface();
         let settings = CylinderSettings { end: 0.5, ratio: 3.0, ..CylinderSettings::default() };
-        let cylinders = Cylinders::new(&settings, &method, &Context::of_rules()).expect("a flow");
+        let cylinders = Cylinders::new(&method, &settings).expect("a flow");
         assert_relative_eq!(cylinders.flow.speed, 0.5e-3, max_relative = 1e-12);
         assert_relative_eq!(cylinders.flow.inner, 0.5e-3, max_relative = 1e-12);
         assert_relative_eq!(cylinders.flow.outer, 1.5e-3, max_relative = 1e-12);

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use solver::{Domain, Limits, Particle, Tait};
 
-use harness::{case::*, context::Context, method::*, simulate};
+use harness::{case::*, method::*, problem::Brief};
 
 /// What a case adds to its settings.
 #[derive(Clone, Copy, Debug)]
@@ -28,44 +28,52 @@ pub struct UnitFlow {
     pub support: f64,
     /// Time step, its theoretical limit on a lattice at rest, sound speed.
     pub rules: Rules,
+    /// About how many particles there are.
+    pub particles: f64,
+    /// h/dx as it is set: h over dx differs from it by round-off.
+    h_over_dx: f64,
     speed: f64,
     skin: f64,
 }
 
 /// The settings on which time and memory of a run depend.
-const DECISIVE: &str = "end, courant, c0 or n";
+pub const DECISIVE: &str = "end, courant, c0 or n";
 /// Particles of the box whose waves give the limit of dt: even, so that it has the stiffest ones.
 pub const LIMIT_BOX: usize = 32;
 
 impl UnitFlow {
     /// A medium with Courant and viscous number of the time step, skin \[h\] and end \[s\].
-    ///
-    /// # Errors
-    /// If the step is not stable, or the run takes too long.
     pub fn new(
         method: &Properties,
         medium: Medium,
-        [courant, viscous, skin, end]: [f64; 4],
+        [h_over_dx, courant, viscous, skin, end]: [f64; 5],
         Scales { speed, force, area, dt }: Scales,
-        context: &Context,
-    ) -> Result<Self, RunError> {
+    ) -> Self {
         let Medium { h, dx, nu, eta2_over_h2, eos: Tait { sound_speed, .. }, .. } = medium;
         let step = Step::courant(courant, h, [sound_speed, speed]).viscous(viscous, h, nu);
         let waves = medium.waves(&method.uses);
         let limits = method.limits([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
         let (step, limits) = (step.or_given(dt), limits.moving(h, speed, force));
         let rules = Rules { step, limits, sound_speed, end };
-        simulate::check(method, &medium, &rules, area / (dx * dx), DECISIVE, context)?;
         let medium = Medium { acceleration: Vector2::new(force, 0.0), ..medium };
-        Ok(Self { medium, support: method.support * h, rules, speed, skin: skin * h })
+        let particles = area / (dx * dx);
+        let (support, skin) = (method.support * h, skin * h);
+        Self { medium, support, rules, particles, h_over_dx, speed, skin }
+    }
+
+    /// What is known of its run before the particles are made.
+    pub fn brief(&self) -> Brief {
+        let dx = self.medium.dx;
+        Brief::new(self.medium, self.rules, self.particles, DECISIVE)
+            .numbers(&self.rules.numbers([self.h_over_dx, dx]))
     }
 
     /// The scene of these particles.
-    pub fn parts(&self, domain: Domain, particles: Vec<Particle>, context: &Context) -> Parts {
+    pub fn parts(&self, domain: Domain, particles: Vec<Particle>) -> Parts {
         // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
         let speed = 2.0 * (self.speed + self.rules.sound_speed);
         let limits = Limits { density: [0.7, 1.3], speed };
-        let parts = Parts::new(self.medium, domain, particles, context);
+        let parts = Parts::new(self.medium, domain, particles);
         Parts { skin: Some(self.skin), limits, ..parts }
     }
 }
@@ -103,8 +111,7 @@ macro_rules! unit_settings {
                 &self,
                 method: &harness::method::Properties,
                 scales: $crate::unit_flow::Scales,
-                context: &harness::context::Context,
-            ) -> Result<$crate::unit_flow::UnitFlow, harness::case::RunError> {
+            ) -> $crate::unit_flow::UnitFlow {
                 let (dx, nu) = (1.0 / self.n as f64, 1.0 / self.re);
                 let h = self.h_over_dx * dx;
                 let eos = solver::Tait {
@@ -114,8 +121,9 @@ macro_rules! unit_settings {
                 };
                 let medium = method.medium(eos, [dx, h]).set_by(self);
                 let medium = harness::method::Medium { nu, ..medium };
-                let numbers = [self.courant, self.viscous, self.skin, self.end];
-                $crate::unit_flow::UnitFlow::new(method, medium, numbers, scales, context)
+                let numbers =
+                    [self.h_over_dx, self.courant, self.viscous, self.skin, self.end];
+                $crate::unit_flow::UnitFlow::new(method, medium, numbers, scales)
             }
         }
     };

@@ -139,7 +139,8 @@ const LATE_GROWTH: f64 = 1.5;
 /// Watches an energy over a known number of steps.
 #[derive(Clone, Copy, Debug)]
 pub struct Growth {
-    start: f64,
+    /// Energy at the start.
+    pub start: f64,
     steps: u64,
     seen: u64,
     /// Sums over the second and the last quarter.

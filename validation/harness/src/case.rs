@@ -8,7 +8,7 @@ use base::{
 };
 use serde_json::Value;
 
-use crate::{context::Context, declare::Declaration};
+use crate::{context::Context, declare::Declaration, problem::Posed};
 pub use crate::{
     error::RunError,
     limits::Limits,
@@ -66,11 +66,25 @@ pub trait Case: Sync {
     fn fields(&self) -> &'static [Field];
     /// All settings of a variant with `key=value` texts applied, as the record states them.
     fn settings(&self, variant: &str, set: &[String]) -> Result<Value, RunError>;
-    /// One simulation with resolved settings.
+    /// A run of these settings, before its particles are made.
+    ///
+    /// # Errors
+    /// The first setting that no run can have.
+    fn pose(&self, spec: &RunSpec) -> Result<Box<dyn Posed>, RunError> {
+        Err(RunError::NoRules(spec.case.clone()))
+    }
+    /// Simulates a run.
+    ///
+    /// # Errors
+    /// If it is refused.
     fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError>;
     /// Time step and sound speed that follow from the settings of a run, without making any step.
+    ///
+    /// # Errors
+    /// As [`Case::pose`], or if the case states no rules.
     fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
-        Err(RunError::NoRules(spec.case.clone()))
+        let brief = self.pose(spec)?.brief();
+        if brief.is_limited { Ok(brief.rules) } else { Err(RunError::NoRules(spec.case.clone())) }
     }
     /// The declaration from which the studies common to all cases are made.
     fn declaration(&self, _tier: Tier) -> Declaration {

@@ -12,19 +12,19 @@ use base::{
 
 pub use crate::case::Recommended;
 use crate::{
-    case::{Case, Planned, Rules, RunError, Tier, Variant},
+    case::{Case, Planned, RunError, Tier, Variant},
     context::Context,
     declare::Declaration,
     deep::deepened,
     method::{Knob, Method},
+    problem::{Posed, Problem},
     rules::state_steps,
 };
 
 /// A method with settings, whatever their types.
 trait Setup {
     fn settings(&mut self) -> &mut dyn Values;
-    fn run(&self, context: &Context) -> Result<Record, RunError>;
-    fn rules(&self) -> Result<Rules, RunError>;
+    fn pose(&self) -> Result<Box<dyn Posed>, RunError>;
 }
 
 /// A variant: its name, its method, and its settings before `--set`.
@@ -43,16 +43,12 @@ pub struct Compositions<T> {
     settings: PhantomData<fn(T)>,
 }
 
-/// What runs any of some methods with settings.
-type RunBy<M, T> = dyn Fn(&M, &T, &Context) -> Result<Record, RunError>;
-
-/// What their rules choose from settings.
-type RulesBy<M, T> = dyn Fn(&M, &T) -> Result<Rules, RunError>;
+/// The run of any of some methods with settings.
+type PoseBy<M, T> = dyn Fn(&M, &T) -> Result<Box<dyn Posed>, RunError>;
 
 /// Variants that are run alike, one after another.
 pub struct Variants<T, M> {
-    run: Rc<RunBy<M, T>>,
-    rules: Rc<RulesBy<M, T>>,
+    pose: Rc<PoseBy<M, T>>,
     /// Those so far.
     pub all: Compositions<T>,
 }
@@ -61,8 +57,7 @@ pub struct Variants<T, M> {
 struct Alike<T, M> {
     method: M,
     settings: T,
-    run: Rc<RunBy<M, T>>,
-    rules: Rc<RulesBy<M, T>>,
+    pose: Rc<PoseBy<M, T>>,
 }
 
 impl<T: Settings, M> Setup for Alike<T, M> {
@@ -70,23 +65,18 @@ impl<T: Settings, M> Setup for Alike<T, M> {
         &mut self.settings
     }
 
-    fn run(&self, context: &Context) -> Result<Record, RunError> {
-        (self.run)(&self.method, &self.settings, context)
-    }
-
-    fn rules(&self) -> Result<Rules, RunError> {
-        (self.rules)(&self.method, &self.settings)
+    fn pose(&self) -> Result<Box<dyn Posed>, RunError> {
+        (self.pose)(&self.method, &self.settings)
     }
 }
 
 impl<T: Settings, M: 'static> Variants<T, M> {
-    /// An empty list of variants: what runs each method with settings, and what the rules choose from these.
-    pub fn of(
-        run: impl Fn(&M, &T, &Context) -> Result<Record, RunError> + 'static,
-        rules: impl Fn(&M, &T) -> Result<Rules, RunError> + 'static,
+    /// An empty list of variants: the run of each method with settings.
+    pub fn of<P: Problem + 'static>(
+        pose: impl Fn(&M, &T) -> Result<P, RunError> + 'static,
     ) -> Self {
         let all = Compositions { all: Vec::new(), settings: PhantomData };
-        Self { run: Rc::new(run), rules: Rc::new(rules), all }
+        Self { pose: Rc::new(move |m, s| Ok(Box::new(pose(m, s)?))), all }
     }
 
     /// Adds a variant that refuses settings: name and description, method, the names of those that it
@@ -99,8 +89,8 @@ impl<T: Settings, M: 'static> Variants<T, M> {
         lacks: Vec<&'static str>,
         adjust: fn(&mut T),
     ) -> Self {
-        let (run, rules) = (Rc::clone(&self.run), Rc::clone(&self.rules));
-        let mut setup = Box::new(Alike { method, settings: T::default(), run, rules });
+        let pose = Rc::clone(&self.pose);
+        let mut setup = Box::new(Alike { method, settings: T::default(), pose });
         adjust(&mut setup.settings);
         let (variant, changed) = (Variant { name, about }, String::new());
         self.all.all.push(Composition { variant, setup, lacks, changed });
@@ -183,7 +173,7 @@ impl Composition {
         // All settings in their usual form, those that the spec leaves out included.
         let settings = settings::to_json(self.setup.settings());
         let spec = RunSpec { settings, ..spec.clone() };
-        let made = self.setup.run(&Context { spec, ..context.clone() });
+        let made = self.setup.pose()?.simulate(&Context { spec, ..context.clone() });
         let mut record = made.map_err(|error| match error {
             RunError::Scene(scene) if !self.changed.is_empty() => {
                 RunError::SceneOf { set: self.changed, scene }
@@ -191,9 +181,7 @@ impl Composition {
             other => other,
         })?;
         state_steps(&mut record);
-        if context.playback.is_none() {
-            record.take_out(&|_, metric| !metric.value.is_finite(), &NO_NUMBER.into());
-        }
+        record.take_out(&|_, metric| !metric.value.is_finite(), &NO_NUMBER.into());
         Ok(record)
     }
 }
@@ -302,8 +290,8 @@ impl<T: Settings> Case for Composed<T> {
         Composition::of_run(self.name, (self.variants)().all, spec)?.run(spec, context)
     }
 
-    fn rules(&self, spec: &RunSpec) -> Result<Rules, RunError> {
-        Composition::of_run(self.name, (self.variants)().all, spec)?.setup.rules()
+    fn pose(&self, spec: &RunSpec) -> Result<Box<dyn Posed>, RunError> {
+        Composition::of_run(self.name, (self.variants)().all, spec)?.setup.pose()
     }
 
     fn declaration(&self, tier: Tier) -> Declaration {

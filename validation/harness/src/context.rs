@@ -1,4 +1,4 @@
-//! How a run is executed, apart from what it computes.
+//! How a run is executed, apart from its settings.
 
 use std::path::PathBuf;
 use std::sync::{
@@ -6,17 +6,12 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use base::{
-    record::Profile,
-    spec::{Measure, RunSpec},
-};
+use base::{record::Profile, spec::RunSpec};
 
 use crate::{
     checkpoint::Checkpoints,
     clock::{self, Reading},
     error::RunError,
-    outline::Sink,
-    playback::Playback,
     size::Size,
 };
 
@@ -48,9 +43,6 @@ pub struct Context<'a> {
     pub at_the_end: Option<&'a Mutex<Option<Profile>>>,
     /// Told what the run is estimated to take, before its first step.
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
-    /// Nothing but that estimate is asked for: the run ends as soon as it is told, before its particles are
-    /// made where their number is known before.
-    pub only_estimate: bool,
     /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Find out where the time goes.
@@ -59,10 +51,6 @@ pub struct Context<'a> {
     pub lost: Option<&'a (dyn Fn(&RunError) + Sync)>,
     /// Tells the time of a run with so many threads, by default [`clock::system`].
     pub clock: Option<&'a (dyn Fn(usize) -> Reading + Sync)>,
-    /// Where the problem of the run is put: then no step is made.
-    pub outline: Option<Sink>,
-    /// Frames of another code, which are measured in place of steps.
-    pub playback: Option<&'a Playback<'a>>,
     /// Told of the particles at each time at which the run is measured, when every quantity is at that time.
     pub at_times: Option<&'a (dyn Fn(f64, Profile) + Sync)>,
     /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.
@@ -72,11 +60,6 @@ pub struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Is all to be measured, whatever it costs?
-    pub fn measures_all(&self) -> bool {
-        self.spec.measure == Measure::All
-    }
-
     /// What time it is by the clocks of the run.
     pub fn now(&self) -> Reading {
         self.clock.unwrap_or(&clock::system)(self.threads)
@@ -90,12 +73,5 @@ impl Context<'_> {
     /// A frame or a checkpoint could not be written.
     pub(crate) fn lose(&self, error: &RunError) {
         self.lost.iter().for_each(|lost| lost(error));
-    }
-
-    /// The context for computing rules, which give the time step whether or not it is stable, and however
-    /// many there are.
-    pub fn of_rules() -> Self {
-        let spec = RunSpec::default().allow_unstable();
-        Self { spec, allow_long: true, ..Self::default() }
     }
 }

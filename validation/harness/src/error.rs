@@ -94,9 +94,9 @@ pub enum RunError {
         /// The settings on which this number depends.
         setting: &'static str,
     },
-    /// Only the problem of the run or its size was asked for, which was told.
-    #[error("no step was made: only the problem of the run or its size was asked for")]
-    Told,
+    /// A scene that no file can state for another code.
+    #[error("the case has no scene to export: {0}")]
+    NoScene(&'static str),
     /// A relation that is no symmetry of the scene.
     #[error("relation {} does not hold here: {reason}", .relation.name())]
     NoSymmetry {

@@ -31,6 +31,7 @@ pub mod outline;
 pub mod pictures;
 pub mod plan;
 pub mod playback;
+pub mod problem;
 pub mod profile;
 pub mod quantiles;
 pub mod relation;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::ops::AddAssign;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use base::{
@@ -24,6 +24,7 @@ use crate::{
     case::{self, Case, RunError},
     context::{self, Context},
     detect,
+    problem::Steps,
     runs::{Planned, Sorted, Tier, entry},
     size::Size,
     store::{Begun, Store},
@@ -222,18 +223,12 @@ pub fn time(spec: &RunSpec, size: &Size) -> f64 {
     if spec.task == Task::Simulate { size.seconds() } else { SIMULATIONS * size.seconds() }
 }
 
-/// The size of the simulation of a job, which ends as soon as it has told it.
+/// The size of the simulation of a job, unless it is refused.
 pub fn size(job: &Job, allow_long: bool) -> Option<Size> {
-    let told = OnceLock::new();
-    let tell = |size: &Size| {
-        let _ = told.set(*size); // once
-    };
-    let context =
-        Context { allow_long, estimate: Some(&tell), only_estimate: true, ..Context::default() };
     let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
     // What fails here fails again when it is made, and is told then.
-    let _ = catch_unwind(AssertUnwindSafe(|| job.case.run(&spec, &context)));
-    told.into_inner()
+    let size = || job.case.pose(&spec)?.size(&spec, Steps::All, allow_long);
+    catch_unwind(AssertUnwindSafe(size)).ok()?.ok()
 }
 
 /// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails
@@ -576,7 +571,7 @@ mod tests {
                     Ok(record)
                 }
                 Some("k=file") => Err(RunError::Reference("staged".into())),
-                Some("k=long") if !context.allow_long => Err(RunError::Told), // a refusal
+                Some("k=long") if !context.allow_long => Err(RunError::NoScene("staged")), // a refusal
                 _ => Ok(record),
             }
         }

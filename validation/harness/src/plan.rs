@@ -154,7 +154,7 @@ mod tests {
             Ok(json!({}))
         }
         fn run(&self, _: &RunSpec, _: &Context) -> Result<Record, RunError> {
-            Err(RunError::Told)
+            Err(RunError::NoScene("staged"))
         }
         fn plan(&self, tier: Tier) -> Vec<Planned> {
             let gate = |id: &str| Gate::new(id, "l2", Bound::Below(1.0), Evidence::Theory, "why");

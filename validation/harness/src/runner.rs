@@ -14,7 +14,6 @@ use crate::{
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
-    outline::Sink,
     playback::{self, Playback},
     profile::{self, Profiler},
     size::Size,
@@ -87,8 +86,7 @@ struct Course<'a> {
 }
 
 impl Course<'_> {
-    /// Steps a run through the times. [`simulate`](crate::simulate::simulate) has it compiled here for
-    /// fluids.
+    /// Steps a run through the times.
     fn run<X: Numbers>(&self, run: Running<X>, context: &Context) -> Result<Ended, RunError> {
         let (simulation, _) = run.parts();
         let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
@@ -100,31 +98,12 @@ impl Course<'_> {
         // Whoever is told of the particles keeps them, as text in the end.
         let told = context.at_times.map_or(0.0, |_| size.particles * self.times.len() as f64);
         let size = Size { sweeps: self.sweeps, samples: told, ..size };
-        check_size(size, "the end, the time step or the spacing", context)?;
+        let settings = "the end, the time step or the spacing";
+        check_size(size, f64::INFINITY, settings, context.allow_long)?;
         if let Some(tell) = context.estimate {
             tell(&size);
         }
-        if let Some(outline) = &context.outline {
-            return outlined(outline, simulation, (dt, self.times), &self.pressure, context);
-        }
-        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, &self.pressure));
-        let mut watch = Watch {
-            context,
-            course: self,
-            end,
-            shown: Instant::now(),
-            saved: context.now().wall,
-            frames: frames.transpose()?,
-            profiler: None,
-            cost: Cost { threads: context.threads.max(1), ..Cost::default() },
-            start: Reading::default(),
-            steps: 0,
-            reached: 0,
-            synchronises: true,
-        };
-        if let Some(playback) = context.playback {
-            return watch.play(run, playback);
-        }
+        let mut watch = self.watch(context)?;
         let ended = watch.go_on(run)?;
         let (simulation, _) = run.parts();
         if context.profile && ended.is_none() {
@@ -148,6 +127,26 @@ impl Course<'_> {
             *lock(at_the_end) = Some(columns);
         }
         Ok(ended)
+    }
+
+    /// The watch over a run that begins.
+    fn watch<'a>(&'a self, context: &'a Context<'a>) -> Result<Watch<'a>, RunError> {
+        let end = self.times.last().copied().unwrap_or_default();
+        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, &self.pressure));
+        Ok(Watch {
+            context,
+            course: self,
+            end,
+            shown: Instant::now(),
+            saved: context.now().wall,
+            frames: frames.transpose()?,
+            profiler: None,
+            cost: Cost { threads: context.threads.max(1), ..Cost::default() },
+            start: Reading::default(),
+            steps: 0,
+            reached: 0,
+            synchronises: true,
+        })
     }
 }
 
@@ -391,66 +390,35 @@ impl<X: Numbers> Observer<X> for Watching<'_, '_, X> {
 /// More time steps than this are refused, whatever is allowed.
 const MOST_STEPS: f64 = 1e10;
 
-/// Refuses a run that takes more time or memory than a run may, unless the context allows it, and more than
-/// 10¹⁰ time steps in any case.
+/// Refuses a run that takes more time or memory than a run may, unless that is allowed, and more than 10¹⁰
+/// time steps in any case. The size of the steps that are made, which may be fewer than the run has.
 ///
 /// # Errors
 /// What it would take, and the settings on which this depends.
-pub fn check_size(size: Size, settings: &'static str, context: &Context) -> Result<(), RunError> {
-    let all = size.steps;
-    let size = due(size, context);
-    if size.is_too_much() && !context.allow_long {
+pub fn check_size(
+    all: Size,
+    most_steps: f64,
+    settings: &'static str,
+    allow_long: bool,
+) -> Result<Size, RunError> {
+    let (steps, samples) = (all.steps.min(most_steps), all.samples.min(most_steps));
+    let size = Size { steps, samples, ..all };
+    if size.is_too_much() && !allow_long {
         return Err(RunError::TooLong { size, settings });
     }
-    if all.is_nan() || all > MOST_STEPS {
-        let (what, value, most) = ("the number of time steps", all, MOST_STEPS);
+    if all.steps.is_nan() || all.steps > MOST_STEPS {
+        let (what, value, most) = ("the number of time steps", all.steps, MOST_STEPS);
         return Err(RunError::TooMuch { what, value, most, setting: settings });
     }
-    if let (true, Some(tell)) = (context.only_estimate, context.estimate) {
-        tell(&size);
-        return Err(RunError::Told);
-    }
-    Ok(())
-}
-
-/// What of a run is done: no step if its problem alone is asked for or frames stand for its steps, and few if
-/// an observer sees it.
-fn due(size: Size, context: &Context) -> Size {
-    let steps = match &context.outline {
-        Some(outline) => outline.most_steps(),
-        None if context.playback.is_some() => 0.0,
-        None => return size,
-    };
-    Size { steps: size.steps.min(steps), samples: size.samples.min(steps), ..size }
-}
-
-/// Puts the outline of a run, and makes the few steps that another observer sees if there is one. Nothing of
-/// the case looks at them: it does not know what the observer sees. The run ends here, as an error.
-fn outlined<X: Numbers>(
-    outline: &Sink,
-    simulation: &mut dyn Stepper<X>,
-    (dt, times): (f64, &[f64]),
-    pressure: &dyn Fn(f64) -> f64,
-    context: &Context,
-) -> Result<Ended, RunError> {
-    let early = outline.early(dt)?;
-    let (dt, times) = early.as_ref().map_or((dt, times), |(dt, times)| (*dt, &times[..]));
-    outline.drive(simulation, times, dt, pressure);
-    for until in times.iter().filter(|_| outline.steps && !context.is_interrupted()) {
-        if simulation.advance(*until, dt, &mut ()) != Outcome::Reached {
-            break; // it diverged
-        }
-        if let Some(tell) = context.at_times {
-            tell(*until, frames::columns(&simulation.particles(), pressure));
-        }
-    }
-    Err(RunError::Told)
+    Ok(size)
 }
 
 /// A function that is called after every step with what is observed of the run.
-type AfterStep<'a, X, S> = &'a dyn Fn(&mut S, &dyn Stepper<X>) -> Flow;
+type AfterStep<'a, X, S> = Box<dyn Fn(&mut S, &dyn Stepper<X>) -> Flow + 'a>;
 /// A function that is called at the k-th of the times of interest.
-type At<'a, D, S> = &'a dyn Fn(&mut S, &mut D, usize);
+type At<'a, D, S> = Box<dyn Fn(&mut S, &mut D, usize) + 'a>;
+/// A function that is called when a run goes on from a checkpoint.
+type Resumed<'a, D, S> = Box<dyn Fn(&S, &mut D) + 'a>;
 
 /// What is observed of a run, and what is called of it after every step.
 struct Seeing<'a, X: Numbers, S> {
@@ -472,7 +440,7 @@ struct Run<'a, X: Numbers, D: ?Sized, S> {
     simulation: &'a mut D,
     seeing: Seeing<'a, X, S>,
     at: Vec<At<'a, D, S>>,
-    resumed: &'a dyn Fn(&S, &mut D),
+    resumed: Resumed<'a, D, S>,
 }
 
 impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
@@ -507,7 +475,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
         seen: &'a mut S,
     ) -> Self {
         let seeing = Seeing { seen, after_step: Vec::new() };
-        let run = Run { simulation, seeing, at: Vec::new(), resumed: &|_, _| {} };
+        let run = Run { simulation, seeing, at: Vec::new(), resumed: Box::new(|_, _| {}) };
         let (least, sweeps, after_step, at) = (1, 2.0, Vec::new(), Vec::new());
         let pressure = Box::new(move |density| eos.pressure(density));
         Self { run, course: Course { dt, least, sweeps, times, pressure, after_step, at } }
@@ -521,42 +489,48 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     }
 
     /// Calls a function after every step, beside those named before; a profile shows its time by this name.
-    pub fn after_step(mut self, name: &'static str, call: AfterStep<'a, X, S>) -> Self {
-        self.run.seeing.after_step.push(call);
+    pub fn after_step(
+        mut self,
+        name: &'static str,
+        call: impl Fn(&mut S, &dyn Stepper<X>) -> Flow + 'a,
+    ) -> Self {
+        self.run.seeing.after_step.push(Box::new(call));
         self.course.after_step.push(name);
         self
     }
 
-    /// The same if that is asked for: a run that does without has no such call.
-    pub fn after_step_if(self, is: bool, name: &'static str, call: AfterStep<'a, X, S>) -> Self {
-        if is { self.after_step(name, call) } else { self }
-    }
-
     /// Calls a function at each of the times, with its number, likewise.
-    pub fn at(mut self, name: &'static str, call: At<'a, D, S>) -> Self {
-        self.run.at.push(call);
+    pub fn at(mut self, name: &'static str, call: impl Fn(&mut S, &mut D, usize) + 'a) -> Self {
+        self.run.at.push(Box::new(call));
         self.course.at.push((name, true));
         self
     }
 
-    /// The same if that is asked for.
-    pub fn at_if(self, is: bool, name: &'static str, call: At<'a, D, S>) -> Self {
-        if is { self.at(name, call) } else { self }
-    }
-
     /// The same for a function that reads positions and densities, or for which velocities and what else a
     /// leapfrog has may lag behind them by half a step, which costs no pair sweep.
-    pub fn at_positions(mut self, name: &'static str, call: At<'a, D, S>) -> Self {
-        self.run.at.push(call);
+    pub fn at_positions(
+        mut self,
+        name: &'static str,
+        call: impl Fn(&mut S, &mut D, usize) + 'a,
+    ) -> Self {
+        self.run.at.push(Box::new(call));
         self.course.at.push((name, false));
         self
     }
 
     /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
     /// what is no part of a [`Checkpoint`](solver::Checkpoint), such as a force.
-    pub fn resumed(mut self, resumed: &'a dyn Fn(&S, &mut D)) -> Self {
-        self.run.resumed = resumed;
+    pub fn resumed(mut self, resumed: impl Fn(&S, &mut D) + 'a) -> Self {
+        self.run.resumed = Box::new(resumed);
         self
+    }
+
+    /// Shows every frame of another code to the functions, in place of steps.
+    ///
+    /// # Errors
+    /// If a frame is missing or does not fit the scene.
+    pub fn play(mut self, playback: &Playback, context: &Context) -> Result<Ended, RunError> {
+        self.course.watch(context)?.play(&mut self.run, playback)
     }
 
     /// Steps through the times. The cost is that of the stepping, and separately that of what is observed.
@@ -600,7 +574,7 @@ mod tests {
         let places = lattice(Vector2::repeat(0.5 * dx), dx, n, n);
         let particles = places.map(|x| Particle::fluid(x, speed(x), 1.0, dx * dx)).collect();
         let domain = Domain::torus(1.0, 1.0);
-        (method.build)(Parts::new(medium, domain, particles, &Context::default())).unwrap()
+        (method.build)(Parts::new(medium, domain, particles)).unwrap()
     }
 
     /// Takes so long over each step, and does something at one of them.
@@ -629,7 +603,7 @@ mod tests {
         let (times, mut wave) = ([1000.0 * DT], wave());
         let Ended { status, cost, .. } =
             Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                .after_step("slow", &|_, simulation| slow.after_step(simulation))
+                .after_step("slow", |_, simulation| slow.after_step(simulation))
                 .run(&context)
                 .unwrap();
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
@@ -658,7 +632,7 @@ mod tests {
             let slow = Slow { each: Duration::from_millis(25), at: (0, || ()) };
             let (times, mut wave) = ([10.0 * DT, 40.0 * DT], wave());
             Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                .after_step("slow", &|_, simulation| slow.after_step(simulation))
+                .after_step("slow", |_, simulation| slow.after_step(simulation))
                 .run(&context)
                 .unwrap();
             states.push((state(&*wave), wave.work().steps));
@@ -702,7 +676,7 @@ mod tests {
         let mut nothing = ();
         let mut drive = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut nothing);
         if observer.is_some() {
-            drive = drive.after_step("observer", &observe);
+            drive = drive.after_step("observer", observe);
         }
         let Ended { status, cost, .. } = drive.run(&context).unwrap();
         assert_eq!((status, cost.steps), (Status::Completed, 40));
@@ -757,7 +731,7 @@ mod tests {
             Flow::Continue
         };
         let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("stop", &stop)
+            .after_step("stop", stop)
             .run(&context)
             .unwrap();
         (cost, kept.into_inner().unwrap())
@@ -867,7 +841,7 @@ mod tests {
                 };
                 let Ended { cost, .. } =
                     Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                        .after_step("stop", &after)
+                        .after_step("stop", after)
                         .run(&context)
                         .unwrap();
                 (cost.steps, cost.resumed)
@@ -891,7 +865,7 @@ mod tests {
             Flow::Continue
         };
         let Ended { status, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("stop", &stop)
+            .after_step("stop", stop)
             .run(&context)
             .unwrap();
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
@@ -904,9 +878,9 @@ mod tests {
         let slow = Slow { each: Duration::from_micros(200), at: (0, || ()) };
         let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
         let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("slow", &|_, simulation| slow.after_step(simulation))
-            .after_step("quick", &|_, _| Flow::Continue)
-            .at("pause", &|_, _, _| std::thread::sleep(Duration::from_millis(20)))
+            .after_step("slow", |_, simulation| slow.after_step(simulation))
+            .after_step("quick", |_, _| Flow::Continue)
+            .at("pause", |_, _, _| std::thread::sleep(Duration::from_millis(20)))
             .run(&Context { profile, ..Context::default() })
             .unwrap();
         (state(&*wave), wave.work(), cost, wave.data().column_bytes)

@@ -1,16 +1,15 @@
 //! A battery of exact symmetries: the particles that another observer has after a few steps are those that we
 //! have, but for round-off. It needs no reference, and judges our own runs and those of other codes alike.
 
-use std::sync::{Mutex, PoisonError};
-
-use base::{lock, record::Profile, spec::RunSpec};
+use base::{record::Profile, spec::RunSpec};
 use nalgebra::Vector2;
 
 use crate::{
     case::{Case, RunError},
     context::Context,
-    outline::{Outline, Sink},
+    outline::Outline,
     playback::{Frame, Placed},
+    problem::Steps,
     relation::{DENSITY, Relation, TIME},
     size::Size,
 };
@@ -164,8 +163,8 @@ pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
 /// The problem and the particles of our own run of a spec as an observer sees them; no particles if it
 /// diverged.
 fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<Frame>), RunError> {
-    let (sink, frames) = (Sink::of(Some(by), true), Mutex::new(Vec::new()));
-    let tell = |time: f64, particles: Profile| {
+    let mut frames = Vec::new();
+    let mut at_time = |time: f64, particles: Profile| {
         let of = |name, k: usize| particles.column(name)[k];
         let placed = |k| Placed {
             id: k as u32,
@@ -174,13 +173,11 @@ fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<F
             density: Some(of("density", k)),
         };
         let particles = (0..particles.column("id").len()).map(placed).collect();
-        lock(&frames).push(Frame { time, particles });
+        frames.push(Frame { time, particles });
     };
-    let outline = Some(sink.clone());
-    let context =
-        Context { outline, at_times: Some(&tell), allow_long: true, ..Context::default() };
-    let (outline, _) = sink.of_run(case.run(spec, &context), case.name())?;
-    Ok((outline, frames.into_inner().unwrap_or_else(PoisonError::into_inner)))
+    let context = Context { spec: spec.clone(), allow_long: true, ..Context::default() };
+    let outline = case.pose(spec)?.seen_by(by, &context, &mut at_time)?;
+    Ok((outline, frames))
 }
 
 /// What the particles that two observers have at three times take of memory, over what is kept of a step of a
@@ -190,23 +187,19 @@ const KEPT: f64 = 3.0;
 /// What the batteries of runs take together, those that are refused left out: all relations, one after the
 /// other, and the particles of all specs at the same time.
 pub fn size(specs: &[(&dyn Case, RunSpec)]) -> Size {
-    let found = Mutex::new(Size::new([0.0, 0.0], 0.0));
-    let tell = |size: &Size| {
-        let (mut all, relations) = (lock(&found), Relation::ALL.len() as f64);
+    let (mut all, relations) = (Size::new([0.0, 0.0], 0.0), Relation::ALL.len() as f64);
+    for (case, spec) in specs {
+        let spec = spec.clone().allow_unstable();
+        let posed = case.pose(&spec);
+        let size = posed.and_then(|posed| posed.size(&spec, Steps::Early, true));
+        let Ok(size) = size else { continue };
         all.steps = all.steps.max(relations * size.steps);
         all.particles += size.particles;
         all.neighbours = all.neighbours.max(size.neighbours);
         all.sweeps = all.sweeps.max(size.sweeps);
         all.samples += KEPT * size.particles;
-    };
-    for (case, spec) in specs {
-        let outline = Some(Sink::of(Some(Relation::Same), true));
-        let (allow_long, only_estimate, estimate) = (true, true, Some(&tell as _));
-        let context =
-            Context { outline, allow_long, only_estimate, estimate, ..Context::default() };
-        let _ = case.run(&spec.clone().allow_unstable(), &context);
     }
-    found.into_inner().unwrap_or_else(PoisonError::into_inner)
+    all
 }
 
 /// What of a state is below this when squared \[-\] is lost, in one unit and not in another.

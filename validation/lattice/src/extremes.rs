@@ -8,16 +8,15 @@ use base::{gate::*, random::Random, record::*, settings::Settings};
 use harness::{
     case::*,
     composed::*,
-    context::Context,
     declare::Declaration,
     method::*,
-    runner::Drive,
-    simulate::{self, momentum},
+    problem::{Asked, Brief, Calls, Problem},
+    simulate::momentum,
     table::{Row, Table},
 };
 use maths::metrics::norms::largest;
 use nalgebra::Vector2;
-use solver::{Domain, Particle, Tait};
+use solver::{Domain, Particle, Stepper, Tait};
 
 use crate::torus;
 
@@ -66,8 +65,13 @@ base::metrics! {
     FASTEST = "fastest" ["c0"] "largest speed at the end";
 }
 
-/// Makes the scene of a variant.
-type Scene = fn(&Method, &ExtremeSettings) -> Parts;
+/// The scene of a variant.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Scene {
+    AtRest,
+    Stirred,
+    Blocks,
+}
 
 const REST: &str = "rest";
 const PRESSED: &str = "pressed";
@@ -83,60 +87,119 @@ fn variants() -> Compositions<ExtremeSettings> {
     let pressed = "does it under pressure? Wendland function";
     let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
     let bullet = "does a block that hits another keep the momentum?";
-    let rules = |_: &_, _: &_| Err(RunError::NoRules(EXTREMES.name.into()));
     let all_but = |uses: &[&str]| {
         let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
         names.filter(|name| !uses.contains(name)).collect()
     };
     let wendland = schemes::lattice::wendland();
-    Variants::<_, (Method, Scene)>::of(run, rules)
-        .lacking([REST, rest], (cubic(), at_rest), all_but(AT_REST), |s| {
-            (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
-        })
-        .lacking([PRESSED, pressed], (wendland, at_rest), all_but(AT_REST), |s| {
-            (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
-        })
-        .lacking([COINCIDENT, coincident], (cubic(), stirred), all_but(SHORT), |_| ())
-        .lacking([BULLET, bullet], (cubic(), blocks), all_but(&["speed", "steps", "dt"]), |s| {
-            (s.steps, s.dt) = (200, 0.3);
-        })
-        .all
+    Variants::<_, (Method, Scene)>::of(|(method, scene), s: &ExtremeSettings| {
+        Ok(Extreme { method: method.clone(), scene: *scene, settings: s.clone() })
+    })
+    .lacking([REST, rest], (cubic(), Scene::AtRest), all_but(AT_REST), |s| {
+        (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
+    })
+    .lacking([PRESSED, pressed], (wendland, Scene::AtRest), all_but(AT_REST), |s| {
+        (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
+    })
+    .lacking([COINCIDENT, coincident], (cubic(), Scene::Stirred), all_but(SHORT), |_| ())
+    .lacking([BULLET, bullet], (cubic(), Scene::Blocks), all_but(&["speed", "steps", "dt"]), |s| {
+        (s.steps, s.dt) = (200, 0.3);
+    })
+    .all
 }
 
-/// One run of any variant.
-fn run(
-    (method, scene): &(Method, Scene),
-    s: &ExtremeSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let is_resting = [REST, PRESSED].contains(&&*context.spec.variant);
-    let (parts, looks) = (scene(method, s), if is_resting { 10 } else { 1 });
-    let (start, eos) = (parts.particles.clone(), parts.medium.eos);
-    let mut simulation = (method.build)(parts)?;
-    let done = |look: usize| (look + 1) * s.steps / looks;
-    let times: Vec<f64> = (0..looks).map(|look| done(look) as f64 * s.dt).collect();
-    let mut late = 0.0f64;
-    let serial = Context { spec: context.spec.clone(), ..Context::default() };
-    let mut record = simulate::begin(method, &[(PLANNED_DT, s.dt)], &serial);
-    Drive::new(&mut *simulation, s.dt, &times, eos, &mut late)
-        .at("samples", &|late, simulation, look| {
-            let is_on_time = simulation.work().steps == done(look) as u64;
-            let off = (simulation.time() - times[look]).abs();
+/// A run of any variant.
+struct Extreme {
+    method: Method,
+    scene: Scene,
+    settings: ExtremeSettings,
+}
+
+/// The particles at the start, and how far the clock was off.
+struct Watch {
+    start: Vec<Particle>,
+    late: f64,
+}
+
+harness::observed! { Watch: changes(late), stays(start) }
+
+impl Extreme {
+    fn is_resting(&self) -> bool {
+        self.scene == Scene::AtRest
+    }
+
+    /// How often it is looked at.
+    fn looks(&self) -> usize {
+        if self.is_resting() { 10 } else { 1 }
+    }
+
+    /// Steps before a look.
+    fn done(&self, look: usize) -> usize {
+        (look + 1) * self.settings.steps / self.looks()
+    }
+}
+
+impl Problem for Extreme {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Watch;
+    const READS_START: bool = true;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    /// No theory has limits for these.
+    fn brief(&self) -> Brief {
+        let ExtremeSettings { n, steps, dt, .. } = self.settings;
+        let rules = Rules { step: Step::given(dt), end: steps as f64 * dt, ..Rules::REFUSED };
+        let (medium, particles) = (medium(&self.method, &self.settings), (n * n) as f64);
+        let brief = Brief::new(medium, rules, particles, "steps or n").numbers(&[(PLANNED_DT, dt)]);
+        Brief { is_limited: false, is_serial: true, ..brief }
+    }
+
+    fn not_exported(&self) -> Option<&'static str> {
+        Some("its experiments are about this program")
+    }
+
+    fn times(&self) -> Vec<f64> {
+        (0..self.looks()).map(|look| self.done(look) as f64 * self.settings.dt).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        let scene = match self.scene {
+            Scene::AtRest => at_rest,
+            Scene::Stirred => stirred,
+            Scene::Blocks => blocks,
+        };
+        Ok(scene(&self.method, &self.settings))
+    }
+
+    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Watch {
+        Watch { start: start.to_vec(), late: 0.0 }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("samples", |extreme, Watch { late, .. }, simulation, look, _| {
+            let done = extreme.done(look);
+            let is_on_time = simulation.work().steps == done as u64;
+            let off = (simulation.time() - done as f64 * extreme.settings.dt).abs();
             *late = late.max(if is_on_time { off } else { f64::INFINITY });
         })
-        .run(context)?
-        .put(&mut record);
-    let end = simulation.particles();
-    if is_resting {
-        record.put(HEAT, fastest(&end));
-        record.put(CLOCK_ERROR, late);
-    } else {
-        let scale: f64 = start.iter().map(|p| p.mass * p.velocity.norm()).sum();
-        let change = (momentum(&end) - momentum(&start)).norm();
-        record.put(MOMENTUM_ERROR, if scale > 0.0 { change / scale } else { change });
-        record.put(FASTEST, (2.0 * fastest(&end)).sqrt());
     }
-    Ok(record)
+
+    fn measure(&self, Watch { start, late }: Watch, end: &dyn Stepper<()>, record: &mut Record) {
+        let end = end.particles();
+        if self.is_resting() {
+            record.put(HEAT, fastest(&end));
+            record.put(CLOCK_ERROR, late);
+        } else {
+            let scale: f64 = start.iter().map(|p| p.mass * p.velocity.norm()).sum();
+            let change = (momentum(&end) - momentum(&start)).norm();
+            record.put(MOMENTUM_ERROR, if scale > 0.0 { change / scale } else { change });
+            record.put(FASTEST, (2.0 * fastest(&end)).sqrt());
+        }
+    }
 }
 
 /// Kinetic energy per mass of the fastest particle \[c₀²\]; NaN stays.
@@ -153,14 +216,14 @@ fn medium(method: &Method, s: &ExtremeSettings) -> Medium {
 /// A lattice at rest, for very many steps.
 fn at_rest(method: &Method, s: &ExtremeSettings) -> Parts {
     let resting = |_, place| (place, Vector2::zeros());
-    torus((s.n as f64, s.n), medium(method, s), &Context::default(), resting)
+    torus((s.n as f64, s.n), medium(method, s), resting)
 }
 
 /// Two particles at one place, or all but, in a lattice stirred at 0.05 c₀.
 fn stirred(method: &Method, s: &ExtremeSettings) -> Parts {
     let mut random = Random::new(5);
     let start = |_, place| (place, Vector2::new(random.normal(), random.normal()) * 0.05);
-    let mut parts = torus((10.0, 10), medium(method, s), &Context::default(), start);
+    let mut parts = torus((10.0, 10), medium(method, s), start);
     let Particle { position, velocity, .. } = parts.particles[33];
     parts.particles[34].position = position + Vector2::new(s.distance, 0.0);
     parts.particles[34].velocity = velocity;
@@ -175,7 +238,7 @@ fn blocks(method: &Method, s: &ExtremeSettings) -> Parts {
     };
     let moving = block(-12.0, Vector2::new(s.speed, 0.0));
     let particles = block(0.0, Vector2::zeros()).chain(moving).collect();
-    Parts::new(medium(method, s), Domain::open(), particles, &Context::default())
+    Parts::new(medium(method, s), Domain::open(), particles)
 }
 
 /// The runs of a tier.

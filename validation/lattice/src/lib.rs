@@ -5,7 +5,7 @@ pub mod operators;
 pub mod resting_box;
 pub mod wave;
 
-use harness::{context::Context, method::*};
+use harness::method::*;
 use nalgebra::Vector2;
 use solver::{Domain, Particle};
 
@@ -14,7 +14,6 @@ use solver::{Domain, Particle};
 fn torus(
     (side, n): (f64, usize),
     medium: Medium,
-    context: &Context,
     mut start: impl FnMut(Vector2<f64>, Vector2<f64>) -> (Vector2<f64>, Vector2<f64>),
 ) -> Parts {
     let Medium { dx, density, .. } = medium;
@@ -25,7 +24,7 @@ fn torus(
         Particle::fluid(place, velocity, density, dx * dx)
     };
     let particles = labels.zip(places).map(particle).collect();
-    Parts::new(medium, Domain::torus(side, side), particles, context)
+    Parts::new(medium, Domain::torus(side, side), particles)
 }
 
 #[cfg(test)]

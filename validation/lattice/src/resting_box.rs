@@ -13,18 +13,16 @@ use harness::{
     bisect::Growth,
     case::*,
     composed::*,
-    context::Context,
     declare::*,
     limits,
     method::*,
+    problem::{Asked, Brief, Calls, Problem},
     rules::PLANNED_DT_OVER_LIMIT,
-    runner::Drive,
-    simulate,
     table::{Row, Table},
 };
 use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
-use solver::{Flow, Limits, Stepper, Tait};
+use solver::{Flow, Limits, Particle, Stepper, Tait};
 
 use crate::torus;
 
@@ -103,7 +101,7 @@ fn variants() -> Compositions<BoxSettings> {
     let damped = "what artificial viscosity and density diffusion take from the step";
     let single = "what one pair sweep a step allows, in place of the leapfrog's two";
     let quintic = "does theory hold for a kernel of wider support?";
-    Variants::of(run, rules)
+    Variants::of(Resting::new)
         .with(CUBIC, cubic, method(CUBIC), |_| ())
         .with(MIDPOINT, midpoint, method(MIDPOINT), |_| ())
         .with(SUPER, super_stepping, method(SUPER), |_| ())
@@ -142,30 +140,44 @@ fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     time_step::modes(&method.square([s.h_over_dx, ETA2]), s.n, &medium)
 }
 
-/// What the settings say, and theory.
-fn rules(method: &Method, s: &BoxSettings) -> Result<Rules, RunError> {
-    if s.delta > 0.0 && !method.uses.contains(&Knob::Diffusion) {
-        let variant = "without density diffusion".into();
-        return Err(RunError::Unused { key: "delta".into(), variant });
-    }
-    let limits = limits::Limits::of(&modes(method, s), method.theory).times(h(s));
-    let step = Step::courant(s.courant, h(s), [1.0, 0.0]);
-    Ok(Rules { step, limits, sound_speed: 1.0, end: s.steps as f64 * step.dt })
+/// A run of the case.
+struct Resting {
+    method: Method,
+    settings: BoxSettings,
+    rules: Rules,
 }
 
-fn parts(method: &Method, s: &BoxSettings) -> Parts {
-    let medium = Medium {
+impl Resting {
+    /// What the settings say, and theory.
+    fn new(method: &Method, s: &BoxSettings) -> Result<Self, RunError> {
+        if s.delta > 0.0 && !method.uses.contains(&Knob::Diffusion) {
+            let variant = "without density diffusion".into();
+            return Err(RunError::Unused { key: "delta".into(), variant });
+        }
+        let limits = limits::Limits::of(&modes(method, s), method.theory).times(h(s));
+        let step = Step::courant(s.courant, h(s), [1.0, 0.0]);
+        let rules = Rules { step, limits, sound_speed: 1.0, end: s.steps as f64 * step.dt };
+        Ok(Self { method: method.clone(), settings: s.clone(), rules })
+    }
+}
+
+fn medium(method: &Method, s: &BoxSettings) -> Medium {
+    Medium {
         nu: h(s) / stiffness(s),
         eta2_over_h2: ETA2,
         alpha: s.alpha,
         diffusion: s.delta,
         ..method.medium(Tait::new(1.0, 1.0), [1.0 / s.n as f64, h(s)])
-    };
+    }
+}
+
+fn parts(method: &Method, s: &BoxSettings) -> Parts {
+    let medium = medium(method, s);
     let mut random = Random::new(7);
     let mut noise = || NOISE * random.normal();
     let limits = Limits { density: [0.7, 1.3], speed: 2.0 };
     let velocity = |_, place| (place, Vector2::new(noise(), noise()));
-    Parts { limits, ..torus((1.0, s.n), medium, &Context::default(), velocity) }
+    Parts { limits, ..torus((1.0, s.n), medium, velocity) }
 }
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
@@ -181,35 +193,57 @@ fn watch(growth: &mut Growth, simulation: &dyn Stepper<()>) -> Flow {
     if growth.see(energy(simulation)) { Flow::Stop } else { Flow::Continue }
 }
 
-/// One run of the case.
-fn run(method: &Method, s: &BoxSettings, context: &Context) -> Result<Record, RunError> {
-    let rules = rules(method, s)?;
-    simulate::check_step(method.integrator, &rules, context)?;
-    let (dt, end) = (rules.dt(), [rules.end]);
-    let mut simulation = (method.build)(parts(method, s))?;
-    let start = energy(&*simulation);
-    let mut growth = Growth::new(start, s.steps as u64);
-    let numbers = [
-        ("h/dx", s.h_over_dx),
-        ("c0 [m/s]", rules.sound_speed),
-        ("c0 h/nu", stiffness(s)),
-        (PLANNED_DT, dt),
-        (PLANNED_DT_OVER_LIMIT, dt / rules.dt_limit()),
-    ];
-    let serial = Context { spec: context.spec.clone(), ..Context::default() };
-    let mut record = simulate::begin(method, &numbers, &serial);
-    Drive::new(&mut *simulation, dt, &end, Tait::new(1.0, 1.0), &mut growth)
-        .after_step("energy", &watch)
-        .run(context)?
-        .put(&mut record);
-    let grew = matches!(record.status, Status::Diverged { .. }) || growth.grew();
-    record.put(GREW, f64::from(u8::from(grew)));
-    record.put(ENERGY, energy(&*simulation) / start);
-    // A run that is over early because its energy grew beyond doubt is complete.
-    if growth.beyond_doubt {
-        record.status = Status::Completed;
+impl Problem for Resting {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Growth;
+
+    fn method(&self) -> &Method {
+        &self.method
     }
-    Ok(record)
+
+    fn brief(&self) -> Brief {
+        let (Self { settings: s, rules, .. }, dt) = (self, self.rules.dt());
+        let medium = medium(&self.method, s);
+        let brief = Brief::new(medium, *rules, (s.n * s.n) as f64, "steps or n").numbers(&[
+            ("h/dx", s.h_over_dx),
+            ("c0 [m/s]", rules.sound_speed),
+            ("c0 h/nu", stiffness(s)),
+            (PLANNED_DT, dt),
+            (PLANNED_DT_OVER_LIMIT, dt / rules.dt_limit()),
+        ]);
+        Brief { is_serial: true, ..brief }
+    }
+
+    fn not_exported(&self) -> Option<&'static str> {
+        Some("its energy is read after every step")
+    }
+
+    fn times(&self) -> Vec<f64> {
+        vec![self.rules.end]
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(parts(&self.method, &self.settings))
+    }
+
+    fn watch(&self, _: &[Particle], simulation: &dyn Stepper<()>) -> Growth {
+        Growth::new(energy(simulation), self.settings.steps as u64)
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.after_step("energy", |_, growth, simulation| watch(growth, simulation))
+    }
+
+    fn measure(&self, growth: Growth, end: &dyn Stepper<()>, record: &mut Record) {
+        let grew = matches!(record.status, Status::Diverged { .. }) || growth.grew();
+        record.put(GREW, f64::from(u8::from(grew)));
+        record.put(ENERGY, energy(end) / growth.start);
+        // A run that is over early because its energy grew beyond doubt is complete.
+        if growth.beyond_doubt {
+            record.status = Status::Completed;
+        }
+    }
 }
 
 /// Sets the step to the limit of a box with what damps it, c₀h/ν, α, δ, and the number of steps.
@@ -311,6 +345,7 @@ mod tests {
     use super::*;
     use crate::tests::judged;
     use harness::case::Case;
+    use harness::context::Context;
     use std::collections::BTreeSet;
 
     #[test]

@@ -103,7 +103,7 @@ impl BarSettings {
     }
 }
 
-impl Problem for BarSettings {
+impl Body for BarSettings {
     fn scales(&self) -> Scales {
         let (dx, rows) = (self.length / self.n as f64, self.rows());
         let (bodies, auto) = match (self.collide, self.gap > 0.0) {
@@ -594,12 +594,7 @@ mod tests {
         }
         let method = schemes::solid::bare();
         let mut watch = Motion::new(&s, &particles, 0.0);
-        let parts = Parts::new(
-            solid::medium(&s, &method),
-            s.scales().domain,
-            particles,
-            &Context::default(),
-        );
+        let parts = Parts::new(solid::medium(&s, &method), s.scales().domain, particles);
         let simulation = (method.build)(parts).expect("a scene");
         watch.after_step(&*simulation);
         let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));

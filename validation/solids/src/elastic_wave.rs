@@ -6,8 +6,13 @@
 
 use base::{functions::*, gate::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, rules::PLANNED_DT,
-    runner::Drive, simulate, table::*,
+    case::*,
+    composed::*,
+    declare::*,
+    method::*,
+    problem::{Asked, Brief, Calls, Problem},
+    rules::PLANNED_DT,
+    table::*,
 };
 use nalgebra::Vector2;
 use solver::*;
@@ -58,9 +63,11 @@ base::metrics! {
 fn variants() -> Compositions<WaveSettings> {
     let equations =
         "equations (9) to (12), leapfrog, cubic spline: are both moduli those of the material?";
-    Variants::of(run, |method, settings| Ok(settings.rules(method)))
-        .with(CubicSpline::NAME, equations, schemes::solid::bare(), |_| {})
-        .all
+    Variants::of(|m: &Method<Symmetric>, s: &WaveSettings| {
+        Ok(Wave { settings: s.clone(), method: m.clone() })
+    })
+    .with(CubicSpline::NAME, equations, schemes::solid::bare(), |_| {})
+    .all
 }
 
 /// Particles along each side of the unit square, and their spacing.
@@ -74,14 +81,14 @@ const RUBBER: Material = Material { density: 1.0, bulk: 1.0, shear: 0.22 };
 const STEPS: usize = 400;
 impl WaveSettings {
     /// The scene: a lattice with a cosine of velocity.
-    pub fn parts(&self, method: &Method<Symmetric>, context: &Context) -> Parts<Symmetric> {
+    fn parts(&self, method: &Method<Symmetric>) -> Parts<Symmetric> {
         let places = solver::lattice(Vector2::repeat(0.5 * DX), DX, N, N).enumerate();
         let wave = places.map(|(k, x)| {
             let velocity = self.direction() * (AMPLITUDE * cos(phase(k)));
             Particle::fluid(x, velocity, RUBBER.density, DX * DX)
         });
         let medium = RUBBER.medium(method, [DX, self.h_over_dx * DX]);
-        Parts::new(medium, Domain::torus(1.0, 1.0), wave.collect(), context)
+        Parts::new(medium, Domain::torus(1.0, 1.0), wave.collect())
     }
 
     /// Of the particles' motion in a wave along x.
@@ -115,25 +122,50 @@ fn phase(k: usize) -> f64 {
     TAU * (k % N) as f64 / N as f64
 }
 
-fn run(
-    method: &Method<Symmetric>,
-    settings: &WaveSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let mut simulation = (method.build)(settings.parts(method, context))?;
-    let (omega, h_over_dx) = (settings.frequency(method), settings.h_over_dx);
-    let rules = settings.rules(method);
-    let dt = rules.dt();
-    let numbers = [("h/dx", h_over_dx), (PLANNED_DT, dt)];
-    let mut record = simulate::begin(method, &numbers, context);
-    let mut watch = Watch { direction: settings.direction(), amplitudes: Vec::new() };
-    let (times, eos) = ([rules.end], RUBBER.eos());
-    Drive::new(&mut *simulation, dt, &times, eos, &mut watch)
-        .after_step("projection", &Watch::after_step)
-        .run(context)?
-        .put(&mut record);
-    record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * watch.angle()) / (omega * dt) - 1.0).abs());
-    Ok(record)
+/// A run of a wave.
+struct Wave {
+    settings: WaveSettings,
+    method: Method<Symmetric>,
+}
+
+impl Problem for Wave {
+    type Extra = Symmetric;
+    type Simulation = dyn Stepper<Symmetric>;
+    type Watch = Watch;
+
+    fn method(&self) -> &Method<Symmetric> {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        let rules = self.settings.rules(&self.method);
+        let h_over_dx = self.settings.h_over_dx;
+        let medium = RUBBER.medium(&self.method, [DX, h_over_dx * DX]);
+        Brief::new(medium, rules, (N * N) as f64, "h_over_dx")
+            .numbers(&[("h/dx", h_over_dx), (PLANNED_DT, rules.dt())])
+    }
+
+    fn times(&self) -> Vec<f64> {
+        vec![self.settings.rules(&self.method).end]
+    }
+
+    fn scene(&self) -> Result<Parts<Symmetric>, RunError> {
+        Ok(self.settings.parts(&self.method))
+    }
+
+    fn watch(&self, _: &[Particle<Symmetric>], _: &dyn Stepper<Symmetric>) -> Watch {
+        Watch { direction: self.settings.direction(), amplitudes: Vec::new() }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.after_step("projection", |_, watch, simulation| watch.after_step(simulation))
+    }
+
+    fn measure(&self, watch: Watch, _: &dyn Stepper<Symmetric>, record: &mut Record) {
+        let dt = self.settings.rules(&self.method).dt();
+        let turn = self.settings.frequency(&self.method) * dt;
+        record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * watch.angle()) / turn - 1.0).abs());
+    }
 }
 
 /// Projections of the velocities on the wave.
@@ -188,6 +220,7 @@ fn gates(row: &Row<WaveSettings, ()>) -> Vec<Gate> {
 mod tests {
     use super::*;
     use harness::case::{Case, Planned};
+    use harness::context::Context;
 
     #[test]
     fn waves_of_rubber_have_the_symbols_of_the_lattice() {

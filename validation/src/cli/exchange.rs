@@ -21,11 +21,10 @@ use base::{
     text::short,
 };
 use harness::{
-    case::{self, Case, RunError, Tier},
+    case::{self, Case, Tier},
     context::Context,
-    outline::Sink,
+    problem::Steps,
     relation::Relation,
-    size::Size,
     store::Store,
     suite, symmetry,
 };
@@ -62,18 +61,10 @@ pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failur
 /// # Errors
 /// If it is refused, or takes more than is allowed.
 fn estimate(case: &dyn Case, spec: &RunSpec, of: &arguments::Export) -> Result<(), Failure> {
-    let tell = |size: &Size| output::say(&format!("estimate: {size}"));
-    let context = Context {
-        allow_long: of.allow_long,
-        outline: of.relation.map(|by| Sink::of(Some(by), true)),
-        only_estimate: true,
-        estimate: Some(&tell),
-        ..Context::default()
-    };
-    match case.run(spec, &context) {
-        Ok(_) | Err(RunError::Told) => Ok(()),
-        Err(error) => Err(error.into()),
-    }
+    let steps = if of.relation.is_some() { Steps::Early } else { Steps::All };
+    let size = case.pose(spec)?.size(spec, steps, of.allow_long)?;
+    output::say(&format!("estimate: {size}"));
+    Ok(())
 }
 
 /// What a run adds to its problem and to the description of its method.
@@ -166,17 +157,17 @@ fn solve(
             column.values.extend(particles.column(&column.name));
         }
     };
-    let context = Context {
-        at_times: Some(&tell),
-        allow_long,
-        interrupt: Some(world.interrupt),
-        outline: problem.relation.map(|by| Sink::of(Some(by), true)),
-        ..Context::default()
-    };
-    let record = match case.run(spec, &context) {
-        // Nothing was measured of what an observer sees, and nothing was counted.
-        Err(RunError::Told) => Record::of(spec, 1),
-        made => made?,
+    let interrupt = Some(world.interrupt);
+    let context = Context { spec: spec.clone(), allow_long, interrupt, ..Context::default() };
+    let record = match problem.relation {
+        Some(relation) => {
+            case.pose(spec)?.seen_by(relation, &context, &mut |time, particles| {
+                tell(time, particles);
+            })?;
+            // Nothing was measured of what an observer sees, and nothing was counted.
+            Record::of(spec, 1)
+        }
+        None => case.run(spec, &Context { at_times: Some(&tell), ..context })?,
     };
     world.go_on("the problem is written, its results are not")?;
     let Record { cost, manifest, .. } = &record;

@@ -63,8 +63,8 @@ fn write(text: &str) -> io::Result<()> {
     stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush())
 }
 
-/// Was standard output closed before the program began? Before `main`, Rust opens `/dev/null` in its place, for
-/// reading and writing; a shell's `>/dev/null` is opened for writing alone.
+/// Was standard output closed before the program began? Before `main`, Rust opens `/dev/null` in its place,
+/// for reading and writing; a shell's `>/dev/null` is opened for writing alone.
 fn is_closed() -> bool {
     let is_null =
         std::fs::read_link("/proc/self/fd/1").is_ok_and(|to| to == Path::new("/dev/null"));

@@ -3,14 +3,23 @@
 
 use base::{gate::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, rules, runner::Drive,
-    simulate, table,
+    case::*,
+    composed::*,
+    declare::*,
+    method::*,
+    pictures,
+    problem::{Asked, Brief, Calls, Problem},
+    rules, table,
 };
-use maths::{exact::EllipticDrop as Exact, metrics::norms::largest};
+use maths::{
+    exact::EllipticDrop as Exact,
+    metrics::{budget::Metered, norms::largest},
+};
 use nalgebra::Vector2;
 use report::ColourMap;
 use schemes::water::{self, WaterMethod};
 use solver::*;
+use std::f64::consts::FRAC_PI_4;
 
 use super::{
     causes::{NOISY_DENSITY, SHORT_KERNEL},
@@ -67,42 +76,49 @@ fn variants() -> Compositions<DropSettings> {
     let modern_is =
         "Wendland C2, h/dx 2.5, leapfrog, density diffusion, little artificial viscosity";
     let plain = "modern without dissipation: (3), (5) and (7) alone";
-    Variants::of(run, |method, s| Ok(Drop::new(s, method).rules))
+    Variants::of(|m, s| Ok(Drop::new(m, s)))
         .with("seed", seed, water::free_seed(), |_| {})
         .with("modern", modern_is, water::free(), modern)
         .with("plain", plain, water::plain(), modern)
         .all
 }
 
-/// A drop as particles, and the exact one of the same second moment.
+/// A drop that is cut from a lattice.
 struct Drop {
+    settings: DropSettings,
+    method: WaterMethod,
     medium: Medium,
     rules: Rules,
-    exact: Exact,
-    particles: Vec<Particle>,
 }
 
 impl Drop {
-    fn new(s: &DropSettings, method: &WaterMethod) -> Self {
+    fn new(method: &WaterMethod, s: &DropSettings) -> Self {
         let (dx, rate) = (2.0 * s.radius / s.n as f64, s.strain * s.radius);
-        let circle = Exact::circle(s.radius, s.strain);
-        let tip = circle.after(s.end / s.strain);
+        let tip = Exact::circle(s.radius, s.strain).after(s.end / s.strain);
         let gravity = s.gravity * s.strain * rate;
         let fall = gravity * s.end / s.strain;
         let speed = (tip.strain * tip.b).max(rate) + fall;
         let (medium, rules) = s.medium(method, [dx, s.c0 * rate, gravity, speed, s.end / s.strain]);
+        Self { settings: s.clone(), method: method.clone(), medium, rules }
+    }
+
+    fn particles(&self) -> Vec<Particle> {
+        let (s, Medium { dx, eos, .. }) = (&self.settings, self.medium);
         let corner = Vector2::repeat(0.5 * dx - s.radius);
-        let particles: Vec<Particle> = solver::lattice(corner, dx, s.n, s.n)
+        let centre = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
+        solver::lattice(corner, dx, s.n, s.n)
             .filter(|x| x.norm() <= s.radius)
             .map(|x| {
                 let inside = 1.0 - x.norm_squared() / (s.radius * s.radius);
-                let density = medium.eos.density(s.rho * circle.central_pressure() * inside);
                 let velocity = Vector2::new(-x.x, x.y) * s.strain;
-                Particle::fluid(x, velocity, density, dx * dx)
+                Particle::fluid(x, velocity, eos.density(centre * inside), dx * dx)
             })
-            .collect();
-        let exact = Exact::circle(shape(&particles).axes[0], s.strain);
-        Self { medium, rules, exact, particles }
+            .collect()
+    }
+
+    /// The exact drop of the same second moment as these particles at the start.
+    fn exact(&self, start: &[Particle]) -> Exact {
+        Exact::circle(shape(start).axes[0], self.settings.strain)
     }
 }
 
@@ -133,6 +149,8 @@ fn shape(particles: &[Particle]) -> Shape {
 
 /// What is measured through time.
 struct History {
+    /// The exact drop at the start.
+    exact: Exact,
     /// t, semi-axes, the exact ones \[s, m\].
     rows: Vec<[f64; 5]>,
     /// Largest errors of momentum and of the place of the centre.
@@ -141,19 +159,18 @@ struct History {
     velocity: f64,
 }
 
-harness::observed! { History: changes(rows, free_fall, velocity), stays() }
+harness::observed! { History: changes(rows, free_fall, velocity), stays(exact) }
 
 impl History {
-    /// No sample yet.
-    fn new() -> Self {
-        Self { rows: Vec::new(), free_fall: [0.0; 2], velocity: 0.0 }
+    fn new(exact: Exact) -> Self {
+        Self { exact, rows: Vec::new(), free_fall: [0.0; 2], velocity: 0.0 }
     }
 
     fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
         let (t, g) = (simulation.time(), drop.medium.acceleration);
         let particles = simulation.particles();
         let now = shape(&particles);
-        let exact = drop.exact.after(t);
+        let exact = self.exact.after(t);
         let [error, scale] = particles.iter().fold([0.0; 2], |[error, scale], p| {
             let r = p.position - g * (0.5 * t * t);
             let strain = Vector2::new(-r.x, r.y) * exact.strain;
@@ -162,9 +179,9 @@ impl History {
         });
         self.velocity += error / scale;
         self.rows.push([t, now.axes[0], now.axes[1], exact.a, exact.b]);
-        let scale = drop.exact.strain * drop.exact.a + g.norm() * t;
+        let scale = self.exact.strain * self.exact.a + g.norm() * t;
         let velocity = (now.velocity - g * t).norm() / scale;
-        let place = (now.centre - g * (0.5 * t * t)).norm() / (scale * t + drop.exact.a);
+        let place = (now.centre - g * (0.5 * t * t)).norm() / (scale * t + self.exact.a);
         self.free_fall = [self.free_fall[0].max(velocity), self.free_fall[1].max(place)];
     }
 
@@ -188,38 +205,75 @@ impl History {
     }
 }
 
-fn run(method: &WaterMethod, s: &DropSettings, context: &Context) -> Result<Record, RunError> {
-    let drop = Drop::new(s, method);
-    let (medium, end) = (&drop.medium, drop.rules.end);
-    let (particles, decisive) = (drop.particles.len() as f64, "end, dt, courant, c0 or n");
-    simulate::check(method, medium, &drop.rules, particles, decisive, context)?;
-    let parts = Parts::new(*medium, Domain::open(), drop.particles.clone(), context);
-    let mut simulation = (method.build)(parts)?;
-    let [_, numbers @ ..] = drop.rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin(method, &numbers, context);
-    let mut ledger = Ledger::new(medium);
-    let mut history = History::new();
-    let times: Vec<f64> = [0.0].into_iter().chain(rules::samples(end, SAMPLES, s.dt)).collect();
-    let (mut seen, all) = ((&mut history, &mut ledger), context.measures_all());
-    Drive::new(&mut *simulation, drop.rules.dt(), &times, medium.eos, &mut seen)
-        .at("shape", &|(history, _), simulation, _| history.sample(&drop, &*simulation))
-        .at_if(all, "energy ledger by term", &|(_, ledger), s, _| ledger.sample(s))
-        .run(context)?
-        .put(&mut record);
-    history.measure(&mut record);
-    let start = shape(&drop.particles);
-    let kinetic = start.mass * (s.strain * start.axes[0]).powi(2) / 4.0;
-    ledger.measure(kinetic, "initial kinetic energy", context, &mut record);
-    if context.spec.keep.particles {
-        let particles = simulation.particles();
-        let centre = shape(&particles).centre;
-        let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
-        let pressures = particles
-            .iter()
-            .map(|p| ((p.position - centre) / s.radius, medium.eos.pressure(p.density) / scale));
-        pictures::keep(&mut record, pictures::END, "R", ("p", "p(0)"), pressures);
+/// The history and the energy ledger.
+struct Watch {
+    history: History,
+    ledger: Ledger,
+    /// Kinetic energy of the exact drop at the start \[J/m\].
+    kinetic: f64,
+}
+
+harness::observed! { Watch: changes(history, ledger), stays(kinetic) }
+
+impl Problem for Drop {
+    type Extra = ();
+    type Simulation = dyn Metered<()>;
+    type Watch = Watch;
+
+    fn method(&self) -> &WaterMethod {
+        &self.method
     }
-    Ok(record)
+
+    fn brief(&self) -> Brief {
+        let DropSettings { n, h_over_dx, .. } = self.settings;
+        let [_, numbers @ ..] = self.rules.numbers([h_over_dx, self.medium.dx]);
+        let (particles, decisive) = (FRAC_PI_4 * (n * n) as f64, "end, dt, courant, c0 or n");
+        Brief::new(self.medium, self.rules, particles, decisive).numbers(&numbers)
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let samples = rules::samples(self.rules.end, SAMPLES, self.settings.dt);
+        [0.0].into_iter().chain(samples).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(Parts::new(self.medium, Domain::open(), self.particles()))
+    }
+
+    fn watch(&self, _: &[Particle], _: &dyn Metered<()>) -> Watch {
+        let start = self.particles();
+        let Shape { mass, axes, .. } = shape(&start);
+        let kinetic = mass * (self.settings.strain * axes[0]).powi(2) / 4.0;
+        let (history, ledger) = (History::new(self.exact(&start)), Ledger::new(&self.medium));
+        Watch { history, ledger, kinetic }
+    }
+
+    fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
+        calls
+            .at("shape", |drop, watch, s, _, _| watch.history.sample(drop, s))
+            .when(asked.all, |calls| {
+                calls.at("energy ledger by term", |_, watch, s, _, _| watch.ledger.sample(s))
+            })
+    }
+
+    fn measure(
+        &self,
+        Watch { history, ledger, kinetic }: Watch,
+        end: &dyn Metered<()>,
+        record: &mut Record,
+    ) {
+        history.measure(record);
+        ledger.measure(kinetic, "initial kinetic energy", record);
+        if Asked::of(record).particles {
+            let (s, particles) = (&self.settings, end.particles());
+            let centre = shape(&particles).centre;
+            let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
+            let pressure = |p: &Particle| self.medium.eos.pressure(p.density) / scale;
+            let pressures =
+                particles.iter().map(|p| ((p.position - centre) / s.radius, pressure(p)));
+            pictures::keep(record, pictures::END, "R", ("p", "p(0)"), pressures);
+        }
+    }
 }
 
 /// The drop.
@@ -380,7 +434,7 @@ fn gates(row: &Row) -> Vec<Gate> {
 mod tests {
     use super::*;
     use base::record::MetricKey;
-    use harness::case::Case;
+    use harness::{case::Case, context::Context};
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {
         ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set).measure_all(), &Context::default())
@@ -398,15 +452,16 @@ mod tests {
 
     #[test]
     fn the_particles_of_the_start_are_the_exact_drop() {
-        let drop = Drop::new(&DropSettings::default(), &water::plain());
-        let start = shape(&drop.particles);
+        let drop = Drop::new(&water::plain(), &DropSettings::default());
+        let particles = drop.particles();
+        let start = shape(&particles);
         assert!(
             (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
         );
         assert!(start.velocity.norm() < 1e-12 && start.centre.norm() < 1e-12);
         let pressure = |p: &Particle| drop.medium.eos.pressure(p.density);
-        let most = drop.particles.iter().map(pressure).fold(0.0, f64::max);
-        let exact = 1000.0 * drop.exact.central_pressure();
+        let most = particles.iter().map(pressure).fold(0.0, f64::max);
+        let exact = 1000.0 * drop.exact(&particles).central_pressure();
         assert!((most / exact - 1.0).abs() < 0.02, "{most} {exact}");
     }
 
@@ -447,16 +502,11 @@ mod tests {
                 base::settings::of_json(&ELLIPTIC_DROP.spec(variant, |s| s.n = n).settings)
                     .expect("settings");
             let method = if variant == "seed" { water::free_seed() } else { water::free() };
-            let drop = Drop::new(&settings, &method);
-            let parts = Parts::new(
-                drop.medium,
-                Domain::open(),
-                drop.particles.clone(),
-                &Context::default(),
-            );
+            let drop = Drop::new(&method, &settings);
+            let parts = drop.scene().expect("a scene");
+            let mut history = History::new(drop.exact(&parts.particles));
             let mut simulation = (method.build)(parts).expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
-            let mut history = History::new();
             history.sample(&drop, &*simulation);
             let mut record = Record::new(NAME, variant, serde_json::json!({}), 1);
             history.measure(&mut record);
@@ -475,8 +525,9 @@ mod tests {
             base::settings::of_json(&spec.settings).expect("settings")
         };
         let method = water::free();
-        let (drop, rate) = (Drop::new(&settings, &method), settings.strain);
-        let r = drop.exact.a / 2.0_f64.sqrt();
+        let (drop, rate) = (Drop::new(&method, &settings), settings.strain);
+        let circle = drop.exact(&drop.particles());
+        let r = circle.a / 2.0_f64.sqrt();
         let simulation = |[a, b]: [f64; 2], at: Vector2<f64>, v: Vector2<f64>| {
             let places = [(a * r, 0.0), (-a * r, 0.0), (0.0, b * r), (0.0, -b * r)];
             let particle = |(x, y): (f64, f64)| {
@@ -488,12 +539,12 @@ mod tests {
                 )
             };
             let particles = places.into_iter().map(particle).collect();
-            let parts = Parts::new(drop.medium, Domain::open(), particles, &Context::default());
+            let parts = Parts::new(drop.medium, Domain::open(), particles);
             let mut simulation = (method.build)(parts).expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
             simulation
         };
-        let history = || History::new();
+        let history = || History::new(circle);
         let measured = |history: &History| {
             let mut record = Record::new(NAME, "modern", serde_json::json!({}), 1);
             history.measure(&mut record);
@@ -513,9 +564,9 @@ mod tests {
         // Errors of a: 0, -0.1, 0.03; of b: 0, 0.02, -0.01.
         is(value(VELOCITY_RMS), 0.0);
         is(value(AXES_RMS), ((0.0109 + 0.0005) / 6.0_f64).sqrt());
-        let scale = rate * drop.exact.a;
+        let scale = rate * circle.a;
         let mut moved = history();
-        let (at, v) = (Vector2::new(0.03, 0.04) * drop.exact.a, Vector2::new(0.0, 0.1) * scale);
+        let (at, v) = (Vector2::new(0.03, 0.04) * circle.a, Vector2::new(0.0, 0.1) * scale);
         moved.sample(&drop, &*simulation([1.0, 1.0], at, v));
         let value = measured(&moved);
         is(value(CENTRE_ERROR), 0.05);
@@ -528,9 +579,9 @@ mod tests {
         falling.advance(t, 1e-4, &mut ());
         later.sample(&drop, &*falling);
         let value = measured(&later);
-        let exact = drop.exact.after(t);
-        is(value(A_ERROR), (0.7 * drop.exact.a / exact.a - 1.0).abs());
-        is(value(B_ERROR), (1.3 * drop.exact.a / exact.b - 1.0).abs());
+        let exact = circle.after(t);
+        is(value(A_ERROR), (0.7 * circle.a / exact.a - 1.0).abs());
+        is(value(B_ERROR), (1.3 * circle.a / exact.b - 1.0).abs());
         assert!(value(MOMENTUM_ERROR) < 1e-12 && value(CENTRE_ERROR) < 1e-12);
         let [x, y] = [0.7, 1.3].map(|r| (rate / exact.strain - r).powi(2));
         is(value(VELOCITY_RMS), ((x + y) / (0.49 + 1.69)).sqrt());

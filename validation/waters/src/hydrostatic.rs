@@ -3,11 +3,19 @@
 
 use base::{gate::*, mutation::Constant, random::Random, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, runner::Drive, simulate, table,
+    case::*,
+    composed::*,
+    declare::*,
+    method::*,
+    problem::{Asked, Brief, Calls, Problem},
+    table,
 };
 use maths::{
     exact, geometry,
-    metrics::norms::{l2, largest},
+    metrics::{
+        budget::Metered,
+        norms::{l2, largest},
+    },
 };
 use nalgebra::Vector2;
 use schemes::water::WaterMethod;
@@ -90,7 +98,7 @@ fn variants() -> Compositions<HydrostaticSettings> {
                 a hydrostatic column, leapfrog";
     let plain = "modern with the diffusion of Molteni and Colagrossi: does plain diffusion level out the \
                  column?";
-    Variants::of(run, |m, s| Ok(Column::new(s, m, &Context::of_rules())?.rules))
+    Variants::of(|m, s| Ok(Column::new(m, s)))
         .with("seed", seed, schemes::water::seed(), |_| {})
         .with("ghosts", "seed with ghosts for walls", schemes::water::ghosts(), |_| {})
         .with("modern", modern_is, schemes::water::modern(), modern)
@@ -126,6 +134,7 @@ const LIMIT_BOX: usize = 32;
 /// The numbers of one run, SI units.
 struct Column {
     settings: HydrostaticSettings,
+    method: WaterMethod,
     exact: exact::Hydrostatic,
     medium: Medium,
     rules: Rules,
@@ -140,7 +149,7 @@ struct Column {
 
 impl Column {
     /// The numbers for a method, or why they are refused.
-    fn new(s: &HydrostaticSettings, m: &WaterMethod, context: &Context) -> Result<Self, RunError> {
+    fn new(m: &WaterMethod, s: &HydrostaticSettings) -> Self {
         let c0 = (s.g * s.depth / s.compressibility).sqrt();
         let (dx, gamma) = (s.depth / s.rows as f64, s.gamma as i32);
         let (h, down) = (s.h_over_dx * dx, Vector2::new(0.0, -s.g));
@@ -155,13 +164,11 @@ impl Column {
         let limits = limits.moving(h, 0.0, s.g);
         let (step, period) = (Step::courant(s.courant, h, [fastest, 0.0]), 4.0 * s.depth / c0);
         let rules = Rules { step, limits, sound_speed: c0, end: s.end * period };
-        let particles = s.rows as f64 * s.columns as f64;
-        simulate::check(m, &medium, &rules, particles, "end, courant, rows or columns", context)?;
         let tank = geometry::Tank { columns: s.columns, rows: s.rows + FREEBOARD, dx };
         let first = m.first_row.fluid();
         let level = (s.rows as f64 + 0.5 - first) * dx;
-        let (settings, first) = (s.clone(), first * dx);
-        Ok(Self { settings, exact, medium, rules, tank, first, level, period })
+        let (settings, method, first) = (s.clone(), m.clone(), first * dx);
+        Self { settings, method, exact, medium, rules, tank, first, level, period }
     }
 
     /// The exact pressure at the place of a particle \[Pa\].
@@ -193,7 +200,8 @@ impl Column {
     /// The scene. Particles of walls have the density of the water that would be in their place: that of the
     /// interface is frozen, and what others push with is their mass by p/ρ², so that with the mass of the
     /// surface a compressed column would sink into the bottom.
-    fn parts(&self, m: &WaterMethod, context: &Context) -> Result<Parts, RunError> {
+    fn parts(&self) -> Result<Parts, RunError> {
+        let m = &self.method;
         let walls = water::wall_particles(m.first_row, &self.tank, m.support * self.medium.h);
         let walls = walls.into_iter().map(|(place, role)| self.at_rest(place).with_role(role));
         let particles: Vec<Particle> = self.water(m.first_row).chain(walls).collect();
@@ -202,28 +210,50 @@ impl Column {
             let most = depth / ((gamma as f64 - 1.0) * above);
             ("compressibility", compressibility, format!("less than {most:.4}"))
         })?;
-        let parts = Parts::new(self.medium, Domain::open(), particles, context);
+        let parts = Parts::new(self.medium, Domain::open(), particles);
         Ok(Parts { mirrors: self.tank.mirrors(), ..parts })
     }
 }
 
-fn run(m: &WaterMethod, s: &HydrostaticSettings, context: &Context) -> Result<Record, RunError> {
-    let column = Column::new(s, m, context)?;
-    let Column { medium, rules, period, .. } = &column;
-    let mut simulation = (m.build)(column.parts(m, context)?)?;
-    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin(m, &numbers, context);
-    let mut history = History::new(&column, &*simulation);
-    history.sample(&*simulation);
-    // Once a period and at the end.
-    let times = (1..).map(|k| f64::from(k) * period).take_while(|t| *t < rules.end);
-    let times: Vec<f64> = times.chain([rules.end]).collect();
-    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut history)
-        .at("history", &|history, simulation, _| history.sample(&*simulation))
-        .run(context)?
-        .put(&mut record);
-    history.measure(&mut record);
-    Ok(record)
+impl Problem for Column {
+    type Extra = ();
+    type Simulation = dyn Metered<()>;
+    type Watch = History;
+
+    fn method(&self) -> &WaterMethod {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        let HydrostaticSettings { rows, columns, h_over_dx, .. } = self.settings;
+        let (particles, decisive) = (rows as f64 * columns as f64, "end, courant, rows or columns");
+        Brief::new(self.medium, self.rules, particles, decisive)
+            .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]))
+    }
+
+    /// Once a period and at the end.
+    fn times(&self) -> Vec<f64> {
+        let times = (1..).map(|k| f64::from(k) * self.period);
+        times.take_while(|t| *t < self.rules.end).chain([self.rules.end]).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        self.parts()
+    }
+
+    fn watch(&self, _: &[Particle], simulation: &dyn Metered<()>) -> History {
+        let mut history = History::new(self, simulation);
+        history.sample(self, simulation);
+        history
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("history", |column, history, simulation, _, _| history.sample(column, simulation))
+    }
+
+    fn measure(&self, history: History, _: &dyn Metered<()>, record: &mut Record) {
+        history.measure(record);
+    }
 }
 
 fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
@@ -235,8 +265,7 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
 const HISTORY: [(&str, &str); 5] =
     [("t", "4 H/c0"), ("p_l2", "-"), ("level_drift", "H"), ("gap", "dx"), ("kinetic", "M g H")];
 
-struct History<'a> {
-    column: &'a Column,
+struct History {
     /// Mean heights of the lowest and of the highest particles at the start \[m\].
     start: [f64; 2],
     /// The columns of [`HISTORY`].
@@ -247,17 +276,17 @@ struct History<'a> {
     spread: f64,
 }
 
-harness::observed! { History<'_>: changes(rows, outside, spread), stays(column, start) }
+harness::observed! { History: changes(rows, outside, spread), stays(start) }
 
-impl<'a> History<'a> {
+impl History {
     /// No sample yet of water that starts as in this simulation.
-    fn new(column: &'a Column, simulation: &dyn Stepper<()>) -> Self {
+    fn new(column: &Column, simulation: &dyn Stepper<()>) -> Self {
         let start = ends(column, &fluid(simulation));
-        Self { column, start, rows: Vec::new(), outside: 0.0, spread: 0.0 }
+        Self { start, rows: Vec::new(), outside: 0.0, spread: 0.0 }
     }
 
-    fn sample(&mut self, simulation: &dyn Stepper<()>) {
-        let (water, column) = (fluid(simulation), self.column);
+    fn sample(&mut self, column: &Column, simulation: &dyn Stepper<()>) {
+        let water = fluid(simulation);
         let (s, medium, tank) = (&column.settings, &column.medium, &column.tank);
         let pressure: Vec<f64> = water.iter().map(|p| medium.eos.pressure(p.density)).collect();
         let exact: Vec<f64> = water.iter().map(|p| column.exact_pressure(p)).collect();
@@ -464,12 +493,12 @@ mod tests {
         let spec = HYDROSTATIC.spec("modern", |_| {});
         let settings: HydrostaticSettings =
             base::settings::of_json(&spec.settings).expect("settings");
-        let (method, context) = (schemes::water::modern(), Context::default());
-        let column = Column::new(&settings, &method, &context).expect("sound settings");
+        let method = schemes::water::modern();
+        let column = Column::new(&method, &settings);
         let (dx, g) = (column.medium.dx, settings.g);
         let water = || -> Vec<Particle> { column.water(method.first_row).collect() };
         let simulation = |particles: Vec<Particle>| {
-            let parts = Parts { particles, ..column.parts(&method, &context).expect("a scene") };
+            let parts = Parts { particles, ..column.parts().expect("a scene") };
             let mut simulation = (method.build)(parts).expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
             simulation
@@ -477,14 +506,14 @@ mod tests {
         let start = ends(&column, &water());
         assert!((start[0] - 0.5 * dx).abs() < 1e-12 && (start[1] - 19.5 * dx).abs() < 1e-12);
         let mut history = History::new(&column, &*simulation(water()));
-        history.sample(&*simulation(water()));
+        history.sample(&column, &*simulation(water()));
         let mut changed = water();
         for p in &mut changed {
             let exact = column.exact_pressure(p);
             p.density = column.medium.eos.density(1.03 * exact);
             p.velocity = Vector2::new(0.012, -0.016) * (g * settings.depth).sqrt();
         }
-        history.sample(&*simulation(changed.clone()));
+        history.sample(&column, &*simulation(changed.clone()));
         for p in &mut changed {
             match p.position.y / dx {
                 y if y > 19.0 => p.position.y += 0.2 * dx,
@@ -492,9 +521,9 @@ mod tests {
                 _ => {}
             }
         }
-        history.sample(&*simulation(changed.clone()));
+        history.sample(&column, &*simulation(changed.clone()));
         (changed[50].position.x, changed[61].position.x) = (-0.01 * dx, 10.01 * dx);
-        history.sample(&*simulation(changed));
+        history.sample(&column, &*simulation(changed));
         let is = |value: f64, expected: f64| {
             assert!((value - expected).abs() < 1e-9, "{value} instead of {expected}");
         };

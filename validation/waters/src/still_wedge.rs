@@ -2,10 +2,15 @@
 
 use base::{gate::*, mutation::Constant, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
-    simulate, table,
+    case::*,
+    composed::*,
+    declare::*,
+    method::*,
+    pictures,
+    problem::{Asked, Brief, Calls, Problem},
+    table,
 };
-use maths::metrics::norms::rms;
+use maths::metrics::{budget::Metered, norms::rms};
 use nalgebra::Vector2;
 use report::ColourMap;
 use schemes::water::WaterMethod;
@@ -46,7 +51,7 @@ fn variants() -> Compositions<Wedge> {
     let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";
-    Variants::of(run, |m, s| Ok(scene(s, m, &Context::of_rules())?.1))
+    Variants::of(|m, s| Ok(Still::new(m, s)))
         .with("seed", seed, schemes::water::seed(), |s| s.courant = 0.4)
         .with("modern", modern, schemes::water::modern(), |s| (s.alpha, s.courant) = (0.02, 0.8))
         .all
@@ -78,14 +83,21 @@ fn floor(s: &Wedge, x: f64) -> f64 {
     (s.apex - (x - HALF).abs()).max(0.0)
 }
 
-/// The medium and the rules.
-fn scene(s: &Wedge, m: &WaterMethod, context: &Context) -> Result<(Medium, Rules), RunError> {
-    let (dx, fall) = (1.0 / s.n as f64, s.gravity.sqrt());
-    let end = s.end * 4.0 / (s.c0 * fall);
-    let (medium, rules) = s.medium(m, [dx, s.c0 * fall, s.gravity, 0.0, end]);
-    let particles = 2.0 * HALF / (dx * dx);
-    simulate::check(m, &medium, &rules, particles, "end, courant, c0 or n", context)?;
-    Ok((medium, rules))
+/// The numbers of one run.
+struct Still {
+    settings: Wedge,
+    method: WaterMethod,
+    medium: Medium,
+    rules: Rules,
+}
+
+impl Still {
+    fn new(m: &WaterMethod, s: &Wedge) -> Self {
+        let (dx, fall) = (1.0 / s.n as f64, s.gravity.sqrt());
+        let end = s.end * 4.0 / (s.c0 * fall);
+        let (medium, rules) = s.medium(m, [dx, s.c0 * fall, s.gravity, 0.0, end]);
+        Self { settings: s.clone(), method: m.clone(), medium, rules }
+    }
 }
 
 /// A row at a depth behind sides, floor and wedge \[m\]: a particle on each vertex, and others between, about
@@ -151,9 +163,8 @@ fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Par
 
 /// What is measured over the last quarter of the run. The start is not quite at rest, and what sound is left
 /// must not be taken for a pressure: means over periods hide it, and the kinetic energy shows it.
-struct Moments<'a> {
-    settings: &'a Wedge,
-    medium: &'a Medium,
+#[derive(Default)]
+struct Moments {
     samples: f64,
     /// Sums of the errors of the pressure at the corners of the base and at the apex, and of every particle
     /// \[ρ g H\].
@@ -163,9 +174,7 @@ struct Moments<'a> {
     kinetic: f64,
 }
 
-harness::observed! {
-    Moments<'_>: changes(samples, corners, errors, kinetic), stays(settings, medium)
-}
+harness::observed! { Moments: changes(samples, corners, errors, kinetic), stays() }
 
 /// Samples a period.
 const SAMPLES: f64 = 8.0;
@@ -176,22 +185,20 @@ fn error(s: &Wedge, medium: &Medium, p: &Particle) -> f64 {
     (medium.eos.pressure(p.density) - exact) / (s.rho * s.gravity)
 }
 
-impl Moments<'_> {
-    fn sample(&mut self, simulation: &dyn Stepper<()>) {
-        let (s, medium) = (self.settings, self.medium);
+impl Moments {
+    fn sample(&mut self, Still { settings: s, medium, .. }: &Still, all: &[Particle]) {
         let kernel = Smoothing::<WendlandC2>::new(medium.h);
-        let mut water = simulation.particles();
-        water.retain(|p| p.role == Role::Fluid);
+        let water: Vec<&Particle> = all.iter().filter(|p| p.role == Role::Fluid).collect();
         let around = |x: f64| {
             let corner = Vector2::new(x, floor(s, x));
-            let weigh = |[sum, weight]: [f64; 2], p: &Particle| {
+            let weigh = |[sum, weight]: [f64; 2], p: &&Particle| {
                 let w = kernel.w((p.position - corner).norm_squared());
                 [sum + w * error(s, medium, p), weight + w]
             };
             let [sum, weight] = water.iter().fold([0.0; 2], weigh);
             sum / weight
         };
-        let energy = |p: &Particle| 0.5 * p.mass * p.velocity.norm_squared();
+        let energy = |p: &&Particle| 0.5 * p.mass * p.velocity.norm_squared();
         let mass: f64 = water.iter().map(|p| p.mass).sum();
         let kinetic = water.iter().map(energy).sum::<f64>() / (mass * s.gravity);
         self.kinetic = self.kinetic.max(kinetic);
@@ -203,8 +210,7 @@ impl Moments<'_> {
     }
 
     /// Metrics at the end, and the mean error of each particle if they are kept.
-    fn measure(&self, all: &[Particle], context: &Context, record: &mut Record) {
-        let s = self.settings;
+    fn measure(&self, s: &Wedge, all: &[Particle], record: &mut Record) {
         let [left, right, apex] = self.corners.map(|sum| sum / self.samples);
         let errors = self.errors.iter().map(|sum| sum / self.samples);
         record.put(P_L2, rms(errors.clone()));
@@ -214,33 +220,53 @@ impl Moments<'_> {
         let water = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.position);
         let is_outside = |x: &Vector2<f64>| (x.x - HALF).abs() > HALF || x.y < floor(s, x.x);
         record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
-        if context.spec.keep.particles {
+        if Asked::of(record).particles {
             let errors = water.zip(errors);
             pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
         }
     }
 }
 
-fn run(m: &WaterMethod, s: &Wedge, context: &Context) -> Result<Record, RunError> {
-    let (medium, rules) = scene(s, m, context)?;
-    let parts = Parts::new(medium, Domain::open(), particles(s, m, &medium)?, context);
-    let mut simulation = (m.build)(parts)?;
-    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin(m, &numbers, context);
-    let count = (0.25 * SAMPLES * s.end).ceil().max(1.0);
-    let times = (1..=count as usize).map(|k| rules.end * (0.75 + 0.25 * k as f64 / count));
-    let times: Vec<f64> = times.collect();
-    let (corners, errors) = ([0.0; 3], Vec::new());
-    let (settings, medium) = (s, &medium);
-    let mut moments = Moments { settings, medium, samples: 0.0, corners, errors, kinetic: 0.0 };
-    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut moments)
-        .at("moments", &|moments, simulation, _| moments.sample(&*simulation))
-        .run(context)?
-        .put(&mut record);
-    if record.status == Status::Completed {
-        moments.measure(&simulation.particles(), context, &mut record);
+impl Problem for Still {
+    type Extra = ();
+    type Simulation = dyn Metered<()>;
+    type Watch = Moments;
+
+    fn method(&self) -> &WaterMethod {
+        &self.method
     }
-    Ok(record)
+
+    fn brief(&self) -> Brief {
+        let dx = self.medium.dx;
+        let decisive = "end, courant, c0 or n";
+        Brief::new(self.medium, self.rules, 2.0 * HALF / (dx * dx), decisive)
+            .numbers(&self.rules.numbers([self.settings.h_over_dx, dx]))
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let count = (0.25 * SAMPLES * self.settings.end).ceil().max(1.0);
+        let time = |k: usize| self.rules.end * (0.75 + 0.25 * k as f64 / count);
+        (1..=count as usize).map(time).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        let particles = particles(&self.settings, &self.method, &self.medium)?;
+        Ok(Parts::new(self.medium, Domain::open(), particles))
+    }
+
+    fn watch(&self, _: &[Particle], _: &dyn Metered<()>) -> Moments {
+        Moments::default()
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("moments", |still, moments, s, _, _| moments.sample(still, &s.particles()))
+    }
+
+    fn measure(&self, moments: Moments, end: &dyn Metered<()>, record: &mut Record) {
+        if record.status == Status::Completed {
+            moments.measure(&self.settings, &end.particles(), record);
+        }
+    }
 }
 
 fn table(tier: Tier) -> table::Table<Wedge, ()> {
@@ -339,20 +365,16 @@ mod tests {
     /// Sums over four samples of errors at both corners of the base and at the apex.
     #[test]
     fn the_larger_error_of_both_corners_counts_with_its_sign() {
-        let (settings, method) = (wedge(), schemes::water::modern());
-        let (medium, _) = scene(&settings, &method, &Context::of_rules()).expect("settings");
         let samples = 4.0;
         for (left, right, base) in [(0.1, -0.2, -0.2), (-0.3, 0.2, -0.3), (0.05, 0.04, 0.05)] {
             let moments = Moments {
-                settings: &settings,
-                medium: &medium,
                 samples,
                 corners: [left, right, 0.07].map(|error| error * samples),
                 errors: vec![0.3 * samples, -0.3 * samples],
                 kinetic: 2e-6,
             };
             let mut record = Record::new("still_wedge", "modern", serde_json::json!({}), 1);
-            moments.measure(&[], &Context::default(), &mut record);
+            moments.measure(&wedge(), &[], &mut record);
             let expected = [(P_BASE, base), (P_APEX, 0.07), (P_L2, 0.3), (KINETIC, 2e-6)];
             for (metric, expected) in expected {
                 let value = record.value(metric).expect("a metric");
@@ -365,10 +387,10 @@ mod tests {
     /// particle inside of the wedge and one below the floor.
     #[test]
     fn what_is_measured_of_water_over_a_wedge_is_what_was_done_to_it() {
-        let (s, method, context) = (wedge(), schemes::water::modern(), Context::default());
-        let (medium, _) = scene(&s, &method, &Context::of_rules()).expect("settings");
-        let mut all = particles(&s, &method, &medium).expect("particles");
-        let exact = water::at_rest(&medium);
+        let still = Still::new(&schemes::water::modern(), &wedge());
+        let Still { settings: s, method, medium, .. } = &still;
+        let mut all = particles(s, method, medium).expect("particles");
+        let exact = water::at_rest(medium);
         let mut half = 0.0;
         for p in all.iter_mut().filter(|p| p.role == Role::Fluid && p.position.x < HALF) {
             let pressure = exact.pressure(1.0 - p.position.y) + 0.01 * s.rho * s.gravity;
@@ -377,14 +399,8 @@ mod tests {
             half += p.mass;
         }
         let mass: f64 = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum();
-        let mut simulation =
-            (method.build)(Parts::new(medium, Domain::open(), all.clone(), &context))
-                .expect("a scene");
-        simulation.advance(0.0, 1.0, &mut ());
-        let (corners, errors) = ([0.0; 3], Vec::new());
-        let mut moments =
-            Moments { settings: &s, medium: &medium, samples: 0.0, corners, errors, kinetic: 0.0 };
-        moments.sample(&*simulation);
+        let mut moments = Moments::default();
+        moments.sample(&still, &all);
         let [left, right, apex] = moments.corners;
         assert!((left - 0.01).abs() < 1e-9 && right.abs() < 1e-9, "{left} {right}");
         // On one of both sides of the apex.
@@ -395,7 +411,7 @@ mod tests {
         one.position = Vector2::new(HALF, 0.9 * s.apex);
         two.position.y = -0.01;
         let mut record = Record::new("still_wedge", "modern", serde_json::json!({}), 1);
-        moments.measure(&all, &context, &mut record);
+        moments.measure(s, &all, &mut record);
         assert_eq!(record.value(OUTSIDE), Some(2.0));
     }
 }

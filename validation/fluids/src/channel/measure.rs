@@ -145,7 +145,7 @@ pub fn last_of_mode(setup: &Setup, series: &[[f64; 2]], end: f64) -> Option<Prof
 
 #[cfg(test)]
 mod tests {
-    use harness::{context::Context, method::Method};
+    use harness::method::Method;
     use nalgebra::Vector2;
     use solver::Role;
 
@@ -160,7 +160,7 @@ mod tests {
 
     fn setup(flow: Flow) -> Setup {
         let settings = ChannelSettings { watch_mode: true, ..ChannelSettings::default() };
-        Setup::new(flow, &settings, &method(), &Context::default()).expect("the defaults are valid")
+        Setup::new(flow, &settings, &method()).expect("the defaults are valid")
     }
 
     /// The record of 20 rows whose velocity is this function of y \[m\] and t \[s\], compared at `tau`.
@@ -233,7 +233,7 @@ mod tests {
     fn the_pressure_mode_is_that_of_the_particles_and_its_end_is_kept() {
         let setup = setup(Flow::Poiseuille);
         let (s, v, eos) = (&setup.settings, setup.v, setup.medium.eos);
-        let mut parts = setup.parts(&method(), &Context::default());
+        let mut parts = setup.parts();
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity = Vector2::new(0.7 * v, 0.02 * v);
             let mode = cos(std::f64::consts::PI * p.position.y / s.width);

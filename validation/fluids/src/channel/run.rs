@@ -1,53 +1,78 @@
-//! One run of a channel flow: stepping, record.
+//! One run of a channel flow: what is measured, and when.
 
 use base::record::{Record, Status};
-use harness::{case::*, context::Context, method::*, runner::Drive, simulate};
-use solver::{Flow as Going, Particle, Role};
+use harness::{
+    case::*,
+    method::*,
+    problem::{Asked, Brief, Calls, Problem},
+};
+use solver::{Flow as Going, Particle, Role, Stepper};
 
 use super::measure::{self, MODE};
-use super::{ChannelSettings, Flow, Setup};
+use super::{Setup, setup::DECISIVE};
 
-/// One run of a flow.
-pub fn run(
-    flow: Flow,
-    method: &Method,
-    settings: &ChannelSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let setup = &Setup::new(flow, settings, method, context)?;
-    let mut simulation = (method.build)(setup.parts(method, context))?;
-    let (s, Medium { eos, h, dx, .. }) = (&setup.settings, setup.medium);
-    let c0 = eos.sound_speed;
-    let own = [("V [m/s]", setup.v), ("c0/V", c0 / setup.v), ("c0 h/nu", c0 * h / s.nu)];
-    let numbers = [&setup.rules.numbers([s.h_over_dx, dx])[..], &own].concat();
-    let mut record = simulate::begin(method, &numbers, context);
-    record.numerics.insert("columns".into(), setup.columns.into());
-    let compared = s.compared();
-    let times: Vec<f64> = compared.iter().map(|tau| setup.time(*tau)).collect();
-    let mut mode: Vec<[f64; 2]> = Vec::new();
-    let fluid = |mut all: Vec<Particle>| {
-        all.retain(|p| p.role == Role::Fluid);
-        all
-    };
-    let mut seen = (&mut mode, &mut record);
-    Drive::new(&mut *simulation, setup.rules.dt(), &times, eos, &mut seen)
-        .steps(s.least_steps, setup.rules.sweeps())
-        .after_step_if(s.watch_mode, "pressure mode", &|(mode, _), simulation| {
-            mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
-            Going::Continue
-        })
-        .at("profiles and errors", &|(_, record), simulation, k| {
-            measure::compare(setup, &fluid(simulation.particles()), compared[k], record);
-        })
-        .run(context)?
-        .put(&mut record);
-    let all = simulation.particles();
-    if record.status == Status::Completed {
-        measure::at_the_end(setup, &fluid(all), &mut record);
+/// The fluid of a simulation.
+fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
+    let mut all = simulation.particles();
+    all.retain(|p| p.role == Role::Fluid);
+    all
+}
+
+impl Problem for Setup {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    /// Time and amplitude of the pressure mode after every step, if that is asked for.
+    type Watch = Vec<[f64; 2]>;
+
+    fn method(&self) -> &Method {
+        &self.method
     }
-    if s.watch_mode {
-        let last = measure::last_of_mode(setup, &mode, simulation.time());
-        record.profiles.extend(last.map(|last| (MODE.into(), last)));
+
+    fn brief(&self) -> Brief {
+        let (s, Medium { eos, h, dx, .. }) = (&self.settings, self.medium);
+        let c0 = eos.sound_speed;
+        let own = [("V [m/s]", self.v), ("c0/V", c0 / self.v), ("c0 h/nu", c0 * h / s.nu)];
+        let particles = s.rows as f64 * self.columns as f64;
+        let mut brief = Brief::new(self.medium, self.rules, particles, DECISIVE)
+            .numbers(&self.rules.numbers([s.h_over_dx, dx]))
+            .numbers(&own);
+        brief.numbers.push(("columns", self.columns.into()));
+        Brief { least_steps: s.least_steps, ..brief }
     }
-    Ok(record)
+
+    fn times(&self) -> Vec<f64> {
+        self.settings.compared().iter().map(|tau| self.time(*tau)).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.parts())
+    }
+
+    fn watch(&self, _: &[Particle], _: &dyn Stepper<()>) -> Self::Watch {
+        Vec::new()
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls
+            .when(self.settings.watch_mode, |calls| {
+                calls.after_step("pressure mode", |setup, mode, simulation| {
+                    mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
+                    Going::Continue
+                })
+            })
+            .at("profiles and errors", |setup, _, simulation, k, record| {
+                let tau = setup.settings.compared()[k];
+                measure::compare(setup, &fluid(simulation), tau, record);
+            })
+    }
+
+    fn measure(&self, mode: Self::Watch, end: &dyn Stepper<()>, record: &mut Record) {
+        if record.status == Status::Completed {
+            measure::at_the_end(self, &fluid(end), record);
+        }
+        if self.settings.watch_mode {
+            let last = measure::last_of_mode(self, &mode, end.time());
+            record.profiles.extend(last.map(|last| (MODE.into(), last)));
+        }
+    }
 }

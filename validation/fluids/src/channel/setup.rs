@@ -2,7 +2,7 @@
 //! arrangement, each stated once.
 
 use base::random::Random;
-use harness::{case::*, context::Context, method::*, simulate};
+use harness::{case::*, method::*};
 use maths::exact::StartUp;
 use nalgebra::Vector2;
 use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
@@ -129,10 +129,12 @@ impl Flow {
 }
 
 /// The numbers of one run, SI units.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Setup {
     /// The settings they follow from.
     pub settings: ChannelSettings,
+    /// The method that they are for.
+    pub method: Method,
     /// What drives the fluid.
     pub flow: Flow,
     /// V = Re ν/L \[m/s\].
@@ -148,18 +150,13 @@ pub struct Setup {
 }
 
 /// The settings on which time and memory of a run depend.
-const DECISIVE: &str = "end, dt, c0, rows or columns";
+pub const DECISIVE: &str = "end, dt, c0, rows or columns";
 /// A sound speed above the range of the setting is refused, whatever it follows from \[m/s\].
 const MOST_SOUND: f64 = 1e6;
 
 impl Setup {
     /// Follows the rules for a method.
-    pub fn new(
-        flow: Flow,
-        s: &ChannelSettings,
-        method: &Method,
-        context: &Context,
-    ) -> Result<Self, RunError> {
+    pub fn new(flow: Flow, s: &ChannelSettings, method: &Method) -> Result<Self, RunError> {
         let v = s.speed();
         let force = match flow {
             Flow::Couette => 0.0,
@@ -196,14 +193,14 @@ impl Setup {
         let step = stable.forced(0.25, h, force).or_given(s.dt);
         let (limits, end) = (limits.moving(h, v, force), s.end * s.unit_of_time());
         let rules = Rules { step, limits, sound_speed, end };
-        let particles = s.rows as f64 * columns as f64;
-        simulate::check(method, &medium, &rules, particles, DECISIVE, context)?;
-        Ok(Self { settings: s.clone(), flow, v, force, medium, columns, rules })
+        let (settings, method) = (s.clone(), method.clone());
+        Ok(Self { settings, method, flow, v, force, medium, columns, rules })
     }
 
     /// The scene.
-    pub fn parts(&self, method: &Method, context: &Context) -> Parts {
-        let (s, Medium { dx, h, eos, .. }) = (&self.settings, &self.medium);
+    pub fn parts(&self) -> Parts {
+        let (s, method) = (&self.settings, &self.method);
+        let Medium { dx, h, eos, .. } = &self.medium;
         let mut particles = self.particles(method);
         let mut random = Random::new(1);
         for p in particles.iter_mut().filter(|p| p.role == Role::Fluid && s.jitter > 0.0) {
@@ -221,7 +218,7 @@ impl Setup {
             mirrors: self.mirrors(),
             skin: Some(skin),
             limits: Limits { density: [0.7 * s.rho, 1.3 * s.rho], speed },
-            ..Parts::new(self.medium, Domain::channel(length), particles, context)
+            ..Parts::new(self.medium, Domain::channel(length), particles)
         }
     }
 

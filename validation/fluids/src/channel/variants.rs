@@ -1,9 +1,9 @@
 //! The variants of the channel flows: methods, and the settings that go with them.
 
-use harness::{composed::*, context::Context, method::Method};
+use harness::{composed::*, method::Method};
 use schemes::flow::{self, OfChannels};
 
-use super::{ChannelSettings, Flow, Setup, run::run};
+use super::{ChannelSettings, Flow, Setup};
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.
 fn modern(s: &mut ChannelSettings) {
@@ -80,8 +80,7 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
     let single = "modern with one pair sweep a step in place of two: is its error cheaper?";
     let steps =
         "modern with super-time-stepping: what does a step save that viscosity does not limit?";
-    let rules = move |m: &_, s: &_| Ok(Setup::new(flow, s, m, &Context::of_rules())?.rules);
-    Variants::of(move |m, s, context| run(flow, m, s, context), rules)
+    Variants::of(move |m, s| Setup::new(flow, s, m))
         .with("seed", seed, methods.seed, |_| {})
         .with("interface-wall", interface, methods.interface_wall, |_| {})
         .with("wendland-leapfrog", kernel, methods.wendland, wendland)

@@ -374,7 +374,6 @@ mod tests {
 
     use crate::periodic_hill::{HillSettings, setup::FLUX as BULK};
     use base::functions::{cos, sin};
-    use harness::context::Context;
     use std::f64::consts::TAU;
 
     /// The scene of some settings, its kernel, and the viscosity 1/50.
@@ -382,8 +381,8 @@ mod tests {
         let mut settings = HillSettings::default();
         set(&mut settings);
         let method = schemes::hill::carried();
-        let setup = Setup::new(&settings, &method, &Context::default()).expect("sound settings");
-        let simulation = (method.build)(setup.parts(&Context::default())).expect("a scene");
+        let setup = Setup::new(&method, &settings).expect("sound settings");
+        let simulation = (method.build)(setup.parts()).expect("a scene");
         (setup, simulation)
     }
 
@@ -539,7 +538,7 @@ mod tests {
     fn the_mean_velocity_is_that_of_the_volumes() {
         let (setup, _) = scene(|_| {});
         let method = schemes::hill::carried();
-        let mut parts = setup.parts(&Context::default());
+        let mut parts = setup.parts();
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
         }
@@ -570,7 +569,7 @@ mod tests {
         let [offset, _] = seen(&setup, &*scene(|s| s.crest = 1.02).1);
         assert!((offset - 0.2).abs() < 0.02, "{offset}");
         let method = schemes::hill::carried();
-        let mut parts = setup.parts(&Context::default());
+        let mut parts = setup.parts();
         let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
         for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {
             p.position.y = y;

@@ -11,7 +11,7 @@ mod reference;
 mod run;
 mod setup;
 
-use harness::{composed::*, context::Context};
+use harness::composed::*;
 use schemes::hill;
 
 use crate::unit_flow::unit_settings;
@@ -62,7 +62,7 @@ fn variants() -> Compositions<HillSettings> {
                    know how the velocity bends";
     let consistent = "carried with sums that are exact for linear fields: are they worth more work for each \
                       pair?";
-    Variants::of(run::run, |m, s| Ok(Setup::new(s, m, &Context::of_rules())?.flow.rules))
+    Variants::of(Setup::new)
         .with("plain", plain, hill::plain(), |_| {})
         .with("interface-wall", interface, hill::interface_wall(), |_| {})
         .with("modern", modern, hill::modern(), |_| {})

@@ -1,10 +1,15 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
 use base::{functions::exp, record::*};
-use harness::{case::RunError, context::Context, runner::Drive, simulate};
+use harness::{
+    case::RunError,
+    method::Parts,
+    problem::{Asked, Brief, Calls, Problem},
+};
 use schemes::hill::{Driving, HillMethod};
 
 use super::{HillSettings, Setup, measure::*};
+use solver::Particle;
 
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;
@@ -32,7 +37,7 @@ fn is_last(time: f64, end: f64, length: f64) -> bool {
 ///
 /// With t = T/4 both roots are −2/T: the fastest without overshoot.
 #[derive(Clone, Copy, Debug)]
-struct Controller {
+pub struct Controller {
     /// u* \[m/s\].
     wanted: f64,
     /// T \[s\]; 0 keeps the force.
@@ -59,31 +64,35 @@ impl Controller {
 }
 
 /// Holds the flux and samples the flow through time.
-struct Monitor {
+pub struct Monitor {
     controller: Controller,
     window: Window,
     /// t, force, flux, kinetic energy.
     series: Vec<[f64; 4]>,
+    /// Area of the fluid \[m²\].
+    area: f64,
+    /// Time between looks \[s\].
+    stretch: f64,
+    /// Mean velocity along x at the last look \[m/s\].
+    mean: f64,
 }
 
-harness::observed! { Monitor: changes(controller, window, series), stays() }
+harness::observed! { Monitor: changes(controller, window, series, mean), stays(area, stretch) }
 
 impl Monitor {
-    /// After a stretch: the controller acts, and the flow is sampled if it is time.
-    fn look(&mut self, setup: &Setup, area: f64, simulation: &mut dyn Driving, stretch: f64) {
+    /// After a stretch: the flow is sampled if it is time.
+    fn look(&mut self, setup: &Setup, simulation: &dyn Driving) {
         let (time, force) = (simulation.time(), self.controller.force);
-        let mean = mean_velocity(simulation, area);
-        let flux = mean * area / setup.hill.period();
+        self.mean = mean_velocity(simulation, self.area);
+        let flux = self.mean * self.area / setup.hill.period();
         let HillSettings { end, average, .. } = setup.settings;
         if is_last(time, end, average * end) {
             self.window.forces.push([force, flux]);
-            if is_first([time, stretch], average * end / SAMPLES) {
+            if is_first([time, self.stretch], average * end / SAMPLES) {
                 self.window.sample(setup, simulation);
             }
         }
-        self.controller.look(mean, stretch);
-        simulation.drive(self.controller.force);
-        if is_first([time, stretch], ENTRY) {
+        if is_first([time, self.stretch], ENTRY) {
             self.series.push([time, force, flux, kinetic_energy(simulation)]);
         }
     }
@@ -94,40 +103,73 @@ fn kinetic_energy(simulation: &dyn Driving) -> f64 {
     simulation.data().fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum()
 }
 
-/// One run of the flow over hills.
-pub fn run(method: &HillMethod, s: &HillSettings, context: &Context) -> Result<Record, RunError> {
-    let setup = &Setup::new(s, method, context)?;
-    let mut simulation = (method.build)(setup.parts(context))?;
-    let flow = &setup.flow;
-    let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
-    let mut record = simulate::begin(method, &numbers, context);
-    let stretches = (s.end / (STRETCH * flow.rules.dt())).ceil().max(1.0) as usize;
-    let stretch = s.end / stretches as f64;
-    let times: Vec<f64> = (1..=stretches).map(|k| stretch * k as f64).collect();
-    let area = setup.area();
-    let wanted = setup.flux() * setup.hill.period() / area;
-    let last = mean_velocity(&*simulation, area);
-    let controller = Controller { wanted, response: s.response, force: s.force, last };
-    let start = [0.0, s.force, last * area / setup.hill.period(), kinetic_energy(&*simulation)];
-    let mut monitor = Monitor { controller, window: Window::default(), series: vec![start] };
-    Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut monitor)
-        .at("controller and samples", &|monitor, s, _| monitor.look(setup, area, s, stretch))
-        .resumed(&|monitor, simulation| {
-            // Until its first look the force is that of the scene, which may have a deliberate error.
-            if !monitor.series.is_empty() {
-                simulation.drive(monitor.controller.force);
-            }
-        })
-        .run(context)?
-        .put(&mut record);
-    if record.status == Status::Completed {
-        measure(setup, &monitor.window, area, &mut record);
-        particles(setup, &*simulation, context.spec.keep.particles, &mut record);
+impl Setup {
+    /// Looks of the controller.
+    fn stretches(&self) -> f64 {
+        (self.settings.end / (STRETCH * self.flow.rules.dt())).ceil().max(1.0)
     }
-    let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
-    let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
-    record.profiles.insert("series".into(), Profile::of_rows(&columns, &monitor.series));
-    Ok(record)
+}
+
+impl Problem for Setup {
+    type Extra = ();
+    type Simulation = dyn Driving;
+    type Watch = Monitor;
+
+    fn method(&self) -> &HillMethod {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        self.flow.brief()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let stretches = self.stretches() as usize;
+        let stretch = self.settings.end / stretches as f64;
+        (1..=stretches).map(|k| stretch * k as f64).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.parts())
+    }
+
+    fn watch(&self, _: &[Particle], simulation: &dyn Driving) -> Monitor {
+        let (s, area, period) = (&self.settings, self.area(), self.hill.period());
+        let mean = mean_velocity(simulation, area);
+        let wanted = self.flux() * period / area;
+        let controller = Controller { wanted, response: s.response, force: s.force, last: mean };
+        let series = vec![[0.0, s.force, mean * area / period, kinetic_energy(simulation)]];
+        let (window, stretch) = (Window::default(), s.end / self.stretches());
+        Monitor { controller, window, series, area, stretch, mean }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls
+            .at("samples", |setup, monitor, simulation, _, _| monitor.look(setup, simulation))
+            .control(
+                "controller",
+                |_, monitor, simulation, _, _| {
+                    monitor.controller.look(monitor.mean, monitor.stretch);
+                    simulation.drive(monitor.controller.force);
+                },
+                |_, monitor, simulation| simulation.drive(monitor.controller.force),
+            )
+    }
+
+    fn measure(
+        &self,
+        Monitor { window, series, area, .. }: Monitor,
+        end: &dyn Driving,
+        record: &mut Record,
+    ) {
+        if record.status == Status::Completed {
+            measure(self, &window, area, record);
+            particles(self, end, Asked::of(record).particles, record);
+        }
+        let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
+        let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
+        record.profiles.insert("series".into(), Profile::of_rows(&columns, &series));
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! From settings to numbers and particles.
 
-use harness::{case::RunError, context::Context, method::Parts};
+use harness::{case::RunError, method::Parts};
 use maths::geometry::{Curve, Hill};
 use nalgebra::Vector2;
 use schemes::hill::HillMethod;
@@ -16,14 +16,14 @@ pub const FLUX: f64 = 2.035;
 pub struct Setup {
     /// The settings they follow from.
     pub settings: HillSettings,
+    /// The method that they are for.
+    pub method: HillMethod,
     /// The channel.
     pub hill: Hill,
     /// Medium, time step, sound speed.
     pub flow: UnitFlow,
     /// Depth of the first row of wall particles \[dx\].
     pub first: f64,
-    /// Do wall particles read their feet?
-    has_feet: bool,
     /// What to compare with, where there is something.
     pub reference: Option<&'static Reference>,
 }
@@ -33,10 +33,10 @@ impl Setup {
     ///
     /// # Errors
     /// If the settings make no run, or the reference cannot be read.
-    pub fn new(s: &HillSettings, method: &HillMethod, context: &Context) -> Result<Self, RunError> {
+    pub fn new(method: &HillMethod, s: &HillSettings) -> Result<Self, RunError> {
         // The largest speed, over the crest, is below 1.6 U_b.
         let scales = Scales { speed: 1.6, force: s.force, area: 27.0, dt: None };
-        let flow = s.flow(method, scales, context)?;
+        let flow = s.flow(method, scales);
         let hill = Hill::new(1.0).map_err(|e| RunError::Reference(e.to_string()))?;
         let reference = Reference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;
         if s.from_reference && reference.is_none() {
@@ -46,16 +46,17 @@ impl Setup {
                 allowed: format!("{KNOWN_SETTINGS}, the flows that have a reference"),
             });
         }
-        let (first, has_feet) = (method.first_row.depth(), method.has_feet);
-        Ok(Self { settings: s.clone(), hill, flow, first, has_feet, reference })
+        let (settings, method) = (s.clone(), method.clone());
+        let first = method.first_row.depth();
+        Ok(Self { settings, method, hill, flow, first, reference })
     }
 
     /// The scene. Walls extrapolate the pressure without the body force: over a spacing it is 1 % of the
     /// pressure of the flow and less.
-    pub fn parts(&self, context: &Context) -> Parts {
+    pub fn parts(&self) -> Parts {
         let domain = Domain::channel(self.hill.period());
-        let parts = self.flow.parts(domain, self.particles(), context);
-        if !self.has_feet {
+        let parts = self.flow.parts(domain, self.particles());
+        if !self.method.has_feet {
             return parts;
         }
         let curves = self.curves();

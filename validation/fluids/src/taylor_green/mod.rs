@@ -4,7 +4,7 @@
 mod run;
 
 use base::{functions::log10, gate::*, record::Record};
-use harness::{case::*, composed::*, context::Context, declare::*, table};
+use harness::{case::*, composed::*, declare::*, table};
 use report::{Axis, ColourMap};
 use schemes::flow;
 
@@ -51,7 +51,7 @@ fn variants() -> Compositions<VortexSettings> {
     let carried =
         "modern with stronger shifting that takes the velocity of the new place: is that enough?";
     let consistent = "carried with sums that are exact for linear fields";
-    Variants::of(run, |m, s| Ok(Setup::new(s, m, &Context::of_rules())?.flow.rules))
+    Variants::of(|m, s| Ok(Setup::new(m, s)))
         .with("plain", plain, flow::vortices_plain(), |_| {})
         .with("modern", modern, flow::vortices_modern(), |_| {})
         .with("carried", carried, flow::vortices_carried(), strong)

@@ -1,19 +1,24 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
-use solver::{Domain, EquationOfState, Particle};
+use solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
 use crate::unit_flow::{Scales, UnitFlow};
 use base::{functions::hypot, random::Random, record::*};
 use harness::{
-    case::RunError, context::Context, method::Method, pictures, rules, runner::Drive, simulate,
+    case::RunError,
+    method::{Method, Parts},
+    pictures,
+    problem::{Asked, Brief, Calls, Problem},
+    rules, simulate,
 };
 use maths::{exact::TaylorGreen, metrics::norms::largest};
 
 /// The numbers of one run, L = U = ρ = 1.
 pub struct Setup {
     settings: VortexSettings,
+    method: Method,
     exact: TaylorGreen,
     /// Medium, time step, sound speed.
     pub flow: UnitFlow,
@@ -32,11 +37,10 @@ base::metrics! {
 
 impl Setup {
     /// Follows the rules for a method.
-    pub fn new(s: &VortexSettings, method: &Method, context: &Context) -> Result<Self, RunError> {
-        let flow =
-            s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt }, context)?;
+    pub fn new(method: &Method, s: &VortexSettings) -> Self {
+        let flow = s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt });
         let exact = TaylorGreen { nu: flow.medium.nu };
-        Ok(Self { settings: s.clone(), exact, flow })
+        Self { settings: s.clone(), method: method.clone(), exact, flow }
     }
 
     /// Particles of equal volume with the velocity and the pressure of the flow at their places.
@@ -86,42 +90,72 @@ const DECAYED: f64 = 0.01;
 /// Samples of the series.
 const SAMPLES: usize = 40;
 
-/// One run of the vortices.
-pub fn run(method: &Method, s: &VortexSettings, context: &Context) -> Result<Record, RunError> {
-    let setup = Setup::new(s, method, context)?;
-    let flow = &setup.flow;
-    let parts = flow.parts(Domain::torus(1.0, 1.0), setup.particles(), context);
-    let mut simulation = (method.build)(parts)?;
-    let numbers = flow.rules.numbers([s.h_over_dx, flow.medium.dx]);
-    let mut record = simulate::begin(method, &numbers, context);
-    let end = s.end;
-    let times = rules::samples(end, SAMPLES, s.dt);
-    let start = simulation.particles();
-    let mut series = vec![[0.0, setup.error(0.0, &start)]];
-    Drive::new(&mut *simulation, flow.rules.dt(), &times, flow.medium.eos, &mut series)
-        .at("series", &|series, simulation, _| {
-            let time = simulation.time();
-            series.push([time, setup.error(time, &simulation.particles())]);
-        })
-        .run(context)?
-        .put(&mut record);
-    let end = simulation.particles();
-    if record.status == Status::Completed {
-        measure(&setup, [&start, &end], &series, &mut record);
-        if context.spec.keep.particles {
-            let (time, scale) = (simulation.time(), setup.exact.decay(simulation.time()));
-            let all = end.iter().map(|p| {
-                let error = (p.velocity - setup.exact.velocity(p.position, time)).norm() / scale;
-                (p.position.map(|x| x.rem_euclid(1.0)), error)
-            });
-            pictures::keep(&mut record, pictures::END, "L", ("error", "U exp(bt)"), all);
-        }
+/// The particles at the start, and time and error at the samples.
+pub struct Series {
+    start: Vec<Particle>,
+    errors: Vec<[f64; 2]>,
+}
+
+harness::observed! { Series: changes(errors), stays(start) }
+
+impl Problem for Setup {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Series;
+
+    fn method(&self) -> &Method {
+        &self.method
     }
-    // The exact flow may have decayed to 0.
-    series.retain(|[_, error]| error.is_finite());
-    let columns = [("t", "L/U"), ("error", "-")];
-    record.profiles.insert("series".into(), Profile::of_rows(&columns, &series));
-    Ok(record)
+
+    fn brief(&self) -> Brief {
+        self.flow.brief()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        rules::samples(self.settings.end, SAMPLES, self.settings.dt)
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.flow.parts(Domain::torus(1.0, 1.0), self.particles()))
+    }
+
+    fn watch(&self, _: &[Particle], simulation: &dyn Stepper<()>) -> Series {
+        let start = simulation.particles();
+        let errors = vec![[0.0, self.error(0.0, &start)]];
+        Series { start, errors }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("series", |setup, series, simulation, _, _| {
+            let time = simulation.time();
+            series.errors.push([time, setup.error(time, &simulation.particles())]);
+        })
+    }
+
+    fn measure(
+        &self,
+        Series { start, mut errors }: Series,
+        simulation: &dyn Stepper<()>,
+        record: &mut Record,
+    ) {
+        let end = simulation.particles();
+        if record.status == Status::Completed {
+            measure(self, [&start, &end], &errors, record);
+            if Asked::of(record).particles {
+                let time = simulation.time();
+                let scale = self.exact.decay(time);
+                let all = end.iter().map(|p| {
+                    let error = (p.velocity - self.exact.velocity(p.position, time)).norm() / scale;
+                    (p.position.map(|x| x.rem_euclid(1.0)), error)
+                });
+                pictures::keep(record, pictures::END, "L", ("error", "U exp(bt)"), all);
+            }
+        }
+        // The exact flow may have decayed to 0.
+        errors.retain(|[_, error]| error.is_finite());
+        let columns = [("t", "L/U"), ("error", "-")];
+        record.profiles.insert("series".into(), Profile::of_rows(&columns, &errors));
+    }
 }
 
 fn measure(
@@ -180,8 +214,7 @@ mod tests {
 
     fn setup() -> Setup {
         let settings = VortexSettings { n: 40, ..VortexSettings::default() };
-        Setup::new(&settings, &schemes::flow::vortices_modern(), &Context::of_rules())
-            .expect("the defaults")
+        Setup::new(&schemes::flow::vortices_modern(), &settings)
     }
 
     /// The record of particles that have the exact velocity times `1 + error`, a uniform velocity and the

@@ -19,8 +19,8 @@ use solver::{
 };
 
 pub use crate::medium::{Knob, Medium};
-use crate::{context::Context, outline::Sink};
 pub use mutate::mutate;
+pub(crate) use mutate::see;
 pub use properties::{Properties, Standard};
 pub use terms::{Boundary, FirstRow, FromMedium};
 
@@ -44,41 +44,29 @@ pub struct Parts<X = ()> {
     pub skin: Option<f64>,
     /// Bounds beyond which the run counts as diverged.
     pub limits: solver::Limits,
-    /// Threads inside the run.
+    /// Threads inside the run, 1 for serial; 0 counts as 1.
     pub threads: usize,
     /// A deliberate error.
     pub mutation: Option<Mutation>,
     /// A small disorder of the start.
     pub disorder: Option<Disorder>,
-    /// Where these parts are told, if another code wants to know them.
-    pub outline: Option<Sink>,
 }
 
 impl<X: Numbers> Parts<X> {
-    /// Parts without walls, with the usual skin and limits and the threads of a context; of another code's
-    /// run with its particles.
-    pub fn new(
-        medium: Medium,
-        domain: Domain,
-        particles: Vec<Particle<X>>,
-        context: &Context,
-    ) -> Self {
+    /// Parts without walls, with the usual skin and limits, for a serial run.
+    pub fn new(medium: Medium, domain: Domain, particles: Vec<Particle<X>>) -> Self {
         Self {
             medium,
             domain,
-            particles: match context.playback {
-                Some(playback) => playback.particles(particles),
-                None => particles,
-            },
+            particles,
             mirrors: Vec::new(),
             surface: Vec::new(),
             bodies: Vec::new(),
             skin: None,
             limits: solver::Limits::default(),
-            threads: context.threads,
-            mutation: context.spec.mutation,
-            disorder: context.spec.disorder,
-            outline: context.outline.clone(),
+            threads: 1,
+            mutation: None,
+            disorder: None,
         }
     }
 }
@@ -115,6 +103,13 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     pub properties: Properties,
     /// The simulation of a scene with these parts.
     pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
+}
+
+// Derived, it would ask for clones of `X` and `D`, which a method has none of.
+impl<X, D: ?Sized> Clone for Method<X, D> {
+    fn clone(&self) -> Self {
+        Self { properties: self.properties.clone(), build: self.build }
+    }
 }
 
 impl<X, D: ?Sized> Deref for Method<X, D> {

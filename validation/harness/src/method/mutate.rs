@@ -10,14 +10,9 @@ use solver::{Numbers, Particle, Role};
 use super::Parts;
 use crate::relation::{DENSITY, LENGTH, NoSymmetry, Relation, View};
 
-/// Disorders the start, then multiplies the constant that is wrong by its factor; the time step is not a
-/// part of a scene, and neither are the lifetime of neighbour lists and what bodies of a total Lagrangian
-/// solid have. Before, the parts are told to who wants to know them, as that observer sees them.
+/// Disorders the start, then multiplies the constant that is wrong by its factor. The time step is no part of
+/// a scene, and neither are the lifetime of neighbour lists and the bodies of a total Lagrangian solid.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
-    if let Some(outline) = parts.outline.clone() {
-        let view = outline.relation.map_or(Ok(View::default()), |relation| see(parts, relation));
-        outline.scene(parts.medium, parts.domain, &parts.mirrors, &parts.bodies, view);
-    }
     if let Some(disorder) = parts.disorder {
         disturb(parts, disorder);
     }
@@ -64,7 +59,10 @@ fn disturb<X: Numbers>(parts: &mut Parts<X>, Disorder { most, seed }: Disorder) 
 }
 
 /// Makes the parts those that another observer sees.
-fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetry> {
+///
+/// # Errors
+/// Why the relation is no symmetry of the scene.
+pub(crate) fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetry> {
     let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
     let Parts { medium, domain, particles, mirrors, surface, bodies, skin, limits, .. } = parts;
     let view = View::of(by, medium, domain, mirrors, &moves)?;
@@ -83,14 +81,11 @@ fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetr
 
 #[cfg(test)]
 mod tests {
-    use base::{mutation::Mutation, spec::RunSpec};
+    use base::mutation::Mutation;
     use solver::{Domain, PlaneWall, Tait};
 
     use super::*;
-    use crate::{
-        context::Context,
-        method::{Medium, Method},
-    };
+    use crate::method::{Medium, Method};
 
     type Plain = solver::Compose<
         solver::CubicSpline,
@@ -117,12 +112,11 @@ mod tests {
         };
         let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
         let wall = fluid.with_role(Role::Wall);
-        let spec = RunSpec { mutation, ..RunSpec::default() };
-        let context = Context { spec, ..Context::default() };
         let wall_at = PlaneWall::new(Vector2::new(0.0, 1.0), -Vector2::y(), Vector2::x());
         Parts {
             mirrors: vec![wall_at],
-            ..Parts::new(medium, Domain::open(), vec![fluid, wall], &context)
+            mutation,
+            ..Parts::new(medium, Domain::open(), vec![fluid, wall])
         }
     }
 

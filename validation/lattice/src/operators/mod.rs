@@ -15,7 +15,6 @@ mod tests;
 
 use harness::{
     composed::*,
-    context::Context,
     declare::{Declaration, Drawn, Draws, Posed},
     method::*,
 };
@@ -139,10 +138,9 @@ fn subjects() -> impl Iterator<Item = &'static Subject> {
 }
 
 fn variants() -> Compositions<OperatorSettings> {
-    let none = Variants::of(
-        |(of, method): &(&Subject, _), s, context| run::run(of, method, s, context),
-        |(_, method), s| run::rules(method, s, &Context::of_rules()),
-    );
+    let none = Variants::of(|(of, method): &(&'static Subject, Method), s| {
+        Ok(run::Sampled::new(of, method, s))
+    });
     let add = |all: Variants<_, _>, of: &'static Subject| {
         all.lacking([of.name, of.about()], (of, (of.method)()), Vec::new(), of.adjust)
     };

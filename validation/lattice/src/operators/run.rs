@@ -7,7 +7,12 @@ use base::{
     random::Random,
     record::*,
 };
-use harness::{case::*, context::Context, declare::Fact, method::*, simulate};
+use harness::{
+    case::*,
+    declare::Fact,
+    method::*,
+    problem::{Brief, Problem},
+};
 use maths::theory::time_step::{self, Mode};
 use nalgebra::Vector2;
 use schemes::lattice::summing_step;
@@ -59,20 +64,6 @@ fn medium(method: &Method, s: &OperatorSettings) -> Medium {
     let medium = method.medium(Tait::new(1.0, 1.0), [dx, s.h_over_dx * dx]);
     // Viscosity as fast as sound.
     Medium { nu: medium.h * medium.eos.sound_speed, eta2_over_h2: ETA2, ..medium }
-}
-
-/// Step, limits and end.
-pub(super) fn rules(
-    method: &Method,
-    s: &OperatorSettings,
-    context: &Context,
-) -> Result<Rules, RunError> {
-    let medium = medium(method, s);
-    let limits = method.limits([s.h_over_dx, ETA2], 32, &medium.waves(&method.uses));
-    let step = Step::given(summing_step(&medium));
-    let rules = Rules { step, limits, sound_speed: 1.0, end: step.dt * s.steps as f64 };
-    simulate::check(method, &medium, &rules, (s.n * s.n) as f64, "n or steps", context)?;
-    Ok(rules)
 }
 
 /// sin Kx cos Ky.
@@ -210,45 +201,90 @@ impl Sums<'_> {
     }
 }
 
-/// One run of a variant.
-pub(super) fn run(
-    of: &Subject,
-    method: &Method,
-    s: &OperatorSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let (medium, rules) = (medium(method, s), rules(method, s, context)?);
-    let mut random = Random::new(s.seed as u64);
-    let mut shake = || s.disorder * medium.dx * (2.0 * random.uniform() - 1.0);
-    let particles = solver::lattice(Vector2::repeat(0.5 * medium.dx), medium.dx, s.n, s.n)
-        .map(|x| of.operator.particle(x + Vector2::new(shake(), shake()), &medium))
-        .collect();
-    let parts = Parts::new(medium, Domain::torus(1.0, 1.0), particles, context);
-    let start = parts.particles.clone();
-    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let mut record = simulate::begin(method, &numbers, context);
-    let simulation =
-        simulate::simulate(method, parts, [rules.dt(), rules.end], context, &mut record)?;
-    if record.status == Status::Completed {
-        measure(of, &start, &*simulation, &medium, &mut record);
+/// A run of an operator.
+pub(super) struct Sampled {
+    of: &'static Subject,
+    method: Method,
+    settings: OperatorSettings,
+    medium: Medium,
+    rules: Rules,
+}
+
+impl Sampled {
+    pub fn new(of: &'static Subject, method: &Method, s: &OperatorSettings) -> Self {
+        let medium = medium(method, s);
+        let limits = method.limits([s.h_over_dx, ETA2], 32, &medium.waves(&method.uses));
+        let step = Step::given(summing_step(&medium));
+        let rules = Rules { step, limits, sound_speed: 1.0, end: step.dt * s.steps as f64 };
+        Self { of, method: method.clone(), settings: s.clone(), medium, rules }
+    }
+}
+
+/// The particles at the start.
+pub(super) struct Start {
+    particles: Vec<Particle>,
+}
+
+harness::observed! { Start: changes(), stays(particles) }
+
+impl Problem for Sampled {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Start;
+    const READS_START: bool = true;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        let OperatorSettings { n, h_over_dx, .. } = self.settings;
+        Brief::new(self.medium, self.rules, (n * n) as f64, "n or steps")
+            .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]))
+    }
+
+    fn times(&self) -> Vec<f64> {
+        vec![self.rules.end]
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        let (s, medium) = (&self.settings, self.medium);
+        let mut random = Random::new(s.seed as u64);
+        let mut shake = || s.disorder * medium.dx * (2.0 * random.uniform() - 1.0);
+        let particles = solver::lattice(Vector2::repeat(0.5 * medium.dx), medium.dx, s.n, s.n)
+            .map(|x| self.of.operator.particle(x + Vector2::new(shake(), shake()), &medium))
+            .collect();
+        Ok(Parts::new(medium, Domain::torus(1.0, 1.0), particles))
+    }
+
+    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Start {
+        Start { particles: start.to_vec() }
+    }
+
+    fn measure(
+        &self,
+        Start { particles: start }: Start,
+        end: &dyn Stepper<()>,
+        record: &mut Record,
+    ) {
+        if record.status != Status::Completed {
+            return;
+        }
+        let Self { of, method, settings, medium, .. } = self;
+        measure(of, &start, end, medium, record);
+        let weight: &dyn Fn(f64) -> f64 = &|r2| end.weight(r2);
         if !of.is_corrected {
             let reach = method.support * medium.h;
-            let sums = Sums {
-                operator: of.operator,
-                medium: &medium,
-                reach,
-                weight: &|r2| simulation.weight(r2),
-            };
-            let error = sums.error(&start, &simulation.particles(), simulation.time());
+            let sums = Sums { operator: of.operator, medium, reach, weight };
+            let error = sums.error(&start, &end.particles(), end.time());
             record.put_or(SUM_ERROR, error, "the support reaches half of the period");
         }
-        if s.disorder == 0.0 {
-            let symbol = of.symbol(method, s, &|r2| simulation.weight(r2));
+        if settings.disorder == 0.0 {
+            let symbol = of.symbol(method, settings, weight);
             let gain = record.value(GAIN).unwrap_or(f64::NAN);
             record.put(SYMBOL_ERROR, (gain / symbol - 1.0).abs());
         }
     }
-    Ok(record)
 }
 
 /// The operator on all particles against its exact values.

@@ -7,6 +7,8 @@ use base::mutation::{Constant, Mutation};
 use harness::case::Case;
 use solver::{QuinticSpline, Smoothing};
 
+use harness::context::Context;
+
 use super::{
     run::{NOISE, SUM_ERROR, SYMBOL_ERROR},
     *,

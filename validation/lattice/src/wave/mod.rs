@@ -18,7 +18,6 @@ use base::{gate::*, record::MetricKey};
 use harness::{
     case::*,
     composed::*,
-    context::Context,
     declare::{Declaration, Posed},
     table::{Row, Table},
 };
@@ -145,8 +144,7 @@ fn variants(of: Polarisation) -> Compositions<WaveSettings> {
     let of_step =
         "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";
     let of_diffusion = "does density diffusion decay as its symbol says? else as cubic-leapfrog";
-    let rules = move |m: &_, s: &_| Ok(run::Wave::new(of, s, m, &Context::of_rules())?.rules);
-    Variants::of(move |m, s, context| run::run(of, m, s, context), rules)
+    Variants::of(move |m, s| run::Wave::new(of, s, m))
         .with(CUBIC, of_kernel, schemes::lattice::cubic(), |_| ())
         .with(MIDPOINT, of_step, schemes::lattice::midpoint(), |_| ())
         .with(QUINTIC, of_kernel, schemes::lattice::quintic(), |_| ())
@@ -294,10 +292,8 @@ mod tests {
     use super::*;
     use crate::tests::judged;
     use base::functions::ln;
-    use harness::{
-        case::{Case, RunError},
-        context::Context,
-    };
+    use harness::case::{Case, RunError};
+    use harness::context::Context;
 
     /// Every kernel, integrator and smoothing length of the quick tier has the lattice's symbols.
     #[test]

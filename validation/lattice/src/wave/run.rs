@@ -5,20 +5,18 @@ use std::iter::once;
 use base::{
     functions::{cos, sin},
     random::Random,
-    record::{self, *},
+    record::*,
 };
 use harness::{
     case::*,
-    context::Context,
     method::*,
-    runner::{self, Drive},
+    problem::{Asked, Brief, Calls, Problem},
     simulate,
-    size::Size,
 };
 use maths::metrics::norms::largest;
 use maths::theory::time_step::{self, Mode, modes};
 use nalgebra::Vector2;
-use solver::{EquationOfState, Flow, Stepper, Tait};
+use solver::{EquationOfState, Flow, Particle, Stepper, Tait};
 
 use super::{
     fit::{self, DampedMode},
@@ -27,9 +25,10 @@ use super::{
 use crate::torus;
 
 /// The numbers of one run, SI units.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub(super) struct Wave {
     settings: WaveSettings,
+    method: Method,
     /// Which wave.
     polarisation: Polarisation,
     /// Phase from one particle to the next.
@@ -43,8 +42,7 @@ pub(super) struct Wave {
 }
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
-struct Projection<'a> {
-    wave: &'a Wave,
+pub(super) struct Projection {
     /// cos and sin of the phase of each label, over the sum of their squares.
     basis: Vec<[f64; 2]>,
     series: Vec<[f64; 3]>,
@@ -52,7 +50,7 @@ struct Projection<'a> {
     momentum: Option<[[f64; 2]; 2]>,
 }
 
-harness::observed! { Projection<'_>: changes(series, momentum), stays(wave, basis) }
+harness::observed! { Projection: changes(series, momentum), stays(basis) }
 
 impl Wave {
     /// A wave of these settings in the lattice of a method.
@@ -63,7 +61,6 @@ impl Wave {
         polarisation: Polarisation,
         s: &WaveSettings,
         method: &Method,
-        context: &Context,
     ) -> Result<Self, RunError> {
         for (what, k) in [("the wave number kx", s.kx), ("the wave number ky", s.ky)] {
             let (value, most) = (k as f64, ((s.n - 1) / 2) as f64);
@@ -97,13 +94,9 @@ impl Wave {
         };
         let end = s.span * time;
         let mut rules = Rules { step: step.or_given(s.dt), limits, sound_speed, end };
-        simulate::check_step("leapfrog", &rules, context)?;
-        let steps = (end / rules.dt()).ceil().max(4.0);
-        let size = simulate::size(method, &medium, [steps, (s.n * s.n) as f64]);
-        let size = Size { samples: steps, ..size };
-        runner::check_size(size, "span, dt, courant, viscous, nu or n", context)?;
-        rules.step.dt = end / steps;
-        Ok(Self { settings: s.clone(), polarisation, theta, medium, mode, rules })
+        rules.step.dt = end / (end / rules.dt()).ceil().max(4.0);
+        let (settings, method) = (s.clone(), method.clone());
+        Ok(Self { settings, method, polarisation, theta, medium, mode, rules })
     }
 
     /// Phase of each label, in the order of the scene.
@@ -117,7 +110,7 @@ impl Wave {
     }
 
     /// The scene: a cosine of velocity at uniform density.
-    fn parts(&self, context: &Context) -> Parts {
+    fn parts(&self) -> Parts {
         let (s, Medium { dx, sound_speed, .. }) = (&self.settings, self.medium);
         let direction = match self.polarisation {
             Polarisation::Sound => self.mode.along,
@@ -129,7 +122,7 @@ impl Wave {
             let velocity = direction * (s.amplitude * sound_speed * cos(self.theta.dot(&label)));
             (if s.jitter > 0.0 { place + offset() } else { place }, velocity)
         };
-        torus((s.length, s.n), self.medium, context, start)
+        torus((s.length, s.n), self.medium, start)
     }
 
     /// What theory gives for the amplitudes after each of `steps` steps, exactly.
@@ -156,17 +149,17 @@ impl Wave {
     }
 }
 
-impl<'a> Projection<'a> {
-    fn new(wave: &'a Wave) -> Self {
+impl Projection {
+    fn new(wave: &Wave) -> Self {
         let mut basis: Vec<[f64; 2]> = wave.phases().map(|a| [cos(a), sin(a)]).collect();
         let squares = [0, 1].map(|k| basis.iter().map(|b| b[k] * b[k]).sum::<f64>());
         basis.iter_mut().for_each(|b| *b = [b[0] / squares[0], b[1] / squares[1]]);
-        Self { wave, basis, series: Vec::new(), momentum: None }
+        Self { basis, series: Vec::new(), momentum: None }
     }
 
-    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = self.wave;
-        let across = self.wave.across();
+    fn after_step(&mut self, wave: &Wave, simulation: &dyn Stepper<()>) -> Flow {
+        let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = wave;
+        let across = wave.across();
         let mut sums = [0.0; 3];
         for (particle, [cos, sin]) in simulation.particles().iter().zip(&self.basis) {
             sums[0] -= (particle.density / density - 1.0) * sin;
@@ -183,50 +176,73 @@ impl<'a> Projection<'a> {
 /// The exponent of [`Tait::new`].
 const GAMMA: i32 = 7;
 
-/// Runs a wave, projects it on itself, and compares it with theory.
-pub(super) fn run(
-    polarisation: Polarisation,
-    method: &Method,
-    settings: &WaveSettings,
-    context: &Context,
-) -> Result<Record, RunError> {
-    let wave = &Wave::new(polarisation, settings, method, context)?;
-    let mut simulation = (method.build)(wave.parts(context))?;
-    let (s, Medium { density, sound_speed, h, eos, .. }) = (&wave.settings, wave.medium);
-    let numbers = [
-        ("h/dx", s.h_over_dx),
-        ("c0 [m/s]", sound_speed),
-        ("c0 h/nu", sound_speed * h / s.nu),
-        (PLANNED_DT, wave.rules.dt()),
-        ("omega dt", wave.mode.omega * wave.rules.dt()),
-    ];
-    let mut record = simulate::begin(method, &numbers, context);
-    let (mut projection, end) = (Projection::new(wave), [wave.rules.end]);
-    // A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    Drive::new(&mut *simulation, wave.rules.dt(), &end, eos, &mut projection)
-        .after_step("projection", &Projection::after_step)
-        .run(context)?
-        .put(&mut record);
-    let Projection { series, momentum, .. } = projection;
-    compare(wave, method.theory, &series, &mut record);
-    let scale = density * s.length * s.length * s.amplitude * sound_speed;
-    let [first, last] = momentum.unwrap_or([[f64::NAN; 2]; 2]).map(Vector2::from);
-    record.put(MOMENTUM_ERROR, (last - first).norm() / scale);
-    let start = match polarisation {
-        Polarisation::Sound => [0.0, s.amplitude, 0.0],
-        Polarisation::Shear => [0.0, 0.0, s.amplitude],
-    };
-    let column = |k: usize| once(&start).chain(&series).map(|a| a[k]).collect();
-    let times = (0..=series.len()).map(|k| k as f64 * wave.rules.dt()).collect();
-    let profile = Profile::default()
-        .with("t", "s", times)
-        .with("p", "rho c0^2", column(0))
-        .with("v_along", "c0", column(1))
-        .with("v_across", "c0", column(2));
-    record.profiles.insert("amplitudes".into(), profile);
-    // Of every step, not of the last one.
-    record.state = Some(record::digest(series.as_flattened()));
-    Ok(record)
+/// A wave is projected on itself and compared with theory.
+impl Problem for Wave {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Projection;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        let (s, Medium { sound_speed, h, .. }) = (&self.settings, self.medium);
+        let (dt, particles) = (self.rules.dt(), (s.n * s.n) as f64);
+        let decisive = "span, dt, courant, viscous, nu or n";
+        let brief = Brief::new(self.medium, self.rules, particles, decisive).numbers(&[
+            ("h/dx", s.h_over_dx),
+            ("c0 [m/s]", sound_speed),
+            ("c0 h/nu", sound_speed * h / s.nu),
+            (PLANNED_DT, dt),
+            ("omega dt", self.mode.omega * dt),
+        ]);
+        Brief { samples: self.rules.end / dt, limit_of: Some("leapfrog"), ..brief }
+    }
+
+    /// A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
+    fn times(&self) -> Vec<f64> {
+        vec![self.rules.end]
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.parts())
+    }
+
+    fn watch(&self, _: &[Particle], _: &dyn Stepper<()>) -> Projection {
+        Projection::new(self)
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.after_step("projection", |wave, projection, s| projection.after_step(wave, s))
+    }
+
+    fn measure(
+        &self,
+        Projection { series, momentum, .. }: Projection,
+        _: &dyn Stepper<()>,
+        record: &mut Record,
+    ) {
+        let (s, Medium { density, sound_speed, .. }) = (&self.settings, self.medium);
+        compare(self, self.method.theory, &series, record);
+        let scale = density * s.length * s.length * s.amplitude * sound_speed;
+        let [first, last] = momentum.unwrap_or([[f64::NAN; 2]; 2]).map(Vector2::from);
+        record.put(MOMENTUM_ERROR, (last - first).norm() / scale);
+        let start = match self.polarisation {
+            Polarisation::Sound => [0.0, s.amplitude, 0.0],
+            Polarisation::Shear => [0.0, 0.0, s.amplitude],
+        };
+        let column = |k: usize| once(&start).chain(&series).map(|a| a[k]).collect();
+        let times = (0..=series.len()).map(|k| k as f64 * self.rules.dt()).collect();
+        let profile = Profile::default()
+            .with("t", "s", times)
+            .with("p", "rho c0^2", column(0))
+            .with("v_along", "c0", column(1))
+            .with("v_across", "c0", column(2));
+        record.profiles.insert("amplitudes".into(), profile);
+        // Of every step, not of the last one.
+        record.state = Some(digest(series.as_flattened()));
+    }
 }
 
 base::metrics! {
@@ -275,7 +291,7 @@ mod tests {
     fn wave(polarisation: Polarisation) -> (Wave, Method) {
         let method = schemes::lattice::cubic();
         let settings = WaveSettings { kx: 2, ky: 1, nu: 1e-3, ..WaveSettings::default() };
-        let wave = Wave::new(polarisation, &settings, &method, &Context::of_rules());
+        let wave = Wave::new(polarisation, &settings, &method);
         (wave.expect("a wave"), method)
     }
 
@@ -284,7 +300,7 @@ mod tests {
     #[test]
     fn amplitudes_are_those_of_made_up_particles() {
         let (wave, method) = wave(Polarisation::Sound);
-        let mut parts = wave.parts(&Context::default());
+        let mut parts = wave.parts();
         let Medium { density, sound_speed, .. } = wave.medium;
         for (particle, phase) in parts.particles.iter_mut().zip(wave.phases()) {
             particle.density = density * (1.0 - 0.003 * sin(phase));
@@ -294,7 +310,7 @@ mod tests {
         let momentum: Vector2<f64> = parts.particles.iter().map(|p| p.velocity * p.mass).sum();
         let simulation = (method.build)(parts).expect("a scene");
         let mut projection = Projection::new(&wave);
-        projection.after_step(&*simulation);
+        projection.after_step(&wave, &*simulation);
         let [p, along, across] = projection.series[0];
         assert_relative_eq!(p, 0.003, max_relative = 1e-9);
         assert_relative_eq!(along, 0.02, max_relative = 1e-9);

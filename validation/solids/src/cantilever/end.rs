@@ -116,9 +116,9 @@ fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solid::Problem;
+    use crate::solid::Body;
     use approx::assert_relative_eq;
-    use harness::{context::Context, method::Parts};
+    use harness::method::Parts;
 
     /// The frequency goes with the root of the stiffness, the sag with its inverse.
     #[test]
@@ -144,7 +144,7 @@ mod tests {
         let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
         let method = schemes::total::hencky();
         let (medium, domain) = (solid::medium(&s, &method), Domain::open());
-        let parts = Parts::new(medium, domain, s.particles(), &Context::default());
+        let parts = Parts::new(medium, domain, s.particles());
         let mut simulation =
             (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");
         let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);

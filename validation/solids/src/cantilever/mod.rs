@@ -133,7 +133,7 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     found.number("harmonic_y").is_some().then_some(found)
 }
 
-impl Problem for CantileverSettings {
+impl Body for CantileverSettings {
     /// The speed is that of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to
     /// either side; at most that of a rigid bar that falls to the vertical.
     fn scales(&self) -> Scales {

@@ -106,7 +106,7 @@ fn mode(x: f64) -> f64 {
     f(x) / f(1.0)
 }
 
-impl Problem for PlateSettings {
+impl Body for PlateSettings {
     fn scales(&self) -> Scales {
         Scales {
             speed: self.speed * self.material().sound_speed(),
@@ -275,8 +275,7 @@ mod tests {
         }
         let method = schemes::solid::clamped_bare();
         let mut tip = Tip::new(&s, &particles);
-        let parts =
-            Parts::new(solid::medium(&s, &method), Domain::open(), particles, &Context::default());
+        let parts = Parts::new(solid::medium(&s, &method), Domain::open(), particles);
         let simulation = (method.build)(parts).expect("a scene");
         tip.after_step(&*simulation);
         assert!(tip.series[1][1].abs() < 1e-15);

@@ -279,6 +279,7 @@ mod tests {
     use super::*;
     use crate::rings::RUBBER_RINGS;
     use harness::case::Case;
+    use harness::context::Context;
 
     #[test]
     fn centre_velocity_and_extents_are_those_of_the_ring() {

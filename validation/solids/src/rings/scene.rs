@@ -38,7 +38,7 @@ impl RingSettings {
     }
 }
 
-impl Problem for RingSettings {
+impl Body for RingSettings {
     /// Twice the density or twice the speed of sound is no rubber any more.
     fn scales(&self) -> Scales {
         let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
@@ -58,23 +58,27 @@ impl Problem for RingSettings {
         }
     }
 
-    fn check(&self, method: &Method<Symmetric>, context: &Context) -> Result<(), RunError> {
+    fn check(&self) -> Result<(), RunError> {
         let too_much =
             |what, value, most, setting| Err(RunError::TooMuch { what, value, most, setting });
         let widest = self.outer - 2.0 * self.spacing;
         if self.inner > widest {
             return too_much("the inner radius", self.inner, widest, "inner, outer or spacing");
         }
-        if method.is_corrected && self.layers() > MOST_CORRECTED && !context.spec.allow_unstable {
-            let what = "the number of layers of rings with corrected gradients";
-            let setting = "spacing, or use --allow-unstable";
-            return too_much(what, self.layers(), MOST_CORRECTED, setting);
-        }
         if self.outer > self.centre {
             // The rings would overlap before the first step.
             return too_much("the outer radius", self.outer, self.centre, "outer or centre");
         }
         Ok(())
+    }
+
+    fn unstable(&self, method: &Properties) -> Option<RunError> {
+        (method.is_corrected && self.layers() > MOST_CORRECTED).then(|| RunError::TooMuch {
+            what: "the number of layers of rings with corrected gradients",
+            value: self.layers(),
+            most: MOST_CORRECTED,
+            setting: "spacing, or use --allow-unstable",
+        })
     }
 
     /// Concentric layers, their numbers multiples of four, so that mass is exact, the edge is smooth, and

@@ -6,7 +6,7 @@ use super::{
     metrics::*,
     reference::Reference,
 };
-use crate::solid::Problem;
+use crate::solid::Body;
 use approx::assert_abs_diff_eq;
 use base::{
     functions::exp,

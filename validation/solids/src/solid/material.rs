@@ -98,7 +98,7 @@ pub fn limits(
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::{context::Context, method::Parts};
+    use harness::method::Parts;
     use nalgebra::Vector2;
     use schemes::solid::{bare, corrected};
     use solver::{Domain, Outcome, Particle};
@@ -152,7 +152,7 @@ mod tests {
             .map(|(k, x)| Particle::fluid(x, Vector2::new(noise(3 * k), noise(7 * k)), 1.0, 1.0))
             .collect();
         let domain = Domain::torus(SIDE as f64, SIDE as f64);
-        let parts = Parts::new(medium, domain, particles, &Context::default());
+        let parts = Parts::new(medium, domain, particles);
         let mut simulation = (method.build)(parts).expect("a scene");
         assert_eq!(simulation.advance(60.0 * dt, dt, &mut ()), Outcome::Reached);
         simulation.data().fluid().map(|(_, p)| p.velocity.norm()).fold(0.0, f64::max) / 1e-12

@@ -17,9 +17,7 @@ pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
 pub use maths::{geometry::corners, metrics::norms::largest};
 pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};
-pub use problem::{
-    Problem, Scales, SharedSettings, Watch, leave_out, medium, no_variants, variants,
-};
+pub use problem::{Body, Scales, SharedSettings, Watch, leave_out, medium, no_variants, variants};
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its
 /// [`SharedSettings`]. The material has this Young's modulus \[Pa\] and Poisson's ratio.

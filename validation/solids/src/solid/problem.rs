@@ -6,19 +6,16 @@ use solver::{Domain, Flow, Particle, Role, Stepper, Symmetric};
 use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
 use base::{
-    bits::Bits,
+    bits::{Bits, OtherBits},
     record::Record,
     settings::{self, Settings, Values},
 };
 use harness::{
     case::{Rules, RunError, Step},
     composed::Variants,
-    context::Context,
     method::{Medium, Method, Parts, Properties},
-    outline::Sink,
-    runner::{self, Drive},
-    simulate,
-    size::Size,
+    problem::{Asked, Brief, Calls, Problem},
+    relation::View,
 };
 use maths::theory::time_step::Integrator;
 
@@ -60,8 +57,8 @@ pub struct Scales {
     pub bounds: solver::Limits,
 }
 
-/// A problem of elasticity, stated by its settings: what differs between solid cases.
-pub trait Problem: SharedSettings {
+/// Elastic bodies, stated by the settings of a case: what differs between cases of solids.
+pub trait Body: SharedSettings {
     /// Spacing, speed, end and the like.
     fn scales(&self) -> Scales;
     /// Spacing \[m\].
@@ -86,12 +83,16 @@ pub trait Problem: SharedSettings {
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch>;
-    /// Refuses settings that are in their ranges and make no body together, or none that this method holds.
+    /// Refuses settings that are in their ranges and make no body together.
     ///
     /// # Errors
     /// What is too large, and which settings it depends on.
-    fn check(&self, _method: &Method<Symmetric>, _context: &Context) -> Result<(), RunError> {
+    fn check(&self) -> Result<(), RunError> {
         Ok(())
+    }
+    /// Why this method is not known to hold the body, if so.
+    fn unstable(&self, _method: &Properties) -> Option<RunError> {
+        None
     }
     /// Displacement at the start of the particle that is at this place without stress \[m\], for methods
     /// whose stress follows from displacements.
@@ -111,15 +112,15 @@ pub trait Watch: Bits {
 }
 
 /// Variants of a problem.
-type Alike<P> = Variants<P, Method<Symmetric>>;
+type Alike<B> = Variants<B, Method<Symmetric>>;
 
 /// No variants yet, of a problem that any method runs.
-pub fn no_variants<P: Problem + Settings>() -> Alike<P> {
-    Variants::of(|m, s: &P, context| run(m, s, context), |m, s| Ok(rules(m, s)))
+pub fn no_variants<B: Body + Settings + Clone>() -> Alike<B> {
+    Variants::of(|m, s: &B| Solid::new(m, Box::new(s.clone())))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
-pub fn variants<P: Problem + Settings>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<P> {
+pub fn variants<B: Body + Settings + Clone>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<B> {
     let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
                   principal axes, XSPH";
     let alone = "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what \
@@ -138,7 +139,7 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 }
 
 /// What terms are made from.
-pub fn medium(settings: &dyn Problem, method: &Properties) -> Medium {
+pub fn medium(settings: &dyn Body, method: &Properties) -> Medium {
     let Scales { dx, gravity, .. } = settings.scales();
     let medium = settings.material().medium(method, [dx, settings.h_over_dx() * dx]);
     Medium { acceleration: gravity, ..medium }.set_by(settings)
@@ -148,7 +149,7 @@ pub fn medium(settings: &dyn Problem, method: &Properties) -> Medium {
 const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
-fn rules(method: &Properties, settings: &dyn Problem) -> Rules {
+fn rules(method: &Properties, settings: &dyn Body) -> Rules {
     let Scales { speed, end, meet, gravity, .. } = settings.scales();
     let (material, medium) = (settings.material(), medium(settings, method));
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
@@ -163,57 +164,106 @@ fn rules(method: &Properties, settings: &dyn Problem) -> Rules {
     Rules { step, limits, sound_speed: material.sound_speed(), end }
 }
 
-/// One run with a method.
-fn run(m: &Method<Symmetric>, s: &dyn Problem, context: &Context) -> Result<Record, RunError> {
-    s.check(m, context)?;
-    let scales = s.scales();
-    let (what, value, most) =
-        ("the spacing in lengths of the body", scales.dx / scales.length, 0.5);
-    if value > most {
-        return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
+/// A run of bodies with a method.
+struct Solid {
+    method: Method<Symmetric>,
+    body: Box<dyn Body>,
+    scales: Scales,
+    medium: Medium,
+    rules: Rules,
+}
+
+impl Solid {
+    fn new(method: &Method<Symmetric>, body: Box<dyn Body>) -> Result<Self, RunError> {
+        body.check()?;
+        let scales = body.scales();
+        let (what, value, most) =
+            ("the spacing in lengths of the body", scales.dx / scales.length, 0.5);
+        if value > most {
+            return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
+        }
+        let (medium, rules) = (medium(&*body, method), rules(method, &*body));
+        Ok(Self { method: method.clone(), body, scales, medium, rules })
     }
-    let (material, rules, medium) = (s.material(), rules(m, s), medium(s, m));
-    simulate::check_step(m.integrator, &rules, context)?;
-    let size = simulate::size(m, &medium, [rules.end / rules.dt(), scales.count]);
-    let size = Size { samples: size.steps, ..size };
-    runner::check_size(size, scales.decisive, context)?;
-    let own = [
-        ("K [Pa]", material.bulk),
-        ("mu [Pa]", material.shear),
-        ("c_p [m/s]", material.p_wave_speed()),
-    ];
-    let numbers = [&rules.numbers([s.h_over_dx(), medium.dx])[..], &own].concat();
-    let mut record = simulate::begin(m, &numbers, context);
-    let (eos, particles) = (material.eos(), s.particles());
-    let is_held = particles.iter().any(|p| p.role == Role::Wall);
-    let mirrors = if is_held { vec![clamp()] } else { Vec::new() };
-    let all = particles.len();
-    let body = |k: usize| (2 * k / all) as u32;
-    let bodies = if scales.meet { (0..all).map(body).collect() } else { Vec::new() };
-    let parts = Parts::new(medium, scales.domain, particles.clone(), context);
-    let mut simulation = (m.build)(Parts { mirrors, bodies, limits: scales.bounds, ..parts })?;
-    if simulation.potential().is_some() {
-        let by = |place| s.displacement(place);
-        let view = context.outline.as_ref().map(Sink::view).unwrap_or_default();
-        lagrangian::displace(&mut *simulation, |place| view.displacement(by, place));
+}
+
+impl Bits for Box<dyn Watch> {
+    fn save(&self, to: &mut Vec<u8>) {
+        (**self).save(to);
     }
-    let energy = Energy::known(&*simulation);
-    let mut watch = s.watch(&particles, energy);
-    let count = scales.stops.max(1);
-    let stops: Vec<f64> = (1..=count).map(|k| scales.end * k as f64 / count as f64).collect();
-    let mut seen = (&mut *watch, &mut record);
-    Drive::new(&mut *simulation, rules.dt(), &stops, eos, &mut seen)
-        .after_step("measurements", &|(watch, _), simulation| {
-            watch.after_step(simulation);
-            Flow::Continue
-        })
-        .at_positions("particles", &|(watch, record), simulation, stop| {
-            if context.spec.keep.particles {
-                watch.keep(simulation, stop, record);
-            }
-        })
-        .run(context)?
-        .put(&mut record);
-    watch.measure(&*simulation, &mut record);
-    Ok(record)
+    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
+        (**self).restore(from)
+    }
+}
+
+impl Problem for Solid {
+    type Extra = Symmetric;
+    type Simulation = dyn Stepper<Symmetric>;
+    type Watch = Box<dyn Watch>;
+    const READS_START: bool = true;
+
+    fn method(&self) -> &Method<Symmetric> {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        let (Self { medium, rules, scales, .. }, material) = (self, self.body.material());
+        let brief = Brief::new(*medium, *rules, scales.count, scales.decisive)
+            .numbers(&rules.numbers([self.body.h_over_dx(), medium.dx]))
+            .numbers(&[
+                ("K [Pa]", material.bulk),
+                ("mu [Pa]", material.shear),
+                ("c_p [m/s]", material.p_wave_speed()),
+            ]);
+        let unstable = self.body.unstable(&self.method);
+        Brief { unstable, samples: rules.end / rules.dt(), ..brief }
+    }
+
+    fn times(&self) -> Vec<f64> {
+        let count = self.scales.stops.max(1);
+        (1..=count).map(|k| self.scales.end * k as f64 / count as f64).collect()
+    }
+
+    fn scene(&self) -> Result<Parts<Symmetric>, RunError> {
+        let particles = self.body.particles();
+        let is_held = particles.iter().any(|p| p.role == Role::Wall);
+        let mirrors = if is_held { vec![clamp()] } else { Vec::new() };
+        let all = particles.len();
+        let body = |k: usize| (2 * k / all) as u32;
+        let bodies = if self.scales.meet { (0..all).map(body).collect() } else { Vec::new() };
+        let parts = Parts::new(self.medium, self.scales.domain, particles);
+        Ok(Parts { mirrors, bodies, limits: self.scales.bounds, ..parts })
+    }
+
+    fn prepare(&self, simulation: &mut Self::Simulation, view: &View) {
+        if simulation.potential().is_some() {
+            let by = |place| self.body.displacement(place);
+            lagrangian::displace(simulation, |place| view.displacement(by, place));
+        }
+    }
+
+    fn watch(
+        &self,
+        start: &[Particle<Symmetric>],
+        simulation: &dyn Stepper<Symmetric>,
+    ) -> Self::Watch {
+        self.body.watch(start, Energy::known(simulation))
+    }
+
+    fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
+        calls
+            .after_step("measurements", |_, watch, simulation| {
+                watch.after_step(simulation);
+                Flow::Continue
+            })
+            .when(asked.particles, |calls| {
+                calls.at_positions("particles", |_, watch, simulation, stop, record| {
+                    watch.keep(simulation, stop, record);
+                })
+            })
+    }
+
+    fn measure(&self, mut watch: Self::Watch, end: &dyn Stepper<Symmetric>, record: &mut Record) {
+        watch.measure(end, record);
+    }
 }

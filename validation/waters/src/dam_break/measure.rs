@@ -64,8 +64,7 @@ fn centre(water: &[Particle]) -> f64 {
 }
 
 /// Samples of a run.
-pub struct Samples<'a> {
-    dam: &'a Dam,
+pub struct Samples {
     /// x of the foremost particle at the start, and the floor under the water then \[m\].
     start: [f64; 2],
     /// t \[s\], front, residual height, levels at H1 to H4 \[m\], potential energy \[M g H/2\].
@@ -80,14 +79,13 @@ pub struct Samples<'a> {
     spilled: BTreeSet<usize>,
 }
 
-harness::observed! { Samples<'_>: changes(start, rows, released, outside, fastest, spilled), stays(dam) }
+harness::observed! { Samples: changes(start, rows, released, outside, fastest, spilled), stays() }
 
-impl<'a> Samples<'a> {
+impl Samples {
     /// None yet.
-    pub fn new(dam: &'a Dam) -> Self {
+    pub fn new() -> Self {
         let (start, outside, fastest) = ([f64::NAN; 2], [f64::NAN; 2], f64::NAN);
         Self {
-            dam,
             start,
             rows: Vec::new(),
             released: f64::NAN,
@@ -98,8 +96,8 @@ impl<'a> Samples<'a> {
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample(&mut self, simulation: &dyn Stepper<()>) {
-        let (s, dx) = (&self.dam.settings, self.dam.medium.dx);
+    pub fn sample(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) {
+        let (s, dx) = (&dam.settings, dam.medium.dx);
         let foremost = foremost(simulation.data().fluid(), s.height);
         // In the order of the scene: that of storage changes, and with it the last bits of a sum.
         let mut water = simulation.particles();
@@ -107,11 +105,11 @@ impl<'a> Samples<'a> {
         let centre = centre(&water);
         let half = 0.5 * s.height;
         if self.rows.is_empty() {
-            self.start = [foremost, floor(&water, self.dam.medium.eos.density)];
+            self.start = [foremost, floor(&water, dam.medium.eos.density)];
             self.released = centre / half - 1.0;
         }
         let [first, floor] = self.start;
-        let width = self.dam.tank.width();
+        let width = dam.tank.width();
         let depth_at = |x: f64, spacings: f64| {
             let (place, w) = probe(x, spacings, dx, width);
             depth(simulation.data().fluid(), place, w)
@@ -123,14 +121,14 @@ impl<'a> Samples<'a> {
         let [h1, h2, h3, h4] = PROBES.map(|x| depth_at(x, 2.0));
         let potential = (centre - floor) / half;
         self.rows.push([simulation.time(), front, height, h1, h2, h3, h4, potential]);
-        self.look_at_walls(simulation);
+        self.look_at_walls(dam, simulation);
     }
 
     /// Counts the particles that are lost, without those that have left over the rim: the walls are several
     /// spacings thick, so such a particle is seen above them first, or as a dent in their upper end. The
     /// speed of the water that has not left counts.
-    fn look_at_walls(&mut self, simulation: &dyn Stepper<()>) {
-        let Dam { tank, medium, rim, .. } = self.dam;
+    fn look_at_walls(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) {
+        let Dam { tank, medium, rim, .. } = dam;
         let reach = LOST * medium.dx;
         let is_lost =
             |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
@@ -158,8 +156,8 @@ impl<'a> Samples<'a> {
 
     /// The most by which the front is behind where it has been, until it is two spacings from the far wall,
     /// from which water comes back \[m\].
-    fn fallen_back(&self) -> f64 {
-        let Dam { settings, tank, medium, .. } = self.dam;
+    fn fallen_back(&self, dam: &Dam) -> f64 {
+        let Dam { settings, tank, medium, .. } = dam;
         let wall = tank.width() - 2.0 * medium.dx;
         let (mut farthest, mut most) = (settings.width, 0.0_f64);
         for [_, front, ..] in &self.rows {
@@ -173,15 +171,15 @@ impl<'a> Samples<'a> {
     }
 
     /// Metrics that need no reference, and the series.
-    pub fn measure(&self, record: &mut Record) {
+    pub fn measure(&self, dam: &Dam, record: &mut Record) {
         let [most, last] = self.outside;
         record.put(metrics::OUTSIDE, most);
         record.put(metrics::OUTSIDE_END, last);
-        let [columns, rows] = self.dam.counts;
+        let [columns, rows] = dam.counts;
         record.put(metrics::SPILLED, self.spilled.len() as f64 / (columns * rows) as f64);
         record.put(metrics::RELEASED, self.released);
-        record.put(metrics::FRONT_BACK, self.fallen_back() / self.dam.settings.width);
-        record.put(metrics::MACH, self.fastest / self.dam.medium.eos.sound_speed);
+        record.put(metrics::FRONT_BACK, self.fallen_back(dam) / dam.settings.width);
+        record.put(metrics::MACH, self.fastest / dam.medium.eos.sound_speed);
         let [front, height, one, two, three, four] =
             ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));
         let potential = ("potential", "M g H/2");
@@ -302,14 +300,14 @@ harness::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
 mod tests {
     use super::*;
     use crate::dam_break::lobovsky;
-    use harness::{context::Context, method::Parts};
+    use harness::method::Parts;
     use maths::metrics::budget::Metered;
     use solver::{Particle, Smoothing, WendlandC2};
 
-    impl<'a> Samples<'a> {
+    impl Samples {
         /// Samples with these t, front, residual height, levels \[s, m\] and potential energy \[M g H/2\].
-        pub fn made_up(dam: &'a Dam, rows: impl Iterator<Item = [f64; 8]>) -> Self {
-            Self { rows: rows.collect(), ..Self::new(dam) }
+        pub fn made_up(rows: impl Iterator<Item = [f64; 8]>) -> Self {
+            Self { rows: rows.collect(), ..Self::new() }
         }
     }
 
@@ -322,9 +320,8 @@ mod tests {
 
     /// A simulation of these particles in place of those of a dam break, without walls.
     fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
-        let (method, context) = (schemes::water::modern(), Context::default());
-        let parts = Parts { particles, ..dam.parts(&method, &context) };
-        let mut simulation = (method.build)(parts).expect("a scene");
+        let parts = Parts { particles, ..dam.parts() };
+        let mut simulation = (dam.method.build)(parts).expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         simulation
     }
@@ -358,12 +355,12 @@ mod tests {
         })
         .unwrap();
         let dx = tank.medium.dx;
-        let mut samples = Samples::new(&tank);
+        let mut samples = Samples::new();
         for (from, to, rows) in [(0, 20, 10), (3, 40, 4), (5, 50, 2)] {
             let mut all = water(&tank, from, to, rows, Vector2::zeros());
             // Spray above a quarter of the column is no front.
             all.push(Particle::fluid(Vector2::new(1.55, 0.2), Vector2::zeros(), 1e3, 1e-12));
-            samples.sample(&*simulation(&tank, all));
+            samples.sample(&tank, &*simulation(&tank, all));
         }
         // Front, residual height, whose probe reads from 2 to 6 spacings, and levels.
         for (row, front, height, levels) in [
@@ -379,8 +376,8 @@ mod tests {
             }
         }
         // Water that ends at 45 spacings fills a part of what H4 reads, from 43.42 to 47.42.
-        let mut samples = Samples::new(&tank);
-        samples.sample(&*simulation(&tank, water(&tank, 30, 45, 3, Vector2::zeros())));
+        let mut samples = Samples::new();
+        samples.sample(&tank, &*simulation(&tank, water(&tank, 30, 45, 3, Vector2::zeros())));
         let hat = |k: f64| (1.0 - (k + 0.5 - 1.3625 / dx).abs() / 2.0) / 2.0;
         is(samples.rows[0][6], 3.0 * dx * (hat(44.0) + hat(43.0)));
     }
@@ -397,14 +394,14 @@ mod tests {
             (&|_| 1e-3, 1e-3 / (0.5 * height) - 1.0),
             (&|y| 10.0 * y, 9.0),
         ] {
-            let mut samples = Samples::new(&free);
+            let mut samples = Samples::new();
             for rows in [20, 5] {
                 // The same mass on fewer rows, or all over the floor.
                 let mut all = water(&free, 0, 200 / rows, rows, Vector2::zeros());
                 all.iter_mut().for_each(|p| p.position.y = place(p.position.y));
-                samples.sample(&*simulation(&free, all));
+                samples.sample(&free, &*simulation(&free, all));
             }
-            let record = record(&free, |record| samples.measure(record));
+            let record = record(&free, |record| samples.measure(&free, record));
             is(record.value(metrics::RELEASED).expect("a metric"), released);
             let [start, end] = [0, 1].map(|k| samples.rows[k][7]);
             let row = |k: usize| place((k as f64 + 0.5) * dx);
@@ -422,8 +419,8 @@ mod tests {
         let at = |x, y| Particle::fluid(Vector2::new(x, y) * dx, Vector2::zeros(), 1e3, dx * dx);
         let mut particles = water(&free, 0, 10, 20, Vector2::zeros());
         particles[7].velocity = Vector2::new(0.3, -0.4);
-        let mut samples = Samples::new(&free);
-        samples.sample(&*simulation(&free, particles.clone()));
+        let mut samples = Samples::new();
+        samples.sample(&free, &*simulation(&free, particles.clone()));
         // Half a spacing is a dent; more than that is lost.
         particles.extend([
             at(-0.495, 3.0),
@@ -431,10 +428,10 @@ mod tests {
             at(3.0, -2.5),
             at(width / dx + 0.75, 5.0),
         ]);
-        samples.sample(&*simulation(&free, particles.clone()));
+        samples.sample(&free, &*simulation(&free, particles.clone()));
         particles.truncate(202);
-        samples.sample(&*simulation(&free, particles));
-        let record = record(&free, |record| samples.measure(record));
+        samples.sample(&free, &*simulation(&free, particles));
+        let record = record(&free, |record| samples.measure(&free, record));
         let value = |metric| record.value(metric).expect("a metric");
         assert_eq!((value(metrics::OUTSIDE), value(metrics::OUTSIDE_END)), (3.0, 1.0));
         is(value(metrics::MACH), 0.5 / free.medium.eos.sound_speed);
@@ -447,7 +444,7 @@ mod tests {
         let dam = Dam::changed(|s| s.n = 10).unwrap();
         let (dx, width, rim) = (dam.medium.dx, dam.tank.width(), dam.rim);
         assert!((rim / (1.25 * 0.1143) - 1.0).abs() < 0.5 / 25.0, "{rim}");
-        let mut samples = Samples::new(&dam);
+        let mut samples = Samples::new();
         for (over, through) in [
             ([-dx, rim], [-dx, 0.9 * rim]),
             ([0.6 * dx, rim - 0.4 * dx], [0.6 * dx, 0.9 * rim]),
@@ -460,9 +457,9 @@ mod tests {
             let mut all = water(&dam, 0, 10, 20, Vector2::zeros());
             let fall = if over[1] < rim - dx { -2.0 } else { -0.2 };
             all.extend([at(over, fall), at(through, 0.5)]);
-            samples.sample(&*simulation(&dam, all));
+            samples.sample(&dam, &*simulation(&dam, all));
         }
-        let record = record(&dam, |record| samples.measure(record));
+        let record = record(&dam, |record| samples.measure(&dam, record));
         let value = |metric| record.value(metric).expect("a metric");
         assert_eq!((value(metrics::OUTSIDE), value(metrics::OUTSIDE_END)), (1.0, 1.0));
         is(value(metrics::SPILLED), 1.0 / 200.0);

@@ -17,8 +17,14 @@ mod setup;
 
 use base::{gate::*, mutation::*, record::*};
 use harness::{
-    case::*, composed::*, context::Context, declare::*, method::*, pictures, runner::Drive,
-    simulate, studies::causes::*, table,
+    case::*,
+    composed::*,
+    declare::*,
+    method::*,
+    pictures,
+    problem::{Asked, Brief, Calls, Problem},
+    studies::causes::*,
+    table,
 };
 use nalgebra::Vector2;
 use schemes::water::WaterMethod;
@@ -125,7 +131,7 @@ fn variants() -> Compositions<DamSettings> {
                 makes `ghosts` noisy?";
     let sticking = "modern with artificial viscosity that sees the particles of the walls too, which stand \
                     still: how much do they drag the water?";
-    Variants::of(run::run, |m, s| Ok(Dam::new(s, m, &Context::of_rules())?.rules))
+    Variants::of(Dam::new)
         .with("seed", paper, water::seed(), seed)
         .with("ghosts", ghosts, water::ghosts(), seed)
         .with("modern", modern_is, water::modern(), modern)

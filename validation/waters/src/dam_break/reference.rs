@@ -395,7 +395,7 @@ mod tests {
     ) -> Box<dyn Fn(MetricName) -> f64> {
         let mut record =
             Record::new("dam_break", "modern", base::settings::to_json(&dam.settings), 1);
-        Samples::made_up(dam, samples).measure(&mut record);
+        Samples::made_up(samples).measure(dam, &mut record);
         Gauge::made_up(dam, pressures).measure(dam, &mut record);
         compare(dam, &mut record);
         let value = move |metric: MetricName| record.value(metric.clone());

@@ -2,6 +2,8 @@
 
 use base::absent::NOT_ASKED;
 
+use maths::metrics::budget::Metered;
+
 use super::{
     measure::{Gauge, Samples},
     *,
@@ -29,50 +31,101 @@ pub const COSTLY: &[MetricKey] = &{
     [a, b, c, d, e, f, MOMENTUM_GAP]
 };
 
-/// One run.
-pub fn run(method: &WaterMethod, s: &DamSettings, context: &Context) -> Result<Record, RunError> {
-    let dam = &Dam::new(s, method, context)?;
-    let mut simulation = (method.build)(dam.parts(method, context))?;
-    let Dam { settings, medium, rules, .. } = dam;
-    let numbers = rules.numbers([settings.h_over_dx, medium.dx]);
-    let mut record = simulate::begin(method, &numbers, context);
-    let (is_balanced, mut ledger) = (context.measures_all(), Ledger::new(medium));
-    let mut samples = Samples::new(dam);
-    let mut gauge = Gauge::new(dam, method.support * medium.h, &|r2| simulation.weight(r2));
-    let filled = water_mass(&simulation.particles());
-    let (times, pictured) = stops(dam);
-    let mut seen = (&mut gauge, &mut samples, &mut ledger, &mut record);
-    Drive::new(&mut *simulation, rules.dt(), &times, medium.eos, &mut seen)
-        .after_step("pressure gauges", &|(gauge, ..), simulation| gauge.after_step(simulation))
-        .at_positions("front and levels", &|(_, samples, ..), s, _| samples.sample(&*s))
-        .at_if(is_balanced, "energy ledger and momentum", &|(.., ledger, _), s, _| ledger.sample(s))
-        .at_positions("picture", &|(.., record), s, k| {
-            if context.spec.keep.particles && k == pictured {
-                let value = |p: &Evolved<()>| medium.eos.pressure(p.density) / dam.unit_pressure();
-                let fluid = s.data().fluid().map(|(_, p)| (p.position / settings.height, value(p)));
-                pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
-            }
-        })
-        .run(context)?
-        .put(&mut record);
-    record.put(REACHED, simulation.time() / times[times.len() - 1]);
-    let particles = simulation.particles();
-    let mass = water_mass(&particles);
-    samples.measure(&mut record);
-    record.put(MASS_ERROR, (mass / filled - 1.0).abs());
-    let of_what = "M g H/2, the potential energy of the column";
-    let column = 0.5 * mass * settings.gravity * settings.height;
-    ledger.measure(column, of_what, context, &mut record);
-    let fall = settings.gravity * settings.height;
-    let gap = ledger.unexplained_momentum() / (mass * fall.sqrt());
-    record.put_or(MOMENTUM_GAP, is_balanced.then_some(gap), NOT_ASKED);
-    if record.status == Status::Completed {
-        if dam.is_lobovsky() {
-            gauge.measure(dam, &mut record);
-        }
-        reference::compare(dam, &mut record);
+/// All that accumulates over a run.
+pub struct Watch {
+    gauge: Gauge,
+    samples: Samples,
+    ledger: Ledger,
+    /// Mass of the water at the start \[kg/m\].
+    filled: f64,
+    /// Which of the times is that of the picture.
+    pictured: usize,
+}
+
+harness::observed! { Watch: changes(gauge, samples, ledger), stays(filled, pictured) }
+
+/// Keeps the particles with their pressure for a picture.
+fn picture(dam: &Dam, simulation: &dyn Metered<()>, record: &mut Record) {
+    let (height, unit) = (dam.settings.height, dam.unit_pressure());
+    let value = |p: &Evolved<()>| dam.medium.eos.pressure(p.density) / unit;
+    let fluid = simulation.data().fluid().map(|(_, p)| (p.position / height, value(p)));
+    pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
+}
+
+impl Problem for Dam {
+    type Extra = ();
+    type Simulation = dyn Metered<()>;
+    type Watch = Watch;
+
+    fn method(&self) -> &WaterMethod {
+        &self.method
     }
-    Ok(record)
+
+    fn brief(&self) -> Brief {
+        Dam::brief(self)
+    }
+
+    fn times(&self) -> Vec<f64> {
+        stops(self).0
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.parts())
+    }
+
+    fn watch(&self, _: &[Particle], simulation: &dyn Metered<()>) -> Watch {
+        let support = self.method.support * self.medium.h;
+        Watch {
+            gauge: Gauge::new(self, support, &|r2| simulation.weight(r2)),
+            samples: Samples::new(),
+            ledger: Ledger::new(&self.medium),
+            filled: water_mass(&simulation.particles()),
+            pictured: stops(self).1,
+        }
+    }
+
+    fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
+        calls
+            .when(self.is_lobovsky(), |calls| {
+                calls.after_step("pressure gauges", |_, watch, s| watch.gauge.after_step(s))
+            })
+            .at_positions("front and levels", |dam, watch, s, _, _| watch.samples.sample(dam, s))
+            .when(asked.all, |calls| {
+                let name = "energy ledger and momentum";
+                calls.at(name, |_, watch, s, _, _| watch.ledger.sample(s))
+            })
+            .when(asked.particles, |calls| {
+                calls.at_positions("picture", |dam, watch, s, k, record| {
+                    if k == watch.pictured {
+                        picture(dam, s, record);
+                    }
+                })
+            })
+    }
+
+    fn measure(
+        &self,
+        Watch { gauge, samples, ledger, filled, .. }: Watch,
+        end: &dyn Metered<()>,
+        record: &mut Record,
+    ) {
+        let DamSettings { gravity, height, .. } = self.settings;
+        record.put(REACHED, end.time() / (self.settings.end * self.settings.unit_time()));
+        let mass = water_mass(&end.particles());
+        samples.measure(self, record);
+        record.put(MASS_ERROR, (mass / filled - 1.0).abs());
+        let of_what = "M g H/2, the potential energy of the column";
+        let column = 0.5 * mass * gravity * height;
+        ledger.measure(column, of_what, record);
+        let gap = ledger.unexplained_momentum() / (mass * (gravity * height).sqrt());
+        record.put_or(MOMENTUM_GAP, (!ledger.is_empty()).then_some(gap), NOT_ASKED);
+        if record.status == Status::Completed {
+            if self.is_lobovsky() {
+                gauge.measure(self, record);
+            }
+            reference::compare(self, record);
+        }
+    }
 }
 
 /// Mass of the water \[kg/m\], added in the order of the scene: in that of storage, which changes, its
@@ -102,7 +155,7 @@ mod tests {
         absent::Absent,
         spec::{Measure, RunSpec},
     };
-    use harness::case::Case;
+    use harness::{case::Case, context::Context};
 
     /// Two fifths of a run were an energy ledger that nobody had asked for.
     #[test]

@@ -13,10 +13,11 @@ const LEAST_SKIN: f64 = 0.12;
 const SKIN_STEPS: f64 = 4.0;
 
 /// The numbers of one run.
-#[derive(Clone, Debug)]
 pub struct Dam {
     /// As given.
     pub settings: DamSettings,
+    /// The method that they are for.
+    pub method: WaterMethod,
     /// Water, gravity, smoothing length.
     pub medium: Medium,
     /// The tank.
@@ -33,34 +34,41 @@ pub struct Dam {
 
 impl Dam {
     /// Checks the settings and derives the rest for a method.
-    pub fn new(s: &DamSettings, method: &WaterMethod, context: &Context) -> Result<Self, RunError> {
+    pub fn new(method: &WaterMethod, s: &DamSettings) -> Result<Self, RunError> {
         let dx = s.width.min(s.height) / s.n as f64;
         if s.width > s.tank {
             let (what, setting) = ("the width of the column", "width or tank");
             return Err(RunError::TooMuch { what, value: s.width, most: s.tank, setting });
-        }
-        if method.walls == Ghosts::NAME && !context.spec.allow_unstable {
-            return Err(RunError::Combination {
-                key: "variant",
-                value: Ghosts::NAME.into(),
-                allowed: "--allow-unstable: particles of a stretched layer sink through mirrors to which \
-                          water sticks; ghosts-slip puts them back"
-                    .into(),
-            });
         }
         let counts = [s.width, s.height].map(|side| (side / dx).round().max(1.0) as usize);
         let spacings = |length: f64| (length / dx).round() as usize;
         let tank = Tank { columns: spacings(s.tank), rows: spacings(s.rim * s.height), dx };
         let is_endless = method.first_row == FirstRow::Nowhere;
         let rim = if is_endless { f64::INFINITY } else { tank.rows as f64 * dx };
-        let all = (counts[0] * counts[1] + 8 * (tank.columns + 2 * tank.rows)) as f64;
         let fall = (s.gravity * s.height).sqrt();
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
         let speed = 2.0 * fall;
         let end = s.end * s.height / fall;
         let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, speed, end]);
-        simulate::check(method, &medium, &rules, all, DECISIVE, context)?;
-        Ok(Self { settings: s.clone(), medium, tank, rim, counts, speed, rules })
+        let (settings, method) = (s.clone(), method.clone());
+        Ok(Self { settings, method, medium, tank, rim, counts, speed, rules })
+    }
+
+    /// What is known before the particles are made.
+    pub fn brief(&self) -> Brief {
+        let Self { counts: [columns, rows], tank, medium, .. } = self;
+        let all = (columns * rows + 8 * (tank.columns + 2 * tank.rows)) as f64;
+        let unstable = (self.method.walls == Ghosts::NAME).then(|| RunError::Combination {
+            key: "variant",
+            value: Ghosts::NAME.into(),
+            allowed:
+                "--allow-unstable: particles of a stretched layer sink through mirrors to which \
+                      water sticks; ghosts-slip puts them back"
+                    .into(),
+        });
+        let brief = Brief::new(*medium, self.rules, all, DECISIVE)
+            .numbers(&self.rules.numbers([self.settings.h_over_dx, medium.dx]));
+        Brief { unstable, ..brief }
     }
 
     /// ρ g H \[Pa\], the unit of pressure.
@@ -97,8 +105,8 @@ impl Dam {
     }
 
     /// The scene.
-    pub fn parts(&self, method: &WaterMethod, context: &Context) -> Parts {
-        let Self { medium, tank, speed, .. } = self;
+    pub fn parts(&self) -> Parts {
+        let Self { method, medium, tank, speed, .. } = self;
         let (rho, c0, dx) = (self.settings.rho, medium.eos.sound_speed, medium.dx);
         let mut particles = self.water(method.first_row);
         let walls = water::wall_particles(method.first_row, tank, method.support * medium.h);
@@ -114,14 +122,15 @@ impl Dam {
         let falling = speed + self.settings.gravity * self.rules.end;
         let fastest = c0.max(2.0 * speed).max(falling);
         let limits = solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: fastest };
-        let parts = Parts::new(*medium, Domain::open(), particles, context);
+        let parts = Parts::new(*medium, Domain::open(), particles);
         Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use harness::case::Case;
+    use base::spec::RunSpec;
+    use harness::{case::Case, context::Context, problem::Steps};
 
     use super::*;
     use crate::dam_break::{DAM_BREAK, lobovsky};
@@ -131,25 +140,24 @@ mod tests {
         /// The numbers of a run of `modern` with settings changed.
         pub fn changed(set: impl FnOnce(&mut DamSettings)) -> Result<Self, RunError> {
             let settings = DAM_BREAK.chosen("modern", set);
-            Self::new(&settings, &water::modern(), &Context::default())
+            Self::new(&water::modern(), &settings)
         }
     }
 
     /// Particles that sank through the floor were lost, which only the metric `outside` told.
     #[test]
     fn mirrors_to_which_water_sticks_are_refused_unless_asked_for() {
-        let refused = |variant, context: &Context| {
+        let refused = |variant, spec: RunSpec| {
             let settings = DAM_BREAK.chosen(variant, |_| {});
-            let built = match variant {
-                "ghosts" => Dam::new(&settings, &water::ghosts(), context),
-                _ => Dam::new(&settings, &water::slip_ghosts(), context),
-            };
-            built.err().map(|error| error.to_string())
+            let spec = RunSpec { variant: variant.into(), ..spec };
+            let spec = RunSpec { settings: base::settings::to_json(&settings), ..spec };
+            let posed = DAM_BREAK.pose(&spec).expect("a run");
+            posed.size(&spec, Steps::All, true).err().map(|error| error.to_string())
         };
-        let words = refused("ghosts", &Context::default()).expect("refused");
+        let words = refused("ghosts", RunSpec::default()).expect("refused");
         assert!(words.contains("variant is ghosts") && words.contains("ghosts-slip"), "{words}");
-        assert_eq!(refused("ghosts", &Context::of_rules()), None);
-        assert_eq!(refused("ghosts-slip", &Context::default()), None);
+        assert_eq!(refused("ghosts", RunSpec::default().allow_unstable()), None);
+        assert_eq!(refused("ghosts-slip", RunSpec::default()), None);
     }
 
     #[test]
@@ -190,19 +198,17 @@ mod tests {
     #[test]
     fn a_step_far_beyond_the_limit_does_not_widen_the_lists_without_end() {
         let settings = DamSettings { dt: Some(167.0), ..DamSettings::default() };
-        let (method, context) = (water::modern(), Context::of_rules());
-        let dam = Dam::new(&settings, &method, &context).unwrap();
-        assert_eq!(dam.parts(&method, &context).skin, Some(dam.medium.h));
+        let dam = Dam::new(&water::modern(), &settings).unwrap();
+        assert_eq!(dam.parts().skin, Some(dam.medium.h));
     }
 
     /// A front of shallow water runs at 2 (g H)^(1/2), and water that has left the tank falls by g t.
     #[test]
     fn a_speed_is_a_divergence_beyond_that_of_sound_and_of_a_fall() {
         let most = |end: f64| {
-            let (method, context) = (water::modern(), Context::of_rules());
             let dam = Dam::changed(|s| (s.c0, s.end) = (10.0, end)).unwrap();
             let fall = (9.81 * 0.1143_f64).sqrt();
-            dam.parts(&method, &context).limits.speed / fall
+            dam.parts().limits.speed / fall
         };
         for (end, expected) in [(1.8, 10.0), (7.9, 10.0), (20.0, 22.0)] {
             assert!((most(end) / expected - 1.0).abs() < 1e-12, "{end}: {}", most(end));
@@ -211,21 +217,23 @@ mod tests {
 
     #[test]
     fn scenes_that_make_no_sense_are_refused_with_their_setting() {
-        let is_too_much =
-            |set: fn(&mut DamSettings)| matches!(Dam::changed(set), Err(RunError::TooLong { .. }));
+        let refused = |variant, set: fn(&mut DamSettings)| {
+            let spec = DAM_BREAK.spec(variant, set);
+            DAM_BREAK.pose(&spec).expect("a run").size(&spec, Steps::All, false)
+        };
+        let is_too_much = |set| matches!(refused("modern", set), Err(RunError::TooLong { .. }));
         assert!(matches!(Dam::changed(|s| s.tank = 0.05), Err(RunError::TooMuch { .. })));
         assert!(is_too_much(|s| (s.n, s.tank) = (2000, 100.0)));
         assert!(is_too_much(|s| s.courant = 1e-6));
-        assert!(matches!(Dam::changed(|s| s.courant = 2.0), Err(RunError::TimeStep { .. })));
+        let unstable = refused("modern", |s| s.courant = 2.0);
+        assert!(matches!(unstable, Err(RunError::TimeStep { .. })));
         let unused = DAM_BREAK.spec("modern", |s| s.xsph = 0.25);
         assert!(matches!(
             DAM_BREAK.run(&unused, &Context::default()),
             Err(RunError::Unused { .. })
         ));
         // Without viscosity the predictor-corrector has no stable step.
-        let inviscid = DamSettings { alpha: 0.0, ..DamSettings::default() };
-        let seed = water::seed();
-        let refused = Dam::new(&inviscid, &seed, &Context::default());
-        assert!(matches!(refused, Err(RunError::TimeStep { .. })));
+        let inviscid = refused("seed", |s| s.alpha = 0.0);
+        assert!(matches!(inviscid, Err(RunError::TimeStep { .. })));
     }
 }

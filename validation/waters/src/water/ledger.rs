@@ -2,7 +2,7 @@
 //! momentum against the impulse of walls and gravity.
 
 use base::record::{MetricKey, Profile, Record};
-use harness::{context::Context, method::Medium};
+use harness::method::Medium;
 use maths::metrics::{
     budget::{Metered, Powers},
     energy::{Energy, Water, water_slope},
@@ -98,6 +98,11 @@ impl Ledger {
         if self.rows.is_empty() { f64::NAN } else { self.unexplained }
     }
 
+    /// Was no sample taken, because nobody asked for the balances?
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
     /// The largest |E(t) − E(0) − work(t)| so far \[J/m\].
     fn gap(&self) -> f64 {
         let balance = |row: &[f64; 9]| row[1] + row[2] + row[3] - row[4..].iter().sum::<f64>();
@@ -105,9 +110,9 @@ impl Ledger {
         self.rows.iter().map(|row| (balance(row) - start).abs()).fold(0.0, f64::max)
     }
 
-    /// Metrics relative to a scale \[J/m\], and the series, if all that costs pair sweeps is asked for.
-    pub fn measure(&self, scale: f64, of_what: &str, context: &Context, record: &mut Record) {
-        if !context.measures_all() {
+    /// Metrics relative to a scale \[J/m\], and the series, if samples were taken.
+    pub fn measure(&self, scale: f64, of_what: &str, record: &mut Record) {
+        if self.is_empty() {
             return record.leave_unasked(&METRICS);
         }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
@@ -128,7 +133,6 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::spec::RunSpec;
     use harness::method::Parts;
     use schemes::water::modern;
     use solver::{Domain, Particle, Tait};
@@ -138,7 +142,7 @@ mod tests {
         let place = |k: usize| Vector2::new(k as f64, height);
         let particle = |k| Particle::fluid(place(k), v, 1000.0, 0.001 * (k + 1) as f64);
         let particles = (0..3).map(particle).collect();
-        let parts = Parts::new(*medium, Domain::open(), particles, &Context::default());
+        let parts = Parts::new(*medium, Domain::open(), particles);
         let mut simulation = (modern().build)(parts).expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         simulation
@@ -176,8 +180,7 @@ mod tests {
         assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
-        let context = Context { spec: RunSpec::default().measure_all(), ..Context::default() };
-        ledger.measure(50.0, "it", &context, &mut record);
+        ledger.measure(50.0, "it", &mut record);
         let gap = record.value(ENERGY_GAP).expect("a metric");
         assert!((gap - 27.0 / 50.0).abs() < 1e-12);
         // Each term at a power that rises at a rate of its own for 3 s.
@@ -188,7 +191,7 @@ mod tests {
             ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e]);
             ledger.powers = powers;
         }
-        ledger.measure(50.0, "it", &context, &mut record);
+        ledger.measure(50.0, "it", &mut record);
         for (k, metric) in WORKS.into_iter().enumerate() {
             let work = record.value(metric).expect("a metric");
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");

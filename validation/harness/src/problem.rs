@@ -1,0 +1,586 @@
+//! A run in verbs. A case states the scene of a run, what is measured at its times, and its metrics; from
+//! these the functions here simulate a run, estimate it, export it, show it to another observer, and measure
+//! particles of another code.
+
+use base::{
+    bits::Bits,
+    number,
+    record::{Profile, Record, Status},
+    spec::{Keep, Measure, RunSpec},
+};
+use serde_json::Value;
+use solver::{Domain, Flow, Numbers, Outcome, Particle, PlaneWall, Role, Stepper};
+
+use crate::{
+    context::Context,
+    error::RunError,
+    frames,
+    medium::{Knob, Medium},
+    method::{Method, Parts, see},
+    outline::Outline,
+    playback::Playback,
+    relation::{Relation, TIME, View},
+    rules::Rules,
+    runner::{Drive, check_size},
+    size::Size,
+};
+
+/// Name of the kernel among what a run chose.
+pub const KERNEL: &str = "kernel";
+/// Name of the integrator.
+pub const INTEGRATOR: &str = "integrator";
+/// Name of the walls.
+pub const WALLS: &str = "walls";
+
+/// What is asked of a run beside its headline.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// Every metric, whatever it costs.
+    pub all: bool,
+    /// Particles for pictures.
+    pub particles: bool,
+}
+
+impl Asked {
+    /// What the spec of a run asks for.
+    pub fn of(spec: &RunSpec) -> Self {
+        let Keep { particles, .. } = spec.keep;
+        Self { all: spec.measure == Measure::All, particles }
+    }
+}
+
+/// What is known of a run before its particles are made.
+#[derive(Debug)]
+pub struct Brief {
+    /// The parameters of the material.
+    pub medium: Medium,
+    /// Time step, its limits, sound speed, end.
+    pub rules: Rules,
+    /// Has the time step a limit in theory? If not, no step is refused.
+    pub is_limited: bool,
+    /// The integrator whose limit it is, if not that of the method.
+    pub limit_of: Option<&'static str>,
+    /// Why only a run that may be unstable is made, if so.
+    pub unstable: Option<RunError>,
+    /// What its record states of it, by name.
+    pub numbers: Vec<(&'static str, Value)>,
+    /// About how many particles there are.
+    pub particles: f64,
+    /// The settings on which the number of particles and of time steps depends.
+    pub decisive: &'static str,
+    /// Steps of which the record keeps something.
+    pub samples: f64,
+    /// Steps to each of the times at least.
+    pub least_steps: usize,
+    /// Is it run by one thread, however many there are?
+    pub is_serial: bool,
+}
+
+impl Brief {
+    /// A run by these rules, with about so many particles, whose size depends on the settings `decisive`.
+    pub fn new(medium: Medium, rules: Rules, particles: f64, decisive: &'static str) -> Self {
+        Self {
+            medium,
+            rules,
+            is_limited: true,
+            limit_of: None,
+            unstable: None,
+            numbers: Vec::new(),
+            particles,
+            decisive,
+            samples: 0.0,
+            least_steps: 1,
+            is_serial: false,
+        }
+    }
+
+    /// Adds numbers that its record states, by name.
+    #[must_use]
+    pub fn numbers(mut self, numbers: &[(&'static str, f64)]) -> Self {
+        self.numbers.extend(numbers.iter().map(|(name, value)| (*name, number::json(*value))));
+        self
+    }
+}
+
+/// A run of a case: the scene, what is measured, and the metrics.
+pub trait Problem: Sized {
+    /// What particles have beside position, velocity and density.
+    type Extra: Numbers;
+    /// A simulation as the case sees it.
+    type Simulation: Stepper<Self::Extra> + ?Sized;
+    /// All that accumulates over a run.
+    type Watch: Bits;
+    /// Does [`Problem::watch`] read the particles of the scene?
+    const READS_START: bool = false;
+
+    /// The method.
+    fn method(&self) -> &Method<Self::Extra, Self::Simulation>;
+
+    /// What is known before the particles are made.
+    fn brief(&self) -> Brief;
+
+    /// Why no file can state the scene for other codes, if so.
+    fn not_exported(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// The times of interest, ascending, the end last \[s\].
+    fn times(&self) -> Vec<f64>;
+
+    /// Particles, walls and medium.
+    ///
+    /// # Errors
+    /// If the settings make no scene.
+    fn scene(&self) -> Result<Parts<Self::Extra>, RunError>;
+
+    /// Changes a simulation that was just built by what no scene states, as an observer sees it.
+    fn prepare(&self, _simulation: &mut Self::Simulation, _view: &View) {}
+
+    /// The watch before the first step. `start` are the particles of the scene before any deliberate error,
+    /// if [`Problem::READS_START`].
+    fn watch(&self, start: &[Particle<Self::Extra>], simulation: &Self::Simulation) -> Self::Watch;
+
+    /// Adds the functions that measure on the way.
+    fn calls(&self, calls: Calls<Self>, _asked: Asked) -> Calls<Self> {
+        calls
+    }
+
+    /// Puts metrics and profiles; the simulation is at its end, the record states how it ended.
+    fn measure(&self, watch: Self::Watch, end: &Self::Simulation, record: &mut Record);
+}
+
+/// Called after every step.
+type AfterStep<P> = fn(&P, &mut <P as Problem>::Watch, &dyn Stepper<<P as Problem>::Extra>) -> Flow;
+/// Called at the k-th of the times of interest.
+type At<P> =
+    fn(&P, &mut <P as Problem>::Watch, &mut <P as Problem>::Simulation, usize, &mut Record);
+/// Called when a run goes on from a checkpoint.
+type Resumed<P> = fn(&P, &<P as Problem>::Watch, &mut <P as Problem>::Simulation);
+
+/// The functions of a problem that are called on the way, with the names that a profile of the run shows.
+pub struct Calls<P: Problem> {
+    after_step: Vec<(&'static str, AfterStep<P>)>,
+    at: Vec<(&'static str, Reads, At<P>)>,
+    control: Option<(&'static str, At<P>, Resumed<P>)>,
+}
+
+/// What a function at a time of interest reads.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Reads {
+    All,
+    Positions,
+}
+
+impl<P: Problem> Default for Calls<P> {
+    fn default() -> Self {
+        Self { after_step: Vec::new(), at: Vec::new(), control: None }
+    }
+}
+
+impl<P: Problem> Calls<P> {
+    /// Calls a function after every step, and at every frame of another code.
+    #[must_use]
+    pub fn after_step(mut self, name: &'static str, call: AfterStep<P>) -> Self {
+        self.after_step.push((name, call));
+        self
+    }
+
+    /// Calls a function at each of the times of interest, with its number.
+    #[must_use]
+    pub fn at(mut self, name: &'static str, call: At<P>) -> Self {
+        self.at.push((name, Reads::All, call));
+        self
+    }
+
+    /// Calls a function that reads positions and densities, or for which velocities and extra fields of a
+    /// leapfrog may be half a step old, which costs no pair sweep.
+    #[must_use]
+    pub fn at_positions(mut self, name: &'static str, call: At<P>) -> Self {
+        self.at.push((name, Reads::Positions, call));
+        self
+    }
+
+    /// Adds these functions only if they are asked for.
+    #[must_use]
+    pub fn when(self, is: bool, add: impl FnOnce(Self) -> Self) -> Self {
+        if is { add(self) } else { self }
+    }
+
+    /// Calls a function at each of the times of interest that changes a simulation of ours, after all that
+    /// measure; of another code's frames it is not called. `resumed` makes the change again when a run goes
+    /// on from a checkpoint, which does not hold it.
+    #[must_use]
+    pub fn control(mut self, name: &'static str, call: At<P>, resumed: Resumed<P>) -> Self {
+        self.control = Some((name, call, resumed));
+        self
+    }
+}
+
+/// Steps after which observers are compared: early, before the motion amplifies round-off. Strong shifting in
+/// vortices does by 1.8 a step from the twelfth on, and after 28 steps by more than any floor.
+const COMPARED: [usize; 3] = [4, 8, 16];
+
+/// How many steps of a run are made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Steps {
+    /// All.
+    All,
+    /// Those at which observers are compared.
+    Early,
+    /// None.
+    None,
+}
+
+impl Steps {
+    fn most(self) -> f64 {
+        match self {
+            Self::All => f64::INFINITY,
+            Self::Early => COMPARED[COMPARED.len() - 1] as f64,
+            Self::None => 0.0,
+        }
+    }
+}
+
+/// Called with the particles at a time \[s\].
+pub type AtTime<'a> = &'a mut dyn FnMut(f64, Profile);
+
+/// A run of a case, whatever its types: what a command does with it.
+pub trait Posed {
+    /// What is known of it before its particles are made.
+    fn brief(&self) -> Brief;
+    /// The size of as many steps, of a run that is not refused.
+    ///
+    /// # Errors
+    /// If it is refused, or takes more time or memory than a run may, unless that is allowed.
+    fn size(&self, spec: &RunSpec, steps: Steps, allow_long: bool) -> Result<Size, RunError>;
+    /// Simulates it.
+    ///
+    /// # Errors
+    /// If it is refused, or the folder of its frames cannot be made.
+    fn simulate(&self, context: &Context) -> Result<Record, RunError>;
+    /// Its scene, at its times, or at the few early times of an observer if there is a relation.
+    ///
+    /// # Errors
+    /// If it is refused, has no scene that a file can state, or the relation is no symmetry of it.
+    fn outline(
+        &self,
+        spec: &RunSpec,
+        relation: Option<Relation>,
+        allow_long: bool,
+    ) -> Result<Outline, RunError>;
+    /// Its scene as an observer sees it, and the particles at a few early times until it diverges.
+    ///
+    /// # Errors
+    /// As [`Posed::outline`].
+    fn seen_by(
+        &self,
+        relation: Relation,
+        context: &Context,
+        at_time: AtTime,
+    ) -> Result<Outline, RunError>;
+    /// Measures particles of another code.
+    ///
+    /// # Errors
+    /// If the run is refused, or a frame does not fit its scene.
+    fn measure_frames(&self, spec: &RunSpec, playback: &Playback) -> Result<Record, RunError>;
+}
+
+impl<P: Problem> Posed for P {
+    fn brief(&self) -> Brief {
+        Problem::brief(self)
+    }
+
+    fn size(&self, spec: &RunSpec, steps: Steps, allow_long: bool) -> Result<Size, RunError> {
+        self.checked(spec, steps, allow_long).map(|(_, size)| size)
+    }
+
+    fn simulate(&self, context: &Context) -> Result<Record, RunError> {
+        self.driven(&context.spec, Steps::All, context, None)
+    }
+
+    fn outline(
+        &self,
+        spec: &RunSpec,
+        relation: Option<Relation>,
+        allow_long: bool,
+    ) -> Result<Outline, RunError> {
+        self.checked(spec, Steps::None, allow_long)?;
+        let Built { simulation, outline, .. } = self.built(spec, 1, relation, None)?;
+        self.stated(&*simulation, outline, relation, Steps::None)
+    }
+
+    fn seen_by(
+        &self,
+        relation: Relation,
+        context: &Context,
+        at_time: AtTime,
+    ) -> Result<Outline, RunError> {
+        let spec = &context.spec;
+        let (brief, _) = self.checked(spec, Steps::Early, context.allow_long)?;
+        let Built { mut simulation, outline, .. } = self.built(spec, 1, Some(relation), None)?;
+        let outline = self.stated(&*simulation, outline, Some(relation), Steps::Early)?;
+        let (simulation, pressure) = (simulation.stepper(), pressure(&brief.medium));
+        for until in outline.times.iter().filter(|_| !context.is_interrupted()) {
+            if simulation.advance(*until, outline.dt, &mut ()) != Outcome::Reached {
+                break; // it diverged
+            }
+            at_time(*until, frames::columns(&simulation.particles(), &pressure));
+        }
+        Ok(outline)
+    }
+
+    fn measure_frames(&self, spec: &RunSpec, playback: &Playback) -> Result<Record, RunError> {
+        let context = Context { spec: spec.clone(), allow_long: true, ..Context::default() };
+        self.driven(spec, Steps::None, &context, Some(playback))
+    }
+}
+
+/// A simulation before its first step.
+struct Built<P: Problem> {
+    simulation: Box<P::Simulation>,
+    start: Vec<Particle<P::Extra>>,
+    outline: Scene,
+}
+
+/// What the outline of a run takes from its scene, as an observer sees it.
+struct Scene {
+    medium: Medium,
+    domain: Domain,
+    mirrors: Vec<PlaneWall>,
+    bodies: Vec<u32>,
+    view: View,
+}
+
+fn pressure(medium: &Medium) -> impl Fn(f64) -> f64 + use<> {
+    let eos = medium.eos;
+    move |density| solver::EquationOfState::pressure(&eos, density)
+}
+
+/// The parts of the verbs.
+trait Parted: Problem {
+    /// Refuses a run before its particles are made; its size.
+    fn checked(
+        &self,
+        spec: &RunSpec,
+        steps: Steps,
+        allow_long: bool,
+    ) -> Result<(Brief, Size), RunError> {
+        let mut brief = Problem::brief(self);
+        let (method, rules) = (&self.method().properties, brief.rules);
+        if let Some(reason) = brief.unstable.take_if(|_| !spec.allow_unstable) {
+            return Err(reason);
+        }
+        let (dt, limit) = (rules.dt(), rules.dt_limit());
+        let integrator = brief.limit_of.unwrap_or(method.integrator);
+        if brief.is_limited && dt > limit && !spec.allow_unstable {
+            return Err(RunError::TimeStep { dt, limit, integrator });
+        }
+        let reach = method.support * brief.medium.h / brief.medium.dx;
+        let size = Size::new([rules.end / dt, brief.particles], reach);
+        let sweeps = if brief.is_limited { rules.sweeps() } else { size.sweeps };
+        let size = Size { sweeps, samples: brief.samples, ..size };
+        let size = check_size(size, steps.most(), brief.decisive, allow_long)?;
+        Ok((brief, size))
+    }
+
+    /// The simulation of a run, of another code's with its particles.
+    fn built(
+        &self,
+        spec: &RunSpec,
+        threads: usize,
+        relation: Option<Relation>,
+        playback: Option<&Playback>,
+    ) -> Result<Built<Self>, RunError> {
+        let mut parts =
+            Parts { threads, mutation: spec.mutation, disorder: spec.disorder, ..self.scene()? };
+        if let Some(playback) = playback {
+            parts.particles = playback.particles(parts.particles);
+        }
+        let view = match relation {
+            Some(relation) => see(&mut parts, relation)
+                .map_err(|reason| RunError::NoSymmetry { relation, reason })?,
+            None => View::default(),
+        };
+        let start = if Self::READS_START { parts.particles.clone() } else { Vec::new() };
+        let (mirrors, bodies) = (parts.mirrors.clone(), parts.bodies.clone());
+        let outline = Scene { medium: parts.medium, domain: parts.domain, mirrors, bodies, view };
+        let mut simulation = (self.method().build)(parts)?;
+        self.prepare(&mut simulation, &view);
+        Ok(Built { simulation, start, outline })
+    }
+
+    /// The outline of a run that was built.
+    fn stated(
+        &self,
+        simulation: &Self::Simulation,
+        Scene { medium, domain, mut mirrors, bodies, view }: Scene,
+        relation: Option<Relation>,
+        steps: Steps,
+    ) -> Result<Outline, RunError> {
+        if let Some(reason) = self.not_exported() {
+            return Err(RunError::NoScene(reason));
+        }
+        let method = self.method().properties.clone();
+        let mut dt = Problem::brief(self).rules.dt();
+        let mut times = Vec::new();
+        match relation {
+            None => times = self.times(),
+            Some(Relation::Boosted)
+                if steps == Steps::Early
+                    && method.uses.contains(&Knob::Shift)
+                    && medium.shift > 0.0 =>
+            {
+                let reason = "its shifting takes the largest speed of the scene";
+                return Err(RunError::NoSymmetry { relation: Relation::Boosted, reason });
+            }
+            Some(_) => {
+                dt *= view.scale(TIME);
+                times.extend(COMPARED.map(|steps| steps as f64 * dt));
+            }
+        }
+        let own = pressure(&Problem::brief(self).medium);
+        let pressure = |density| view.pressure_of(&own, density);
+        let particles = simulation.particles();
+        // Walls of particles need no planes.
+        if particles.iter().any(|p| p.role != Role::Fluid) {
+            mirrors.clear();
+        }
+        let particles = frames::columns(&particles, &pressure);
+        Ok(Outline { medium, domain, mirrors, bodies, particles, times, dt, view, method })
+    }
+
+    /// A record with what the run chose.
+    fn begun(&self, spec: &RunSpec, threads: usize, brief: &Brief) -> Record {
+        let mut record = Record::of(spec, threads.max(1));
+        let method = &self.method().properties;
+        let words =
+            [(KERNEL, method.kernel), (INTEGRATOR, method.integrator), (WALLS, method.walls)];
+        let numbers = brief.numbers.iter().map(|(name, value)| (name.to_string(), value.clone()));
+        record.numerics.extend(numbers);
+        let words = words.map(|(name, word)| (name.to_string(), Value::from(word)));
+        record.numerics.extend(words);
+        record
+    }
+
+    /// Simulates a run, or shows it the frames of another code, and measures it.
+    fn driven(
+        &self,
+        spec: &RunSpec,
+        steps: Steps,
+        context: &Context,
+        playback: Option<&Playback>,
+    ) -> Result<Record, RunError> {
+        let (brief, _) = self.checked(spec, steps, context.allow_long)?;
+        let threads = if brief.is_serial { 1 } else { context.threads };
+        let Built { mut simulation, start, .. } = self.built(spec, threads, None, playback)?;
+        let mut record = self.begun(spec, threads, &brief);
+        let (times, asked) = (self.times(), Asked::of(spec));
+        let mut watch = self.watch(&start, &simulation);
+        drop(start);
+        let Calls { after_step, at, control } = self.calls(Calls::default(), asked);
+        let mut seen = (&mut watch, &mut record);
+        let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
+        let sweeps = if brief.is_limited { brief.rules.sweeps() } else { 2.0 };
+        let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
+            .steps(brief.least_steps, sweeps);
+        for (name, call) in after_step {
+            drive = drive.after_step(name, move |(watch, _), s| call(self, watch, s));
+        }
+        for (name, reads, call) in at {
+            let call = move |(watch, record): &mut (&mut Self::Watch, &mut Record),
+                             s: &mut Self::Simulation,
+                             k| call(self, watch, s, k, record);
+            drive = match reads {
+                Reads::All => drive.at(name, call),
+                Reads::Positions => drive.at_positions(name, call),
+            };
+        }
+        let ended = match playback {
+            Some(playback) => drive.play(playback, context)?,
+            None => {
+                if let Some((name, call, resumed)) = control {
+                    drive = drive
+                        .at(name, move |(watch, record), s, k| call(self, watch, s, k, record))
+                        .resumed(move |(watch, _), s| resumed(self, watch, s));
+                }
+                drive.run(context)?
+            }
+        };
+        ended.put(&mut record);
+        self.measure(watch, &simulation, &mut record);
+        Ok(record)
+    }
+}
+
+impl<P: Problem> Parted for P {}
+
+/// The scene of a run.
+type Scenes<X> = Box<dyn Fn() -> Result<Parts<X>, RunError>>;
+/// Measures the particles at the end.
+type AtEnd<X> = Box<dyn Fn(&dyn Stepper<X>, &mut Record)>;
+
+/// A run that is measured at its end alone.
+pub struct Simple<X: Numbers = ()> {
+    method: Method<X>,
+    medium: Medium,
+    rules: Rules,
+    particles: f64,
+    decisive: &'static str,
+    numbers: Vec<(&'static str, f64)>,
+    scene: Scenes<X>,
+    measure: AtEnd<X>,
+    /// Why no file can state the scene for other codes, if so.
+    pub not_exported: Option<&'static str>,
+}
+
+impl<X: Numbers> Simple<X> {
+    /// A run by these rules, with about so many particles, whose size depends on the settings `decisive`. Its
+    /// record states h/dx and `numbers`. `measure` is called of a run that has reached its end.
+    pub fn new(
+        method: &Method<X>,
+        (medium, rules): (Medium, Rules),
+        (particles, decisive): (f64, &'static str),
+        numbers: &[(&'static str, f64)],
+        scene: impl Fn() -> Result<Parts<X>, RunError> + 'static,
+        measure: impl Fn(&dyn Stepper<X>, &mut Record) + 'static,
+    ) -> Self {
+        let (method, numbers) = (method.clone(), numbers.to_vec());
+        let (scene, measure) = (Box::new(scene), Box::new(measure));
+        let not_exported = None;
+        Self { method, medium, rules, particles, decisive, numbers, scene, measure, not_exported }
+    }
+}
+
+impl<X: Numbers> Problem for Simple<X> {
+    type Extra = X;
+    type Simulation = dyn Stepper<X>;
+    type Watch = ();
+
+    fn method(&self) -> &Method<X> {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        Brief::new(self.medium, self.rules, self.particles, self.decisive).numbers(&self.numbers)
+    }
+
+    fn not_exported(&self) -> Option<&'static str> {
+        self.not_exported
+    }
+
+    fn times(&self) -> Vec<f64> {
+        vec![self.rules.end]
+    }
+
+    fn scene(&self) -> Result<Parts<X>, RunError> {
+        (self.scene)()
+    }
+
+    fn watch(&self, _: &[Particle<X>], _: &dyn Stepper<X>) {}
+
+    fn measure(&self, (): (), end: &dyn Stepper<X>, record: &mut Record) {
+        if record.status == Status::Completed {
+            (self.measure)(end, record);
+        }
+    }
+}
