@@ -14,8 +14,9 @@ use tell::{output, set};
 /// What every result depends on.
 const SHARED: [&str; 7] =
     ["../solver", "base", "maths", "harness", "schemes", "../references", "../Cargo.lock"];
-/// Crates with cases; a result depends on that of its case beside what is shared.
+/// Folders of cases; a result depends on that of its case beside what is shared.
 const FAMILIES: [&str; 4] = ["fluids", "waters", "solids", "lattice"];
+const CASES: &str = "cases/src";
 
 fn main() {
     let commit = git(&["rev-parse", "HEAD"]).filter(|commit| !commit.is_empty());
@@ -24,7 +25,14 @@ fn main() {
     let is_dirty = changes.map(|changes| if changes.is_empty() { "no" } else { "yes" });
     set("COMMIT", commit);
     set("DIRTY", is_dirty.map(String::from));
-    set("SOURCES", Some(FAMILIES.map(|family| format!("{family}={}", digest(family))).join(" ")));
+    set(
+        "SOURCES",
+        Some(
+            FAMILIES
+                .map(|family| format!("{family}={}", digest(&format!("{CASES}/{family}"))))
+                .join(" "),
+        ),
+    );
     for watched in ["HEAD", "refs", "packed-refs", "index"] {
         if let Some(path) = git(&["rev-parse", "--git-path", watched])
             && Path::new(&path).exists()
@@ -32,7 +40,7 @@ fn main() {
             println!("cargo:rerun-if-changed={path}");
         }
     }
-    for watched in ["build.rs", "src", "Cargo.toml"].iter().chain(&SHARED).chain(&FAMILIES) {
+    for watched in ["build.rs", "src", "Cargo.toml"].iter().chain(&SHARED).chain(&[CASES]) {
         println!("cargo:rerun-if-changed={watched}");
     }
 }

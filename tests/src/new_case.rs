@@ -45,7 +45,7 @@ fn pose(method: &Method, s: &Decay) -> Result<Simple, RunError> {
 fn declaration(tier: Tier) -> Declaration {
     let mut table = table::Table::new(&DECAY, tier);
     table.over((), &["cubic", "quintic"], [&[8, 16, 32]; 2], |s, n| s.n = n);
-    let level = |s: &Decay| (1.0 / s.n as f64, format!("n = {}", s.n));
+    let level = |s: &Decay| (1.0 / s.n as f64, Resolution::new(s.n, "n = {}"));
     let ladders = ["cubic", "quintic"].map(|variant| table.ladder(&[()], variant, level)).into();
     let accuracy = vec![Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") }];
     let halved = Change::new("dt/2", "time", DECAY.spec("cubic", |s| s.step *= 0.5));

@@ -1,6 +1,6 @@
 //! Bounds of gates that are made from the row-reduced matrix are computed again.
 
-use fluids::channel::{Flow, GHOSTS, TIMES};
+use cases::fluids::channel::{Flow, GHOSTS, TIMES};
 use maths::exact::StartUp;
 use nalgebra::DVector;
 use solver::{Kernel, QuinticSpline};

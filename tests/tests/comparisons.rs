@@ -24,7 +24,6 @@ use harness::convergence::{Level, convergence};
 use harness::declare::Comparison;
 use harness::studies::validation::{Numerical, numerical};
 use serde_json::{Value, json};
-use validation::cases;
 
 /// The setting that is refined, and its value in the finer run.
 const FINER: [(&str, &str, f64); 5] = [

@@ -5,6 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use base::record::{Profile, Record, Status};
 use base::spec::{RunSpec, Task};
+use cases::{CASES, page};
 use harness::{
     case::{Case, Planned, Tier},
     context::Context,
@@ -12,7 +13,6 @@ use harness::{
     plan, suite,
 };
 use rayon::prelude::*;
-use validation::{cases::CASES, page};
 
 use crate::tidy::assert_none;
 

@@ -14,7 +14,6 @@ use harness::{
 };
 use serde_json::Value;
 use touchstone_tests::snapshot;
-use validation::cases;
 
 use crate::tidy::{assert_none, root};
 

@@ -27,7 +27,7 @@ fn the_page_shows_what_is_compiled() {
 #[test]
 fn a_solver_of_another_library_is_judged_and_has_a_section() {
     for name in ["couette", "poiseuille"] {
-        let case: &dyn Case = validation::cases::find(name).unwrap();
+        let case: &dyn Case = cases::find(name).unwrap();
         let of = spec(case, "seed", &[]).unwrap();
         let record = |cells| {
             let solver = FiniteDifferences { cells };
@@ -61,14 +61,14 @@ struct Other {
 
 impl Other {
     fn problem(&self) -> Problem {
-        let case = validation::cases::find(self.case).unwrap();
+        let case = cases::find(self.case).unwrap();
         let of = spec(case, "plain", &["rows=20".into()]).unwrap();
         Problem::of(case, of).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The verdict of the gate on the error, none if it does not apply.
     fn verdict(&self, gate: &str) -> Option<(String, bool)> {
-        let case: &dyn Case = validation::cases::find(self.case).unwrap();
+        let case: &dyn Case = cases::find(self.case).unwrap();
         let of = spec(case, "plain", &["rows=20".into()]).unwrap();
         let record = exchange::library::record(case, &of, self).unwrap_or_else(|e| panic!("{e}"));
         let run = suite::submitted(case, record);

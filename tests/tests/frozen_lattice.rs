@@ -7,7 +7,7 @@
 //! the density keeps its bits.
 
 use base::record::{Record, Status};
-use fluids::channel::{ChannelSettings, Flow, Setup, TIMES};
+use cases::fluids::channel::{ChannelSettings, Flow, Setup, TIMES};
 use harness::{
     case::{self, Case},
     context::Context,
@@ -23,7 +23,6 @@ use solver::{
     Tait, WendlandC2, integrator::stages,
 };
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
-use validation::cases;
 
 /// A channel flow in the kernel K, the walls W and the integrator I, and no stabiliser: what no variant has.
 type Channels<K, W, I> = Compose<K, Fluid<BodyForce>, Continuity, W, I>;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::tidy::root;
 
 /// A crate, its folder, and the crates of this project that it may know.
-const LAYERS: [(&str, &str, &[&str]); 16] = [
+const LAYERS: [(&str, &str, &[&str]); 12] = [
     ("lanes", "solver/lanes", &[]),
     ("solver", "solver", &["lanes"]),
     ("lagrangian", "solver/lagrangian", &["lanes", "solver"]),
@@ -18,32 +18,16 @@ const LAYERS: [(&str, &str, &[&str]); 16] = [
     ("harness", "validation/harness", &["solver", "base", "report", "maths"]),
     ("exchange", "validation/exchange", &["solver", "base", "harness"]),
     ("schemes", "validation/schemes", &["solver", "lagrangian", "base", "maths", "harness"]),
-    ("fluids", "validation/fluids", &OF_CASES),
-    ("waters", "validation/waters", &OF_CASES),
-    ("solids", "validation/solids", &OF_CASES),
-    ("lattice", "validation/lattice", &OF_CASES),
-    ("validation", "validation/catalogue", &EVERY),
-    ("touchstone", "validation", &WITH_VALIDATION),
-    ("tests", "tests", &WITH_VALIDATION),
+    (
+        "cases",
+        "validation/cases",
+        &["solver", "lagrangian", "base", "report", "maths", "harness", "schemes"],
+    ),
+    ("touchstone", "validation", &EVERY),
+    ("tests", "tests", &EVERY),
 ];
-const OF_CASES: [&str; 7] =
-    ["solver", "lagrangian", "base", "report", "maths", "harness", "schemes"];
-const EVERY: [&str; 9] =
-    ["solver", "base", "report", "maths", "harness", "fluids", "waters", "solids", "lattice"];
-const WITH_VALIDATION: [&str; 12] = [
-    "solver",
-    "base",
-    "exchange",
-    "report",
-    "maths",
-    "harness",
-    "schemes",
-    "fluids",
-    "waters",
-    "solids",
-    "lattice",
-    "validation",
-];
+const EVERY: [&str; 8] =
+    ["solver", "base", "exchange", "report", "maths", "harness", "schemes", "cases"];
 
 /// Names in the section `[dependencies]` of a manifest.
 fn dependencies(manifest: &str) -> BTreeSet<String> {
@@ -208,6 +192,19 @@ fn modules_of_a_crate_form_no_circle() {
         }
     }
     assert_eq!(found, Vec::<String>::new());
+}
+
+/// A change of a case reaches no case of another family.
+#[test]
+fn families_of_cases_do_not_know_each_other() {
+    let families = ["fluids", "waters", "solids", "lattice"];
+    for family in families {
+        let folder = root().join("validation/cases/src").join(family);
+        let read = |path: PathBuf| code(&fs::read_to_string(path).expect("a source"));
+        let known = files(&folder).into_iter().flat_map(|path| imported(&read(path), "crate::"));
+        let others = known.filter(|name| families.contains(&&**name) && name != family);
+        assert_eq!(others.collect::<Vec<_>>(), Vec::<String>::new(), "{family}");
+    }
 }
 
 #[test]

@@ -6,13 +6,13 @@ use base::{
     mutation::{Constant, Mutation},
     spec::RunSpec,
 };
+use cases::stiffness::Row;
 use harness::{
     case::{self, Case, PLANNED_DT},
     context::{Context, Progress},
     limits::{ADVISED_SHARE, Mechanism},
 };
 use rayon::prelude::*;
-use validation::{cases, stiffness::Row};
 
 /// What a run does before it is stopped: the step that it is driven with, the step that it plans in its
 /// record, and the first step that it makes.

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use base::gate::{Cause, Gate};
 use base::spec::RunSpec;
+use cases::CASES;
 use harness::{
     case::{self, Case, Planned, RunError, Tier},
     declare::Change,
@@ -13,7 +14,6 @@ use harness::{
     runs::Runs,
     studies, suite,
 };
-use validation::cases::CASES;
 
 /// A run that sets what its variant does not read is refused, and a study of it would have nothing to say.
 #[test]
@@ -73,7 +73,8 @@ fn the_deep_tier_has_the_full_one_and_two_levels_and_20_starts() {
                 let name = format!("{} {}", case.name(), deep.variant);
                 assert_eq!(deep.levels.len(), full.levels.len() + more, "{name}");
                 assert!(deep.levels.is_sorted_by(|a, b| a.spacing > b.spacing), "{name}");
-                let labels = deep.levels.iter().map(|level| &level.label).collect::<BTreeSet<_>>();
+                let labels =
+                    deep.levels.iter().map(|level| level.resolution.count).collect::<BTreeSet<_>>();
                 assert_eq!(labels.len(), deep.levels.len(), "{name}: {labels:?}");
                 ladders += more / 2;
             }

@@ -27,7 +27,6 @@ use solver::{
     lattice, walls::Walls,
 };
 use touchstone_tests::{bits, patch};
-use validation::cases;
 
 use crate::damaged::shortest_first;
 

@@ -16,7 +16,7 @@ use base::{
     record::{Record, Status},
     spec::{RunSpec, Task},
 };
-use fluids::channel::{Flow, ladder};
+use cases::fluids::channel::{Flow, ladder};
 use harness::{
     case::{self, Case, Tier},
     plan,
@@ -25,7 +25,6 @@ use harness::{
 use insta::{Comparator, Settings, Snapshot};
 use rayon::prelude::*;
 use serde_json::{Map, Value, json};
-use validation::cases;
 
 /// Metrics may differ by this much of themselves.
 const RELATIVE: f64 = 1e-6;

@@ -742,7 +742,7 @@ fn plates_of_other_poissons_ratios_swing_as_finite_elements_do() {
     let table = package.table("poisson").unwrap();
     let (ratios, periods) = (table.texts("poisson").unwrap(), table.numbers("period").unwrap());
     assert_eq!(ratios, ["0.2", "0.3", "0.45"]);
-    let case = validation::cases::find("oscillating_plate").unwrap();
+    let case = cases::find("oscillating_plate").unwrap();
     for (ratio, period) in ratios.into_iter().zip(periods) {
         let set = [format!("poisson={ratio}"), "n=10".to_string()];
         let spec = case::spec(case, "lagrangian", &set).unwrap();

@@ -19,7 +19,6 @@ use solver::{
     Viscosity, lane::Lane, particles::Common, terms::Pair,
 };
 use touchstone_tests::patch;
-use validation::cases;
 
 /// The relations of which a run tells observers different things, and those which do not hold for it.
 fn found(case: &dyn Case, spec: &RunSpec) -> Result<[Vec<Relation>; 2], RunError> {

@@ -868,11 +868,7 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
 fn the_records_of_other_codes_are_sound() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../references/peers/records");
     let files = fs::read_dir(&folder).unwrap().count();
-    assert_eq!(
-        validation::peers::records().count(),
-        files,
-        "the program contains all that is there"
-    );
+    assert_eq!(cases::peers::records().count(), files, "the program contains all that is there");
     let mut codes = std::collections::BTreeSet::new();
     // The front at T = 2 by volume of fluid, from H = 2a to a.
     let row = [("scene", "martin_moyce"), ("quantity", "front_at_1")];

@@ -259,7 +259,7 @@ impl<T: Settings> Case for Composed<T> {
     }
 
     fn family(&self) -> &'static str {
-        T::MODULE.split("::").next().unwrap_or_default()
+        T::MODULE.split("::").nth(1).unwrap_or_default()
     }
 
     fn problem(&self) -> &'static str {

@@ -103,6 +103,9 @@ fn sorted(levels: &[Level]) -> Result<Vec<Level>, String> {
     let is_usable = |number: f64| number > 0.0 && number.is_finite();
     let usable = |level: &&Level| is_usable(level.spacing) && is_usable(level.value);
     if let Some(Level { spacing, value }) = levels.iter().find(|level| !usable(level)) {
+        if value.is_nan() {
+            return Err(format!("the level with spacing {spacing} has no value"));
+        }
         let level = format!("a level with spacing {spacing} and value {value}");
         return Err(format!("{level} cannot be used, for its logarithm is needed"));
     }
@@ -313,10 +316,8 @@ mod tests {
         assert!(convergence(&two, None).unwrap_err().starts_with("there are 2 levels"));
         for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
             let broken = levels([0.4, 0.2, 0.1], |h| if h < 0.15 { bad } else { h });
-            assert!(
-                convergence(&broken, None).is_err_and(|e| e.contains("cannot be used")),
-                "{bad}"
-            );
+            let words = if bad.is_nan() { "has no value" } else { "cannot be used" };
+            assert!(convergence(&broken, None).is_err_and(|e| e.contains(words)), "{bad}");
         }
         let twins = levels([0.2, 0.1, 0.1], |h| h);
         assert!(convergence(&twins, None).unwrap_err().ends_with("the same spacing 0.1"));

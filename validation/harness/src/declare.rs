@@ -3,6 +3,8 @@
 //! declaration is plain data for one tier. [`crate::studies`] turns it into runs and the records of these
 //! runs into studies.
 
+use std::fmt;
+
 use base::{
     gate::{Cause, Gate},
     mutation::{Constant, Detect, Mutation},
@@ -372,9 +374,9 @@ pub struct Ladder {
 
 impl Ladder {
     /// Adds a run before those that are finer; its spacing, and its resolution in words.
-    pub fn add(&mut self, run: &Planned, (spacing, label): (f64, String)) {
+    pub fn add(&mut self, run: &Planned, (spacing, resolution): (f64, Resolution)) {
         let place = self.levels.partition_point(|level| level.spacing >= spacing);
-        self.levels.insert(place, Level { run: run.clone(), spacing, label });
+        self.levels.insert(place, Level { run: run.clone(), spacing, resolution });
     }
 }
 
@@ -385,8 +387,34 @@ pub struct Level {
     pub run: Planned,
     /// Spacing, in the unit of [`Accuracy::spacing`].
     pub spacing: f64,
-    /// The resolution in words, such as `20 rows`.
-    pub label: String,
+    /// The resolution in words.
+    pub resolution: Resolution,
+}
+
+/// A resolution: how many there are of something, such as 20 of `{} rows`.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Resolution {
+    /// How many.
+    pub count: usize,
+    words: &'static str,
+}
+
+impl Resolution {
+    /// So many, with words in which `{}` stands for the number.
+    pub fn new(count: usize, words: &'static str) -> Self {
+        Self { count, words }
+    }
+
+    /// As many times finer, to the nearest whole number.
+    pub fn finer(self, times: f64) -> Self {
+        Self { count: (self.count as f64 * times).round() as usize, ..self }
+    }
+}
+
+impl fmt::Display for Resolution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.words.replace("{}", &self.count.to_string()))
+    }
 }
 
 /// Error budgets: the same run with one thing changed at a time.

@@ -62,18 +62,8 @@ fn finer(ladder: &Ladder, from: &RunSpec, steps: i32, case: &dyn Case) -> Option
     }
     let is_finer = spacing < fine.spacing;
     let spec = case::resolved(case, spec).ok().filter(|_| is_finer)?;
-    let label = relabelled(&fine.label, fine.spacing / spacing);
-    Some(Level { run: Planned::new(spec), spacing, label })
-}
-
-/// The resolution in words with its number, such as 80 in `80 rows` or `80 x 80`, so many times larger.
-fn relabelled(label: &str, times: f64) -> String {
-    let is_other = |c: char| !c.is_ascii_digit();
-    let number = label.split(is_other).find(|digits| !digits.is_empty()).unwrap_or_default();
-    match number.parse::<f64>() {
-        Ok(value) => label.replace(number, &(value * times).round().to_string()),
-        Err(_) => format!("{label}, {times:.2} times finer"),
-    }
+    let resolution = fine.resolution.finer(fine.spacing / spacing);
+    Some(Level { run: Planned::new(spec), spacing, resolution })
 }
 
 /// Adds starts to the cells of a map: values of the one setting in which the starts of a cell differ, spread

@@ -31,21 +31,30 @@ pub enum Mechanism {
 }
 
 impl Mechanism {
-    /// All of them, in the order of tables, with their names there.
-    pub const ALL: [(Self, &'static str); 8] = [
-        (Self::Waves, "sound or elastic waves"),
-        (Self::ShearWaves, "shear waves"),
-        (Self::Viscosity, "viscosity"),
-        (Self::ArtificialViscosity, "artificial viscosity"),
-        (Self::Diffusion, "density diffusion"),
-        (Self::Motion, "motion"),
-        (Self::Force, "body force"),
-        (Self::Contact, "contact"),
+    /// All of them, in the order of tables.
+    pub const ALL: [Self; 8] = [
+        Self::Waves,
+        Self::ShearWaves,
+        Self::Viscosity,
+        Self::ArtificialViscosity,
+        Self::Diffusion,
+        Self::Motion,
+        Self::Force,
+        Self::Contact,
     ];
 
     /// Its name in tables.
     pub fn name(self) -> &'static str {
-        Self::ALL[self as usize].1
+        match self {
+            Self::Waves => "sound or elastic waves",
+            Self::ShearWaves => "shear waves",
+            Self::Viscosity => "viscosity",
+            Self::ArtificialViscosity => "artificial viscosity",
+            Self::Diffusion => "density diffusion",
+            Self::Motion => "motion",
+            Self::Force => "body force",
+            Self::Contact => "contact",
+        }
     }
 
     /// Is it a part of the problem, and not only of the method?
@@ -123,7 +132,7 @@ impl Limits {
         let limits = |mechanism: &Mechanism| {
             self.integrator != Integrator::SuperLeapfrog || *mechanism != Mechanism::Viscosity
         };
-        let all = Mechanism::ALL.into_iter().map(|(mechanism, _)| mechanism).filter(limits);
+        let all = Mechanism::ALL.into_iter().filter(limits);
         let shorter = |a, b| if self.alone(b) < self.alone(a) { b } else { a };
         all.reduce(shorter).unwrap_or(Mechanism::Waves)
     }
@@ -131,9 +140,8 @@ impl Limits {
     /// The limit of the slowest mechanism of the problem \[s\], and at most this time: a mechanism that is
     /// slower does not act within the run.
     pub fn slowest(&self, end: f64) -> f64 {
-        let all = Mechanism::ALL.into_iter().filter(|(mechanism, _)| mechanism.is_physical());
-        let limits =
-            all.map(|(mechanism, _)| self.alone(mechanism)).filter(|limit| limit.is_finite());
+        let all = Mechanism::ALL.into_iter().filter(|mechanism| mechanism.is_physical());
+        let limits = all.map(|mechanism| self.alone(mechanism)).filter(|limit| limit.is_finite());
         limits.fold(0.0, f64::max).min(end)
     }
 

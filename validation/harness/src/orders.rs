@@ -105,7 +105,8 @@ pub fn plot<'a>(
 
 /// Numbers with so many digits, one after the other.
 fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {
-    numbers.map(|number| sig(number, digits)).collect::<Vec<_>>().join(", ")
+    let text = |number: f64| if number.is_nan() { "–".into() } else { sig(number, digits) };
+    numbers.map(text).collect::<Vec<_>>().join(", ")
 }
 
 impl<'a, T> Columns<'a, T> {

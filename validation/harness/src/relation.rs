@@ -34,21 +34,22 @@ pub enum Relation {
 use Relation::*;
 
 impl Relation {
-    /// All of them with their names in commands and documents; all but the first are compared with the first.
-    pub const ALL: [(Self, &'static str); 8] = [
-        (Same, "same"),
-        (Turned, "turned"),
-        (Mirrored, "mirrored"),
-        (Boosted, "boosted"),
-        (BinaryUnits, "binary-units"),
-        (OtherUnits, "other-units"),
-        (Renumbered, "renumbered"),
-        (Shifted, "shifted"),
-    ];
+    /// All of them; all but the first are compared with the first.
+    pub const ALL: [Self; 8] =
+        [Same, Turned, Mirrored, Boosted, BinaryUnits, OtherUnits, Renumbered, Shifted];
 
     /// The name in commands and documents.
     pub fn name(self) -> &'static str {
-        Self::ALL[self as usize].1
+        match self {
+            Same => "same",
+            Turned => "turned",
+            Mirrored => "mirrored",
+            Boosted => "boosted",
+            BinaryUnits => "binary-units",
+            OtherUnits => "other-units",
+            Renumbered => "renumbered",
+            Shifted => "shifted",
+        }
     }
 
     /// The relation of that name.
@@ -56,9 +57,9 @@ impl Relation {
     /// # Errors
     /// All names.
     pub fn named(name: &str) -> Result<Self, String> {
-        let known = || Self::ALL.map(|(_, name)| name).join(", ");
-        let found = Self::ALL.into_iter().find(|(_, of)| *of == name);
-        found.map(|(of, _)| of).ok_or_else(|| format!("{:?} is none of {}", short(name), known()))
+        let known = || Self::ALL.map(Self::name).join(", ");
+        let found = Self::ALL.into_iter().find(|of| of.name() == name);
+        found.ok_or_else(|| format!("{:?} is none of {}", short(name), known()))
     }
 
     /// Does it round no number of our solver? This sums over particles in the order of their places, but over

@@ -225,5 +225,5 @@ pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<Found>, RunError> 
         let is_bitwise = relation.is_bitwise(has_walls);
         Ok(Difference { floor: if is_bitwise { UNDERFLOW } else { found.floor }, ..found })
     };
-    Ok(Relation::ALL[1..].iter().map(|(relation, _)| (*relation, of(*relation))).collect())
+    Ok(Relation::ALL[1..].iter().map(|relation| (*relation, of(*relation))).collect())
 }

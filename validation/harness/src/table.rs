@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 
 use crate::{
     composed::Composed,
-    declare::{Ladder, Picture, PicturePanel},
+    declare::{Ladder, Picture, PicturePanel, Resolution},
     pictures,
     runs::{Planned, Tier},
 };
@@ -133,7 +133,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         &self,
         groups: &[G],
         variant: &'static str,
-        level: impl Fn(&T) -> (f64, String),
+        level: impl Fn(&T) -> (f64, Resolution),
     ) -> Ladder {
         let mut ladder = Ladder { variant, levels: Vec::new(), order: None };
         for row in &self.rows {

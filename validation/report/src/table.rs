@@ -94,8 +94,13 @@ impl Cell {
         Self { status: Some(status), ..self }
     }
 
+    /// A number that is missing is a dash.
     fn formatted(value: f64, text: String) -> Self {
-        Self { value: Some(value), ..Self::text(text) }
+        if value.is_nan() {
+            Self::text("–")
+        } else {
+            Self { value: Some(value), ..Self::text(text) }
+        }
     }
 
     pub(super) fn html(&self, numeric: bool) -> Markup {

@@ -7,7 +7,6 @@ use base::manifest::Manifest;
 use base::reference::Reference;
 use harness::{case, context::Context};
 use schemes::bench;
-use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
 

@@ -29,7 +29,6 @@ use harness::{
     suite, symmetry,
 };
 use serde_json::{Value, json};
-use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, output, submitted};
 

@@ -14,7 +14,6 @@ use harness::plan;
 use harness::runs::{self, Judged};
 use harness::store::Store;
 use harness::suite::{self, JudgedOf, Of};
-use validation::cases;
 
 use super::{
     Failure, World, arguments,

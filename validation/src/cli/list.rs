@@ -3,7 +3,6 @@
 use base::settings::Field;
 use harness::case::{Case, Recommended, Variant};
 use serde_json::{Value, json};
-use validation::cases;
 
 use super::{Failure, World, arguments, output};
 

@@ -50,7 +50,6 @@ use harness::case::{Case, RunError, Tier};
 use harness::make::{self, Done, Job, Made, Making, Stored};
 use harness::store::Store;
 use harness::suite::Plans;
-use validation::cases;
 
 use arguments::{Arguments, Command};
 

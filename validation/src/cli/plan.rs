@@ -20,7 +20,6 @@ use harness::{
     store::Store,
 };
 use rayon::prelude::*;
-use validation::cases;
 
 use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
 

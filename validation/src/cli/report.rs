@@ -6,13 +6,13 @@ use std::time::{Duration, Instant, SystemTime};
 
 use ::report::{self, check_page};
 use base::files::{FileError, OutputFolder};
+use cases::{page, peers};
 use harness::{
     case::Tier,
     make::Made,
     store::Store,
     suite::{Plans, Suite},
 };
-use validation::{page, peers};
 
 use super::{
     Failure, Outcome, World, arguments,

@@ -26,7 +26,6 @@ use harness::{
 };
 use humantime::format_rfc3339_seconds;
 use serde_json::Value;
-use validation::cases;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,

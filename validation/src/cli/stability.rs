@@ -11,7 +11,7 @@ use harness::{
 use report::Cell;
 use serde_json::{Value, json};
 
-use validation::stiffness::{self, Row};
+use cases::stiffness::{self, Row};
 
 use super::{Exit, Failure, Outcome, World, arguments, output, trouble};
 
@@ -77,7 +77,7 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
 
 fn row_json(row: &Row) -> Value {
     let limits = &row.rules.limits;
-    let all = Mechanism::ALL.into_iter().map(|(of, name)| (name.to_string(), limits.alone(of)));
+    let all = Mechanism::ALL.into_iter().map(|of| (of.name().to_string(), limits.alone(of)));
     let alone =
         all.filter(|(_, limit)| limit.is_finite()).map(|(name, limit)| (name, limit.into()));
     json!({

@@ -15,6 +15,7 @@ use base::{
     settings::Field,
     spec::RunSpec,
 };
+use cases::page;
 use clap::Parser;
 use harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
@@ -27,7 +28,6 @@ use harness::{
     suite::{self, Suite},
 };
 use serde_json::{Value, json};
-use validation::{cases, page};
 
 use super::{
     Exit, World, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,

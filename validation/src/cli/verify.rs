@@ -11,8 +11,8 @@ use harness::{
     suite::{self, JudgedOf, Plans, Suite},
 };
 
+use cases::peers;
 use report::counted;
-use validation::peers;
 
 use super::{
     Early, Exit, Failure, Outcome, World, arguments, judged, output, partial::partial,

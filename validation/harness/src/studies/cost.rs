@@ -8,7 +8,7 @@ use report::{Axis, Cell, Colour, Figure, Plot, Series, Table, exact, first_sente
 use crate::{
     columns::Columns,
     convergence::{Level, convergence},
-    declare::{Accuracy, Ladder, error_of},
+    declare::{Accuracy, Ladder, Resolution, error_of},
     orders::{self, Found},
     runs::Runs,
     study::Study,
@@ -20,7 +20,7 @@ struct Point {
     /// Spacing.
     spacing: f64,
     /// The resolution in words.
-    label: String,
+    resolution: Resolution,
     /// Its error; NaN if it has none.
     error: f64,
     /// Processor seconds of the stepping, sorted, taken alone \[s\].
@@ -52,7 +52,7 @@ fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
         seconds.sort_by(f64::total_cmp);
         Point {
             spacing: level.spacing,
-            label: level.label.clone(),
+            resolution: level.resolution,
             error: error.unwrap_or(f64::NAN),
             seconds,
             pairs: record.map_or(f64::NAN, |record| record.cost.pair_interactions as f64),
@@ -129,22 +129,19 @@ fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
     let axes = [accuracy.spacing, accuracy.label.as_str()];
     let lines = rows.iter().map(|row| (row.of.variant, row.levels.as_slice()));
     let spacing = orders::plot("Error against spacing", axes, lines, accuracy.slope.as_slice());
-    let clock = panel("Error against run time", "run time on one core [s]", rows, Point::median);
-    let counted = panel("Error against work", "pair interactions [-]", rows, |p| p.pairs);
+    let time = ["Error against run time", "run time on one core [s]"];
+    let clock = panel(time, rows, Point::median, true);
+    let work = ["Error against work", "pair interactions [-]"];
+    let counted = panel(work, rows, |p| p.pairs, false);
     let panels = [spacing, clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
 }
 
-/// The first number of a resolution in words.
-fn short(label: &str) -> String {
-    let is_number = |word: &&str| word.starts_with(|c: char| c.is_ascii_digit());
-    label.split_whitespace().find(is_number).unwrap_or(label).into()
-}
-
-fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
+/// Error over a cost; are the points named by their resolutions?
+fn panel([title, axis]: [&str; 2], rows: &[Row], cost: Cost, is_named: bool) -> Plot {
     // The error is named at the panel on the left.
-    let mut plot = Plot::new(title, Axis::log(cost_label), Axis::log(""));
+    let mut plot = Plot::new(title, Axis::log(axis), Axis::log(""));
     let all = rows.iter().flat_map(|row| &row.points);
     let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
     plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
@@ -152,8 +149,8 @@ fn panel(title: &str, cost_label: &str, rows: &[Row], cost: Cost) -> Plot {
         let own: Vec<&Point> = row.points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
         let mut series = Series::line(row.of.variant, line).cycle(k);
-        if title.contains("time") {
-            series = series.labels(own.iter().map(|p| short(&p.label)));
+        if is_named {
+            series = series.labels(own.iter().map(|p| p.resolution.count.to_string()));
             series.x_bars = own.iter().map(|p| p.spread()).collect();
         }
         plot = plot.layer(series);
@@ -196,9 +193,9 @@ mod tests {
     use super::*;
     use crate::studies::tests::{ERROR, column, comparison, records, spec, tables};
 
-    fn point(label: &str, error: f64, seconds: &[f64]) -> Point {
-        let (label, seconds) = (label.into(), seconds.to_vec());
-        Point { spacing: 0.1, label, error, seconds, pairs: 1.0 }
+    fn point(name: &'static str, error: f64, seconds: &[f64]) -> Point {
+        let (resolution, seconds) = (Resolution::new(0, name), seconds.to_vec());
+        Point { spacing: 0.1, resolution, error, seconds, pairs: 1.0 }
     }
 
     #[test]
@@ -215,8 +212,8 @@ mod tests {
         assert_eq!(points[0].spread(), (1.0, 3.0));
     }
 
-    fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a str> {
-        points.into_iter().map(|p| p.label.as_str()).collect()
+    fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<String> {
+        points.into_iter().map(|p| p.resolution.to_string()).collect()
     }
 
     /// What is a tenth worse at a higher cost is beaten, what is a hundredth better is not.
@@ -246,14 +243,6 @@ mod tests {
         // A failure has no error, so what is coarser than it does not count either.
         let failed = Point { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
         assert!(cheapest(&[point("failed later", 1e-3, &[1.0]), failed], 1e-2).is_nan());
-    }
-
-    #[test]
-    fn a_resolution_in_short_is_its_first_number() {
-        assert_eq!(
-            ["20 rows", "H/dx = 10", "50 x 50", "fine"].map(short),
-            ["20", "10", "50", "fine"]
-        );
     }
 
     #[test]
@@ -320,7 +309,7 @@ mod tests {
         let judged = &study.judged[0].judgement;
         assert!(judged.verdict.is_failure() && judged.value.is_some_and(f64::is_nan), "{judged:?}");
         let label = &column(tables(&study)[0], "label")[0];
-        assert!(label.starts_with("no order: a level with spacing 0.05"), "{label}");
+        assert!(label.starts_with("no order: the level with spacing 0.05"), "{label}");
         // What is coarser than it has no cost either.
         assert_eq!(column(tables(&study)[0], &format!("time to {}", percent(0.01, 1))), ["–"; 2]);
     }

@@ -5,7 +5,7 @@ use report::{Block, Table};
 use serde_json::json;
 
 use crate::{
-    declare::{Comparison, Level},
+    declare::{Comparison, Level, Resolution},
     runs::{JudgedRun, Planned, Runs},
     study::Study,
 };
@@ -44,7 +44,7 @@ pub fn comparison(variant: &str, resolutions: &[usize]) -> Comparison {
     let level = |n: &usize| Level {
         run: Planned::new(spec(variant, *n)),
         spacing: 1.0 / *n as f64,
-        label: String::new(),
+        resolution: Resolution::default(),
     };
     Comparison {
         what: "made up".into(),

@@ -13,7 +13,6 @@ use harness::{
     runner::Context,
 };
 use rayon::prelude::*;
-use validation::cases;
 
 use super::super::{
     World,

@@ -1,0 +1,344 @@
+//! What the channel flows declare: profiles over the exact ones, ladders of resolutions, an error budget, the
+//! largest stable steps, maps and the errors of constants that gates must detect; and what only they have to
+//! say: what a step saves that viscosity does not limit, and the paper's hypotheses on waves and instability.
+//! Its claims on profiles (H1, H2) and walls (M4) are gates.
+
+use super::{
+    ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,
+};
+use base::{gate::*, mutation::Constant, record::*, spec::*};
+use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
+use nalgebra::Vector2;
+use report::Axis;
+
+/// What a flow declares.
+pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
+    let table = plan::table(flow, tier);
+    let at_half = at_half(flow, &table);
+    let boundary = "No slip: at both plates the velocity is that of the plate, which is 0 unless the plate \
+                    has a velocity. Nothing passes a plate. The velocity at the start is that of the \
+                    particles. x is periodic.";
+    Declaration {
+        posed: Posed::new(boundary, &[ALL]),
+        card: Some(card(flow, &at_half)),
+        curves: vec![curves(flow)],
+        comparisons: comparisons(flow, &at_half),
+        budgets: budgets(flow, tier),
+        accuracy: vec![at_half],
+        limits: limits(flow, tier),
+        is_stable: Some(is_stable),
+        studies: Some(Box::new(move |runs| studies(flow, tier, runs))),
+        maps: maps::declared(&table),
+        sensitivity: Some(sensitivity(flow, tier)),
+        curve: Some(profile()),
+        sealed: Some(SEALED),
+        ..Declaration::default()
+    }
+}
+
+/// The series is exact at any Reynolds number; judged are 20 rows, between which and those drawn errors
+/// change with the second order of walls and kernel.
+const SEALED: Draws = Draws {
+    variants: &["modern", "curved"],
+    resolution: ("rows", [14.0, 32.0]),
+    order: 2.0,
+    metrics: &["l2_worst", "l2@1"],
+    set: &[],
+    others: &[("re", Drawn::Between(0.05, 20.0))],
+    free: &["end"],
+};
+
+/// The velocities of rows across the channel: each row of particles stands for one.
+fn profile() -> Curve {
+    Curve {
+        columns: &[("y", "m"), ("u", "m/s")],
+        about: "y is the distance from the lower plate, u the velocity along the plates; a line for each row \
+                of the problem, y ascending",
+        least: 0,
+        rows: |settings| settings["rows"].as_u64().unwrap_or_default() as usize,
+        place: |settings, at, starts| {
+            let width = settings["width"].as_f64().unwrap_or(f64::NAN);
+            let place = |start: &Vector2<f64>| {
+                let row = &at[((start.y / width * at.len() as f64) as usize).min(at.len() - 1)];
+                [Vector2::new(start.x, row[0]), Vector2::new(row[1], 0.0)]
+            };
+            starts.iter().map(place).collect()
+        },
+        metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, L2_WORST],
+        coarsen: None,
+        shown: ("u@", &["y", "u", "u_exact"]),
+    }
+}
+
+/// The recommended variant and the paper's over their ladders.
+fn comparisons(flow: Flow, accuracy: &Accuracy) -> Vec<Comparison> {
+    let exact = (0.0, "exact: the series has the same inputs, and is summed to round-off");
+    let compared =
+        |ladder: &&Ladder| [flow.case().recommended.variant, "seed"].contains(&ladder.variant);
+    let of = |ladder| {
+        let what = "velocity from νt/L² = 0.1 on, rms";
+        Comparison::new(what, "the exact series", L2_WORST, ladder, exact)
+    };
+    accuracy.ladders.iter().filter(compared).map(of).collect()
+}
+
+/// What the report says first of the flow.
+fn card(flow: Flow, accuracy: &Accuracy) -> Card {
+    let (title, picture) = match flow {
+        Flow::Couette => ("Couette flow", "couette-profiles"),
+        Flow::Poiseuille => ("Poiseuille flow", "poiseuille-profiles"),
+    };
+    Card {
+        title,
+        picture,
+        metric: L2_WORST.into(),
+        stated: |settings| Stated {
+            name: {
+                let [re, rows, end] =
+                    ["re", "rows", "end"].map(|name| Stated::setting(settings, name));
+                format!(
+                    "velocity at Re {re}, {rows} rows, largest relative rms from νt/L² = 0.1 to {end}"
+                )
+            },
+            against: "the exact series",
+            uncertainty: None,
+            unit: "",
+        },
+        beside: None,
+        runs: accuracy.finest(&[flow.case().recommended.variant, "seed"]),
+        breaks: Breaks {
+            setting: "re",
+            words: ["Re ", ""],
+            has_broken: maps::has_broken,
+            sign: "the velocity is wrong by more than 5 %",
+        },
+    }
+}
+
+/// The ladders at Re 0.5.
+fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
+    let because = "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
+                   lattice leaves at any spacing are not in the fit.";
+    let (id, bound) = ("poiseuille.plain.order", Bound::Within(1.8, 2.2));
+    let order = Gate::new(id, "order", bound, Evidence::Theory, because);
+    let level = |s: &ChannelSettings| (1.0 / s.rows as f64, Resolution::new(s.rows, "{} rows"));
+    let of = |variant| Ladder {
+        order: ((flow, variant) == (Flow::Poiseuille, "plain")).then(|| order.clone()),
+        ..table.ladder(&[For::Ladder], variant, level)
+    };
+    let tau = flow.compared_at();
+    let label = format!("relative L2 error of u at νt/L² = {tau} [-]");
+    Accuracy {
+        about: "Runs at Re 0.5 to νt/L² = 1.".into(),
+        spacing: "Δx/L [-]",
+        ladders: ladder(flow).map(of).into(),
+        ..Accuracy::new(flow.case().name, L2.at(tau), &label)
+    }
+}
+
+/// Times that fit into a figure.
+const SHOWN: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 1.0];
+
+/// u/V across the channel.
+fn curves(flow: Flow) -> Curves {
+    let recommended = flow.case().recommended.variant;
+    let exact = |tau: f64| {
+        let points =
+            (0..=100).map(|k| f64::from(k) / 100.0).map(|y| (flow.exact(y, tau, [1.0; 3]), y));
+        (String::new(), points.collect())
+    };
+    let line = |variant: &str, tau: f64| CurveOf {
+        name: format!("νt/L² = {tau}"),
+        spec: flow.case().spec(variant, |s| s.rows = 20),
+        points: Box::new(move |record: &Record| {
+            let settings: ChannelSettings = record.settings_as();
+            let [u, y] = ["u", "y"].map(|name| record.column(&profile_at(tau), name));
+            let point = |(u, y): (&f64, &f64)| (u / settings.speed(), y / settings.width);
+            u.iter().zip(y).map(point).collect()
+        }),
+    };
+    let panel = |variant: &str| CurvePanel {
+        title: variant.into(),
+        x: Axis::linear("u/V [-]"),
+        y: Axis::linear("y/L [-]"),
+        lines: SHOWN.map(|tau| line(variant, tau)).into(),
+        references: SHOWN.map(exact).into(),
+        symbols: true,
+    };
+    Curves {
+        id: format!("{}-profiles", flow.case().name),
+        title: "Velocity profiles".into(),
+        caption: format!(
+            "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
+             (left) and `{recommended}` (right). Symbols are means over a row, and lines the exact series."
+        ),
+        panels: vec![panel("seed"), panel(recommended)],
+    }
+}
+
+fn budgets(flow: Flow, tier: Tier) -> Budgets {
+    let variants: &[&str] = match (tier, flow) {
+        (Tier::Quick, _) => &["seed"],
+        (_, Flow::Couette) => &["seed", "plain"],
+        (_, Flow::Poiseuille) => &["seed", "plain", "curved"],
+    };
+    let of = variants.iter().map(|variant| changes(flow, variant, tier)).collect();
+    Budgets { about: "Runs have 20 rows and Re 0.5.".into(), of }
+}
+
+fn changes(flow: Flow, variant: &str, tier: Tier) -> Vec<Change> {
+    let case = flow.case();
+    let spec = |set: &dyn Fn(&mut ChannelSettings)| case.spec(variant, set);
+    // Of a variant that has no rules every run is refused, and its record says why.
+    let rules = case.rules(&spec(&|_| ())).unwrap_or(Rules::REFUSED);
+    let (dt, stiffer) = (rules.dt(), 2.0 * rules.sound_speed);
+    let (wall, other, ratio, eta2) = match variant {
+        "seed" => ("interface and wall particles", "interface-wall", 1.5, 1e-5),
+        _ => ("wall particles that extrapolate", "extrapolating-wall", 1.3, 1e-9),
+    };
+    let stiffer = spec(&|s| (s.c0, s.dt) = (Some(stiffer), Some(0.25 * dt)));
+    let mut changes = vec![
+        Change::new("none", "–", spec(&|_| ())),
+        Change::new("dt/4", "time", spec(&|s| s.dt = Some(0.25 * dt))),
+        Change {
+            against: 1,
+            ..Change::new("c0 × 2 and dt/4, against dt/4", "compressibility (Ma²)", stiffer)
+        },
+        Change::new("dt/2", "time", spec(&|s| s.dt = Some(0.5 * dt))),
+        Change::new("h/dx + 0.3", "kernel sums on the lattice", spec(&|s| s.h_over_dx = ratio)),
+        Change::new("eta² × 1e-3", "guard in the viscous term", spec(&|s| s.eta2_over_h2 = eta2)),
+        Change::new(wall, "wall", case.spec(other, |_| ())),
+    ];
+    if tier == Tier::Full {
+        changes.push(Change::new("40 rows", "spacing: wall and kernel", spec(&|s| s.rows = 40)));
+    }
+    if flow == Flow::Poiseuille {
+        let curved = spec(&|s| s.wall_curvature = variant != "curved");
+        changes.push(Change::new("curvature in the ghosts on/off", "wall", curved));
+    }
+    changes
+}
+
+/// Steps of a run; growth of 1 % a step fills the eight decades from the disturbance to V.
+const STEPS: f64 = 1500.0;
+/// Disorder of the lattice at the start \[dx\].
+const DISORDER: f64 = 1e-6;
+
+/// Completed, and neither cross-flow nor error is as large as the flow itself.
+pub fn is_stable(record: &Record) -> bool {
+    let is_small = |metric: MetricName| record.value(metric).is_some_and(|value| value < 1.0);
+    let settings: ChannelSettings = record.settings_as();
+    let mut compared = settings.compared().into_iter();
+    record.status == Status::Completed
+        && is_small(V_RMS.into())
+        && compared.all(|tau| is_small(L2.at(tau)))
+}
+
+/// The step limits of a flow: of Couette flow all in the full tier, of Poiseuille flow the paper's and what
+/// Couette flow does not have.
+fn limits(flow: Flow, tier: Tier) -> StepLimits {
+    let variants = match (flow, tier) {
+        (Flow::Couette, Tier::Quick) => vec!["seed", "modern"],
+        (Flow::Couette, _) => ladder(Flow::Couette).into(),
+        (Flow::Poiseuille, Tier::Quick) => vec!["seed"],
+        (Flow::Poiseuille, _) => vec!["seed", "curved"],
+    };
+    let about = format!(
+        "The default step of each variant, and how many times longer it could be, for 20 rows between walls \
+         on a lattice disturbed by {DISORDER:e} dx, over {STEPS} steps. A run is unstable if it diverges, \
+         or if its cross-flow or error exceeds V. Theory is that of the periodic lattice with sound, \
+         viscosity and other damping, without walls, motion and stabilisers."
+    );
+    let of = variants.into_iter().map(|variant| limit(flow, variant));
+    StepLimits { about, of: of.collect() }
+}
+
+fn limit(flow: Flow, variant: &'static str) -> StepLimit {
+    let spec = flow.case().spec(variant, |s| s.jitter = DISORDER).allow_unstable();
+    let rules = flow.case().rules(&spec).unwrap_or(Rules::REFUSED);
+    // Not `dt_limit`, in the last bit: bisections begin where they always have.
+    let theory = rules.dt() / (rules.dt() / rules.dt_limit());
+    let unit = ChannelSettings::default().unit_of_time();
+    let bisect = Bisect {
+        setting: "dt".into(),
+        guess: theory,
+        unit: 1.0,
+        resolution: 0.01,
+        end: Some(EndAfter { steps: STEPS, unit }),
+    };
+    let name = match flow {
+        Flow::Couette => format!("stability.default.{variant}"),
+        Flow::Poiseuille => format!("poiseuille.time-step.{variant}"),
+    };
+    let because = "The default step must be below the measured limit; the bound is the default step over \
+                   the limit of theory.";
+    let (id, bound) = (format!("{name}.stable"), Bound::Above(rules.dt() / theory));
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
+    StepLimit {
+        scene: "20 rows".into(),
+        spec: spec.bisect(bisect),
+        theory,
+        theory_at: theory,
+        default_at: rules.dt(),
+        gate: Some(gate),
+    }
+}
+
+const SOUND: &str =
+    "At Mach 0.1 compressibility changes the velocity by less than the spacing does.";
+const ORDER: &str =
+    "At Re 0.5 particles stay in straight rows, and this term acts on disorder alone.";
+const REACH: &str = "What a longer reach adds to the error of a parabolic profile at 20 rows is inside the \
+                     bounds until the reach is wrong by 20 %.";
+const LISTS: &str = "A list that is kept 30 % too long still holds every neighbour, for it is built again \
+                     before a particle has crossed half of the skin.";
+
+/// The runs with the most gates, one without and one with density diffusion and shifting.
+fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
+    let (case, reach) = (flow.case(), Constant::SmoothingLength);
+    let (drive, reach) = match flow {
+        Flow::Couette => (Constant::WallSpeed, Watched::new(reach)),
+        Flow::Poiseuille => {
+            (Constant::BodyForce, Watched::blind_up_to(reach, 0.2, REACH, &WIDE_BOUNDS))
+        }
+    };
+    let watched = [
+        Watched::new(drive).quick().faults(&[-1.0, 0.5]),
+        Watched::new(Constant::Viscosity).quick(),
+        Watched::new(Constant::Height).quick(),
+        Watched::blind_up_to(Constant::Density, 0.3, STRESS, &NOT_MEASURED),
+        Watched::blind_up_to(Constant::SoundSpeed, 1.0, SOUND, &NOT_MEASURED),
+        Watched::new(Constant::Normalisation),
+        reach,
+        Watched::blind_up_to(Constant::TimeStep, 1.0, STEP, &SAFETY_MARGIN),
+        Watched::blind_up_to(Constant::DensityDiffusion, 1.0, ORDER, &ENOUGH_OR_IDLE)
+            .faults(&[-1.0]),
+        Watched::blind_up_to(Constant::Shifting, 1.0, ORDER, &ENOUGH_OR_IDLE).faults(&[-1.0]),
+        Watched::blind_up_to(Constant::ListLifetime, 1.0, LISTS, &SAFETY_MARGIN).faults(&[100.0]),
+    ];
+    let runs = [case.spec("plain", |_| {}), case.spec("modern", |s| s.end = 1.5)];
+    Sensitivity::new(tier, runs, watched)
+}
+
+/// The studies of a flow.
+pub fn studies(flow: Flow, tier: Tier, runs: &Runs) -> Vec<Study> {
+    let table = &plan::table(flow, tier);
+    let mut studies = vec![stiff::study(flow, table, runs)];
+    if flow == Flow::Poiseuille {
+        studies.extend([waves::study(table, runs), maps::study(table, runs)]);
+    }
+    studies
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The gates of a variant whose default settings were refused were not there at all.
+    #[test]
+    fn a_variant_that_is_refused_keeps_its_gates() {
+        let gate = limit(Flow::Couette, "no such variant").gate.expect("a gate");
+        assert_eq!(gate.id, "stability.default.no such variant.stable");
+        assert!(gate.judge(None).verdict.is_failure());
+    }
+}

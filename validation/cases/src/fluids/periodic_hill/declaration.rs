@@ -1,0 +1,348 @@
+//! What the studies that every case has are made of: profiles and shear over finite elements, order, error
+//! against run time, error budget, largest stable time step, errors of constants that gates must detect; and
+//! what only the hills have to say: whether the start matters.
+
+use nalgebra::Vector2;
+
+use super::{
+    CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*, setup::FLUX,
+};
+use base::{gate::*, mutation::Constant, record::*};
+use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
+use maths::metrics::norms::rms;
+use report::{Axis, ColourMap, percent};
+
+/// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.
+const SEALED: Draws = Draws {
+    variants: &["carried"],
+    resolution: ("n", [8.0, 11.0]),
+    order: 1.0,
+    metrics: &["l2_u", "force_error"],
+    set: &[],
+    others: &[("re", Drawn::Judged)],
+    free: &["end"],
+};
+
+/// The declaration of a tier.
+pub fn declaration(tier: Tier) -> Declaration {
+    let table = table(tier);
+    let accuracy = accuracy(tier, &table);
+    let boundary = "No slip: at the hill and at the lid the velocity is 0. Nothing passes them. x is \
+                    periodic.";
+    let posed = Posed { further: Some(drive), ..Posed::new(boundary, &[ALL]) };
+    Declaration {
+        posed,
+        // The force of our own controller: that of another code is in no file.
+        stepwise: &[FORCE, FORCE_ERROR, DRAG_BALANCE],
+        card: Some(card(tier, &accuracy)),
+        comparisons: comparisons(tier, &accuracy),
+        curves: vec![profiles(&table)],
+        pictures: vec![picture(&table)],
+        budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
+        accuracy: vec![accuracy],
+        limits: limits(tier),
+        is_stable: Some(is_stable),
+        studies: Some(Box::new(move |runs| studies(tier, runs))),
+        sensitivity: Some(sensitivity(tier, &table)),
+        sealed: Some(SEALED),
+        ..Declaration::default()
+    }
+}
+
+/// What drives the flow: the flux that is asked for.
+fn drive(settings: &serde_json::Value) -> Vec<Fact> {
+    let setting = |name: &str| settings[name].as_f64().unwrap_or(f64::NAN);
+    let flux = "the flux of volume through every section, the integral of u over y from the hill to the \
+                lid, that the force keeps: 2.035 U_b H times the setting `flux`, U_b = 1 m/s the mean \
+                velocity over the crest and H = 1 m the height of the hill";
+    let force = "at the start, of the acceleration f(t) along x, uniform over the fluid: dv/dt = -(1/ρ) ∇p + \
+                 ν ∇²v + (f, 0). Any f(t) that leads to this flux will do, for the steady flow has one force";
+    let response = "T of our controller: f' = ((u* - u)/T - u')/(T/4), u the mean of the velocity along x \
+                    over the fluid, u* that of the flux, looked at every ten steps; 0 keeps the force";
+    vec![
+        Fact { name: "flux", value: setting("flux") * FLUX, unit: "m^2/s", about: flux },
+        Fact { name: "force", value: setting("force"), unit: "m/s^2", about: force },
+        Fact { name: "response", value: setting("response"), unit: "s", about: response },
+    ]
+}
+
+/// The recommended variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing
+/// separates.
+fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
+    const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
+    let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };
+    let profiles = reference(re).map_or(f64::NAN, |reference| reference.uncertainty);
+    let [force, force_uncertainty] = summary(re, "force");
+    let mut all = vec![
+        ("u, rms [U_b]", L2_U, profiles),
+        ("v, rms [U_b]", L2_V, profiles),
+        ("driving force", FORCE_ERROR, force_uncertainty / force),
+    ];
+    if re > 10.0 {
+        all.push(("separation [H]", SEPARATION_ERROR, summary(re, "separation")[1]));
+        all.push(("reattachment [H]", REATTACHMENT_ERROR, summary(re, "reattachment")[1]));
+    }
+    let ladder =
+        accuracy.ladders.iter().filter(|of| [RECOMMENDED, "interface-wall"].contains(&of.variant));
+    let comparison = |ladder| {
+        let of = move |(what, metric, uncertainty)| {
+            Comparison::new(what, "finite elements", metric, ladder, (uncertainty, BECAUSE))
+        };
+        all.clone().into_iter().map(of)
+    };
+    ladder.flat_map(comparison).collect()
+}
+
+/// What the report says first of the case, at Re 50, where the flow separates: the ladder of the quick tier
+/// is at Re 10.
+fn card(tier: Tier, accuracy: &Accuracy) -> Card {
+    let shown = [RECOMMENDED, "interface-wall"];
+    let quick = |variant| CASE.spec(variant, |s| flow(s, (50.0, 10, 30.0, false)));
+    let runs = if tier == Tier::Quick { shown.map(quick).into() } else { accuracy.finest(&shown) };
+    Card {
+        title: "Periodic hill",
+        picture: "periodic-hill-pictures",
+        metric: L2_U.into(),
+        stated: |settings| Stated {
+            name: {
+                let [re, t, n] = ["re", "end", "n"].map(|name| Stated::setting(settings, name));
+                let left = left_of_start(settings);
+                format!(
+                    "velocity at ten stations at Re {re} and t = {t} H/U_b{left}, {n} spacings a hill, rms \
+                     in U_b"
+                )
+            },
+            against: "finite elements",
+            uncertainty: settings["re"].as_f64().and_then(reference).map(|of| of.uncertainty),
+            unit: "",
+        },
+        beside: None,
+        runs,
+        breaks: Breaks {
+            setting: "re",
+            words: ["Re ", ""],
+            has_broken: |record| Some(record.value(OUTSIDE).is_some_and(|count| count > 0.0)),
+            sign: "a particle has passed a wall",
+        },
+    }
+}
+
+/// How far a run from rest is from the steady flow that it is compared with, if that is more than a twentieth
+/// of the flow: transients decay by 0.11 U_b/H at Re 50, and five times as fast at Re 10.
+fn left_of_start(settings: &serde_json::Value) -> String {
+    let [re, end] = ["re", "end"].map(|name| settings[name].as_f64().unwrap_or(f64::NAN));
+    let left = base::functions::exp(-5.5 * end / re);
+    match settings["from_reference"].as_bool() {
+        Some(false) if left > 0.05 => {
+            format!(" (not steady: about {} of the start from rest is left)", percent(left, 1))
+        }
+        _ => String::new(),
+    }
+}
+
+/// Runs from rest alone: those from the reference end before they could leave it.
+fn accuracy(tier: Tier, table: &Table) -> Accuracy {
+    let level = |s: &HillSettings| (1.0 / s.n as f64, Resolution::new(s.n, "H/dx = {}"));
+    let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
+        .map(|variant| table.ladder(&[For::Ladder], variant, level));
+    let run = ladders[0].levels.first().map(|level| &level.run.spec.settings);
+    let [re, end] =
+        ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));
+    let rest = if re == "10" { ", when 0.3 % of U_b is left of the start" } else { "" };
+    let about = format!(
+        "Flow over periodic hills at Re {re} after {end} H/U_b{rest}, against finite elements at ten \
+         stations."
+    );
+    if tier == Tier::Full {
+        let because = "Walls are of first order on disordered particles, sums of second.";
+        let (id, bound) = (format!("{NAME}.{RECOMMENDED}.50.order"), Bound::Above(1.0));
+        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
+    }
+    Accuracy {
+        about,
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
+        ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
+    }
+}
+
+/// One thing changed at a time.
+fn budgets() -> Budgets {
+    let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
+                 effect of disorder.";
+    let change = |what, part, variant, set: fn(&mut HillSettings)| {
+        let spec = CASE.spec(variant, |s| {
+            flow(s, (50.0, 10, END, false));
+            set(s);
+        });
+        Change::new(what, part, spec)
+    };
+    let mut changes = vec![
+        change("none", "none", RECOMMENDED, |_| {}),
+        change("finer spacing", "spacing", RECOMMENDED, |s| s.n = 20),
+        change("dt/2", "time", RECOMMENDED, |s| s.courant = 0.75),
+        change("c0=30", "sound speed", RECOMMENDED, |s| s.c0 = 30.0),
+        change("h_over_dx=1.2", "h/dx", RECOMMENDED, |s| s.h_over_dx = 1.2),
+        change("diffusion=0.05", "density diffusion", RECOMMENDED, |s| s.diffusion = 0.05),
+        change("shift=1.5", "shifting", RECOMMENDED, |s| s.shift = 1.5),
+        change("from the reference", "start", RECOMMENDED, |s| s.from_reference = true),
+        change("`consistent`: sums exact for linear fields", "sums", "consistent", |_| {}),
+        change("`modern`: weaker shifting, no velocities", "shifting", "modern", |_| {}),
+        change("`interface-wall` over `modern`", "wall", "interface-wall", |_| {}),
+    ];
+    // The walls are compared with those of `modern`, before it in the list.
+    changes[10].against = 9;
+    Budgets { about: about.into(), of: vec![changes] }
+}
+
+/// Profiles at their stations, symbols on lines, and shear along the hill.
+fn profiles(table: &Table) -> Curves {
+    let caption = "Velocity u along the channel at ten stations: lines are finite elements, symbols the \
+                   finest run of variant `carried`. A velocity is drawn from the place of its station. \
+                   Right: shear stress on the hill at several spacings and of finite elements (black), \
+                   negative where the flow goes backwards.";
+    let mut panels = Vec::new();
+    for re in REYNOLDS {
+        let rows = shown(table, re);
+        let Some((finest, reference)) = rows.last().zip(reference(re)) else { continue };
+        panels.push(profile(finest, reference));
+        panels.push(shear(&rows, reference));
+    }
+    let (id, title) = ("periodic-hill-profiles".into(), "Profiles over finite elements".into());
+    Curves { id, title, caption: caption.into(), panels }
+}
+
+/// The velocity along the channel, every tenth point of a station.
+fn profile(row: &Row, reference: &Reference) -> CurvePanel {
+    const SCALE: f64 = 0.8;
+    let line = |k: usize| CurveOf {
+        name: String::new(),
+        spec: row.run.spec.clone(),
+        points: Box::new(move |record: &Record| {
+            let [x, y, u] = ["x", "y", "u"].map(|name| record.column("stations", name));
+            let points = (k * POINTS + 5..((k + 1) * POINTS).min(u.len())).step_by(10);
+            points.map(|j| (x[j] + SCALE * u[j], y[j])).collect()
+        }),
+    };
+    let exact = reference.stations.iter().map(|station| {
+        let at = |(y, v): (&f64, &Vector2<f64>)| (station.x + SCALE * v.x, *y);
+        (String::new(), station.y.iter().zip(&station.v).map(at).collect())
+    });
+    CurvePanel {
+        title: format!("Re {}, {}", row.settings.re, name(row)),
+        x: Axis::linear(format!("x/H + {SCALE} u/U_b")),
+        y: Axis::linear("y/H").range(0.0, 3.1),
+        lines: (0..STATIONS.len()).map(line).collect(),
+        references: exact.chain([(String::new(), floor())]).collect(),
+        symbols: true,
+    }
+}
+
+/// Shear stress along the hill.
+fn shear(rows: &[&Row], reference: &Reference) -> CurvePanel {
+    let columns = ["x", "hill shear"];
+    let line = |row: &&Row| CurveOf::columns(name(row), row.run.spec.clone(), "wall", columns);
+    let exact = reference.wall.iter().map(|w| (w[0], w[1])).collect();
+    let title = format!("Re {}: shear on the hill", rows[0].settings.re);
+    let axes = ["x/H", "shear stress [ρ U_b²]"];
+    CurvePanel::linear(&title, axes, rows.iter().map(line).collect(), ("finite elements", exact))
+}
+
+/// Ended, and no sample of the kinetic energy is above twice that of the first one after the start, which is
+/// near the answer.
+pub fn is_stable(record: &Record) -> bool {
+    let energy = record.column("series", "kinetic energy").get(1..).unwrap_or_default();
+    let bounded = |first: &f64| energy.iter().all(|e| *e <= 2.0 * first);
+    record.status == Status::Completed && energy.first().is_some_and(bounded)
+}
+
+/// The longest stable step over the theoretical one, by bisection: in the full tier of one variant each with
+/// sums over pairs, with shifted velocities and with consistent sums.
+fn limits(tier: Tier) -> StepLimits {
+    let (n, variants): (usize, &[&'static str]) = match tier {
+        Tier::Quick => (5, &[RECOMMENDED]),
+        _ => (10, &["modern", RECOMMENDED, "consistent"]),
+    };
+    let about = "The longest time step with which the flow at Re 50 goes on for 3 H/U_b from the reference \
+                 without diverging or doubling its kinetic energy, by bisection, over the limit of linear \
+                 theory for a lattice at rest, which has no walls, no curvature and no disorder.";
+    let of = variants.iter().map(|variant| limit(variant, n)).collect();
+    StepLimits { about: about.into(), of }
+}
+
+/// The bisection of a variant with its gates.
+fn limit(variant: &'static str, n: usize) -> StepLimit {
+    let spec = CASE.spec(variant, |s| flow(s, (50.0, n, 3.0, true)));
+    let rules = CASE.rules(&spec).unwrap_or(Rules::REFUSED);
+    // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
+    let default = rules.dt() / rules.dt_limit();
+    let at_limit = ("courant", HillSettings::default().courant / default);
+    let scene = format!("Re 50, H/dx = {n}");
+    let theory = "The default step is stable, and disorder makes neither sound slower nor the stencil \
+                  softer by a fifth.";
+    let (id, bound) = (format!("{NAME}.step.{variant}.theory"), Bound::Within(default, 1.2));
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, theory);
+    StepLimit::proportional(&scene, spec, at_limit, &rules, Some(gate))
+}
+
+const BOUNDS: &str = "The error of the method at ten spacings a hill takes up most of the bounds.";
+const CONTROLLED: &str = "A controller sets the force, whatever force it begins with.";
+const SOUND: &str = "Compressibility changes the velocity by less than the spacing does.";
+const REACH: &str =
+    "Sums hold for any reach, whose error is inside the bounds at ten spacings a hill.";
+const DISORDER: &str =
+    "Particles stay evenly spread with 30 % less or more of it, and not without.";
+
+/// Errors of constants that the gates of the cheapest judged run must detect.
+fn sensitivity(tier: Tier, table: &Table) -> Sensitivity {
+    let watched = [
+        Watched::blind_up_to(Constant::Viscosity, 0.1, BOUNDS, &WIDE_BOUNDS),
+        Watched::blind_up_to(Constant::BodyForce, 1.0, CONTROLLED, &NOT_MEASURED),
+        Watched::new(Constant::Height),
+        Watched::blind_up_to(Constant::Density, 0.3, STRESS, &NOT_MEASURED),
+        Watched::blind_up_to(Constant::SoundSpeed, 1.0, SOUND, &NOT_MEASURED),
+        Watched::new(Constant::Normalisation),
+        Watched::blind_up_to(Constant::SmoothingLength, 1.0, REACH, &WIDE_BOUNDS),
+        Watched::blind_up_to(Constant::TimeStep, 1.0, STEP, &SAFETY_MARGIN),
+        Watched::blind_up_to(Constant::DensityDiffusion, 1.0, DISORDER, &ENOUGH_OR_IDLE),
+        Watched::blind_up_to(Constant::Shifting, 1.0, DISORDER, &ENOUGH_OR_IDLE).faults(&[0.0]),
+    ];
+    let run = shown(table, 10.0).into_iter().take(1).map(|row| row.run.spec.clone());
+    Sensitivity::new(tier, run, watched)
+}
+
+/// Runs from rest and from the reference, ten spacings a hill: only the full tier has both.
+pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
+    let because =
+        "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
+    let table = table(tier);
+    let study = Study::new("periodic-hill-starts", "Whether the start matters");
+    let study = REYNOLDS.into_iter().fold(study, |study, re| {
+        let rows = shown(&table, re).into_iter().filter(|row| row.settings.n == 10);
+        let [rest, other] = rows.collect::<Vec<_>>()[..] else { return study };
+        let u = |row: &Row| Some(runs.completed(&row.run.spec)?.column("stations", "u"));
+        let both = u(rest).zip(u(other));
+        let found = both.map_or(f64::NAN, |(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)));
+        let metric = "rms over stations of the difference of u [U_b]";
+        let (id, bound) = (format!("{NAME}.{RECOMMENDED}.{re}.starts"), Bound::Below(0.005));
+        study.judge(Gate::new(id, metric, bound, Evidence::Invariant, because), found)
+    });
+    if study.judged.is_empty() { Vec::new() } else { vec![study] }
+}
+
+/// Particles of the finest run at each Reynolds number, the floor, and the line that encloses the fluid that
+/// circulates.
+fn picture(table: &Table) -> Picture {
+    let caption = "Particles of the finest run of variant `carried`, coloured by their velocity u along the \
+                   channel. Black lines are the floor and, where the flow separates, the border of the \
+                   fluid that circulates in finite elements.";
+    let texts = ["periodic-hill-pictures", "Pictures", caption];
+    let panel = |row: &Row| {
+        let HillSettings { re, n, .. } = row.settings;
+        let panel = row.panel(format!("Re {re}, {}", name(row)), 1.0 / n as f64);
+        vec![PicturePanel { lines: vec![floor(), bubble(re)], ..panel }]
+    };
+    let picture = table.picture(texts, ("u [U_b]", ColourMap::Diverging), [640.0, 230.0], panel);
+    Picture { range: Some([-1.5, 1.5]), ..picture }
+}

@@ -1,0 +1,650 @@
+//! What is measured: the field at stations and along the walls, averaged over the end of the run.
+
+use nalgebra::{Matrix3, Vector2, Vector3};
+use solver::{
+    EquationOfState, Particle, Role, Stepper,
+    inverse::{Inverse, of_three},
+};
+
+use super::{Setup, reference::KNOWN_SETTINGS};
+use base::functions::hypot;
+use base::record::{MetricKey, Profile, Record};
+use harness::pictures;
+use maths::metrics::norms::{largest, rms};
+
+/// Points across a section.
+pub const POINTS: usize = 200;
+/// Stations \[H\].
+pub const STATIONS: [f64; 10] = [0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0];
+/// Points along a wall, 0.025 H apart.
+pub const WALL: usize = 361;
+
+base::metrics! {
+    all ALL;
+    FORCE = "force" ["U_b^2/H"] "mean body force of the last window";
+    FLUX = "flux" ["-"] "mean flux over the flux wanted, minus 1, from the particles' volumes";
+    SECTION_FLUX = "section_flux" ["-"]
+        "largest |flux through a station/flux wanted - 1|, interpolated";
+    DRAG_BALANCE = "drag_balance" ["-"]
+        "(shear on both walls + pressure on the hill)/(force times area) - 1";
+    SEPARATION = "separation" ["H"] "where the wall shear on the hill changes its sign";
+    REATTACHMENT = "reattachment" ["H"] "where the wall shear on the hill changes its sign";
+    L2_U = "l2_u" ["U_b"] "rms over 10 stations of 200 points of u - finite elements";
+    L2_V = "l2_v" ["U_b"] "the same of v";
+    FORCE_ERROR = "force_error" ["-"] "force/finite elements - 1";
+    SEPARATION_ERROR = "separation_error" ["H"] "separation - finite elements";
+    REATTACHMENT_ERROR = "reattachment_error" ["H"] "reattachment - finite elements";
+    OUTSIDE = "outside" ["-"] "particles behind the walls at the end";
+    WALL_OFFSET = "wall_offset" ["dx"]
+        "largest distance of the first row of wall particles from its place";
+    HILL_SHEAR_DRAG = "hill_shear_drag" ["rho U_b^2 H"]
+        "integral over a period of the shear on the hill";
+    LID_SHEAR_DRAG = "lid_shear_drag" ["rho U_b^2 H"]
+        "integral over a period of the shear on the lid";
+    HILL_PRESSURE_DRAG = "hill_pressure_drag" ["rho U_b^2 H"]
+        "integral over a period of the pressure times slope of the hill";
+}
+
+/// What the drag is made of, named as in the reference.
+pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSURE_DRAG];
+
+/// What is measured against the reference.
+const COMPARED: [MetricKey; 5] = [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REATTACHMENT_ERROR];
+
+/// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
+/// included, with the weights V W (moving least squares).
+struct Field<'a> {
+    /// W \[1/m²\] of r² \[m²\], and where it ends \[m\].
+    weight: &'a dyn Fn(f64) -> f64,
+    reach: f64,
+    /// x, y, V, u, v, p in the order of x, in bands as high as the kernel reaches.
+    bands: Vec<Vec<[f64; 6]>>,
+}
+
+impl<'a> Field<'a> {
+    fn new(
+        (weight, reach): (&'a dyn Fn(f64) -> f64, f64),
+        mut points: Vec<[f64; 6]>,
+        lid: f64,
+    ) -> Self {
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let mut field = Self { weight, reach, bands: Vec::new() };
+        // One more than holds the lid: what is farther out is in the first and the last.
+        field.bands.resize(field.band(lid) + 2, Vec::new());
+        for point in points {
+            let band = field.band(point[1]).min(field.bands.len() - 1);
+            field.bands[band].push(point);
+        }
+        field
+    }
+
+    /// The band of a height; the second begins at 0. A float below 0 becomes 0.
+    fn band(&self, y: f64) -> usize {
+        (y / self.reach + 1.0) as usize
+    }
+
+    /// Particles that may be in reach of a place.
+    fn near(&self, x: f64, y: f64) -> impl Iterator<Item = &[f64; 6]> {
+        let (reach, band, last) = (self.reach, self.band(y), self.bands.len() - 1);
+        let bands = &self.bands[band.saturating_sub(1).min(last)..=(band + 1).min(last)];
+        bands.iter().flat_map(move |band| {
+            let first = band.partition_point(|p| p[0] < x - reach);
+            band[first..].iter().take_while(move |p| p[0] <= x + reach)
+        })
+    }
+
+    /// What values of the particles in reach of a place have there: they are fitted to a basis, of which the
+    /// first member counts, with the weights V W. The basis is a function of a particle and of its distance.
+    fn fit<const N: usize>(
+        &self,
+        place: Vector2<f64>,
+        basis: impl Fn(&[f64; 6], Vector2<f64>) -> Vector3<f64>,
+        values: impl Fn(&[f64; 6]) -> [f64; N],
+    ) -> [f64; N] {
+        let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); N]);
+        for p in self.near(place.x, place.y) {
+            let r = Vector2::new(p[0] - place.x, p[1] - place.y);
+            let r2 = r.norm_squared();
+            if r2 < self.reach * self.reach {
+                let (weight, basis) = (p[2] * (self.weight)(r2), basis(p, r));
+                moments += basis * basis.transpose() * weight;
+                for (sum, value) in sums.iter_mut().zip(values(p)) {
+                    *sum += basis * (weight * value);
+                }
+            }
+        }
+        let Inverse { determinant, matrix } = of_three(&moments);
+        match determinant {
+            0.0 => [f64::NAN; N],
+            _ => sums.map(|sum| matrix.row(0).transpose().dot(&sum)),
+        }
+    }
+
+    /// u, v, p at a place.
+    fn at(&self, x: f64, y: f64) -> [f64; 3] {
+        let linear = |_: &_, r: Vector2<f64>| Vector3::new(1.0, r.x / self.reach, r.y / self.reach);
+        self.fit(Vector2::new(x, y), linear, |p| [p[3], p[4], p[5]])
+    }
+
+    /// The derivative along `g` of the velocity in the direction `along` at a point of a wall, of which a
+    /// point is `g` above (negative behind) and where the velocity is 0: g (a + b s + c g), s being the
+    /// distance along x, is fitted to the fluid particles in reach, and a is the derivative. Every smooth
+    /// field that is 0 on the wall is g times a smooth one, so what the fit leaves out is of second order in
+    /// the reach, whatever the shape of the wall.
+    fn slope_at(
+        &self,
+        place: Vector2<f64>,
+        g: impl Fn(&[f64; 6]) -> f64,
+        along: Vector2<f64>,
+    ) -> f64 {
+        // Particles behind the wall have no part in it.
+        let basis = |p: &_, r: Vector2<f64>| {
+            let g = (g(p) / self.reach).max(0.0);
+            Vector3::new(g, g * r.x / self.reach, g * g)
+        };
+        let [slope] = self.fit(place, basis, |p| [Vector2::new(p[3], p[4]).dot(&along)]);
+        slope / self.reach
+    }
+}
+
+/// Sums over samples of the last part of the run.
+#[derive(Default)]
+pub struct Window {
+    /// u and v at the points of the stations.
+    sections: Vec<[f64; 2]>,
+    /// Shear stress on the hill and on the lid, pressure on the hill.
+    wall: Vec<[f64; 3]>,
+    /// Force and flux of every stretch.
+    pub forces: Vec<[f64; 2]>,
+    samples: usize,
+}
+
+harness::observed! { Window: changes(sections, wall, forces, samples), stays() }
+
+/// The places of the stations: x, y, weight of the section's height.
+fn places(setup: &Setup) -> Vec<[f64; 2]> {
+    let lid = setup.hill.lid();
+    let at = |x: f64| {
+        let floor = setup.floor(x);
+        let y = move |k: usize| floor + (lid - floor) * (k as f64 + 0.5) / POINTS as f64;
+        (0..POINTS).map(move |k| [x, y(k)])
+    };
+    STATIONS.into_iter().flat_map(at).collect()
+}
+
+/// Place along the wall.
+fn along(k: usize) -> f64 {
+    9.0 * k as f64 / (WALL - 1) as f64
+}
+
+fn add<const N: usize>(sums: &mut Vec<[f64; N]>, values: impl Iterator<Item = [f64; N]>) {
+    for (k, value) in values.enumerate() {
+        match sums.get_mut(k) {
+            Some(sum) => sum.iter_mut().zip(value).for_each(|(s, v)| *s += v),
+            None => sums.push(value),
+        }
+    }
+}
+
+impl Window {
+    /// Adds a sample.
+    pub fn sample(&mut self, setup: &Setup, s: &dyn Stepper<()>) {
+        let eos = setup.flow.medium.eos;
+        let point = |c: &solver::particles::Column| {
+            let p = eos.pressure(c.common.density) - eos.background;
+            [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
+        };
+        let points = s.plain_columns().iter().map(point).collect();
+        self.add(setup, points, &|r2: f64| s.weight(r2));
+    }
+
+    /// Adds a sample of these particles, x, y, V, u, v, p each, with the weight of a squared distance.
+    fn add(&mut self, setup: &Setup, points: Vec<[f64; 6]>, weight: &dyn Fn(f64) -> f64) {
+        let field = Field::new((weight, setup.flow.support), points, setup.hill.lid());
+        let sections = places(setup).into_iter().map(|[x, y]| field.at(x, y));
+        add(&mut self.sections, sections.map(|[u, v, _]| [u, v]));
+        self.samples += 1;
+        add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
+    }
+
+    fn mean<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
+        sums.iter().map(|s| s.map(|x| x / self.samples as f64)).collect()
+    }
+}
+
+/// Shear stress on the hill (along its tangent) and on the lid, pressure on the hill, at x.
+fn wall(setup: &Setup, field: &Field, x: f64) -> [f64; 3] {
+    let (x, nu, lid) = (x.rem_euclid(setup.hill.period()), setup.flow.medium.nu, setup.hill.lid());
+    let (floor, slope) = (setup.floor(x), setup.slope(x));
+    let length = hypot(1.0, slope);
+    let tangent = Vector2::new(1.0, slope) / length;
+    let above = |p: &[f64; 6]| p[1] - setup.floor(p[0]);
+    let hill = field.slope_at(Vector2::new(x, floor), above, tangent) * length;
+    let top = field.slope_at(Vector2::new(x, lid), |p| lid - p[1], Vector2::x());
+    [nu * hill, nu * top, field.at(x, floor)[2]]
+}
+
+/// Mean velocity along x over the fluid's area \[m/s\].
+pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
+    s.data().fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
+}
+
+/// Metrics and profiles.
+pub fn measure(setup: &Setup, window: &Window, area: f64, record: &mut Record) {
+    let (sections, wall) = (window.mean(&window.sections), window.mean(&window.wall));
+    let count = window.forces.len() as f64;
+    let [force, flux] = [0, 1].map(|k| window.forces.iter().map(|f| f[k]).sum::<f64>() / count);
+    record.put(FORCE, force);
+    let relative = |value: f64| (setup.flux() != 0.0).then_some(value);
+    let none = "the flux wanted is 0, so no error relative to it exists";
+    record.put_or(FLUX, relative(flux / setup.flux() - 1.0), none);
+    record.put_or(SECTION_FLUX, relative(section_flux(setup, &sections)), none);
+    let drags = drags(setup, &wall);
+    for (part, drag) in DRAGS.into_iter().zip(drags) {
+        record.put(part, drag);
+    }
+    let balance = (force != 0.0).then(|| drags.iter().sum::<f64>() / (force * area) - 1.0);
+    record.put_or(DRAG_BALANCE, balance, "no body force has acted yet");
+    let [separation, reattachment] = bubble(&wall);
+    let none = "no stretch of the hill has backward flow";
+    record.put_or(SEPARATION, separation, none);
+    record.put_or(REATTACHMENT, reattachment, none);
+    compare(setup, &sections, record);
+    let stations: Vec<_> =
+        places(setup).iter().zip(&sections).map(|([x, y], [u, v])| [*x, *y, *u, *v]).collect();
+    let columns = [("x", "H"), ("y", "H"), ("u", "U_b"), ("v", "U_b")];
+    record.profiles.insert("stations".into(), Profile::of_rows(&columns, &stations));
+    let wall: Vec<_> = (0..).zip(&wall).map(|(k, [a, b, c])| [along(k), *a, *b, *c]).collect();
+    let columns = ["hill shear", "lid shear", "pressure"].map(|name| (name, "rho U_b^2"));
+    let columns = [("x", "H"), columns[0], columns[1], columns[2]];
+    record.profiles.insert("wall".into(), Profile::of_rows(&columns, &wall));
+}
+
+/// The largest error of the flux through a station, relative to the flux wanted; sections are the means of u
+/// and v at the points of the stations.
+fn section_flux(setup: &Setup, sections: &[[f64; 2]]) -> f64 {
+    let through = |k: usize| {
+        let u = &sections[k * POINTS..(k + 1) * POINTS];
+        let gap = setup.hill.lid() - setup.floor(STATIONS[k]);
+        u.iter().map(|u| u[0]).sum::<f64>() / POINTS as f64 * gap
+    };
+    largest((0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()))
+}
+
+/// [`DRAGS`], by the trapezoidal rule over the period: the ends are the same point.
+fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
+    let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * along(1);
+    [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
+}
+
+/// Where the longest stretch of backward flow on the hill starts and where it ends, of at least three places.
+/// One that reaches to the last crest does not count, and one that starts at the first has no start.
+fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
+    let mut end = 0;
+    let stretches = wall.chunk_by(|a, b| (a[0] < 0.0) == (b[0] < 0.0)).map(|stretch| {
+        end += stretch.len();
+        end - stretch.len()..end
+    });
+    let backward = stretches.filter(|s| s.end < wall.len() && wall[s.start][0] < 0.0);
+    let longest = backward
+        .max_by_key(|stretch| (stretch.len(), wall.len() - stretch.start))
+        .filter(|stretch| stretch.len() >= 3);
+    let zero = |after: usize| {
+        let before = after.checked_sub(1)?;
+        let (a, b) = (wall[before][0], wall[after][0]);
+        Some(along(before) + along(1) * a / (a - b))
+    };
+    longest.map_or([None; 2], |stretch| [zero(stretch.start), zero(stretch.end)])
+}
+
+/// Distances from the reference.
+fn compare(setup: &Setup, sections: &[[f64; 2]], record: &mut Record) {
+    let Some(reference) = setup.reference else {
+        let reason = format!("no reference exists for these settings, only for {KNOWN_SETTINGS}");
+        for metric in COMPARED {
+            record.leave_out(metric, &reason);
+        }
+        return;
+    };
+    let exact = || reference.stations.iter().flat_map(|s| &s.v);
+    record.put(L2_U, rms(sections.iter().zip(exact()).map(|(f, e)| f[0] - e.x)));
+    record.put(L2_V, rms(sections.iter().zip(exact()).map(|(f, e)| f[1] - e.y)));
+    let gap = |metric: MetricKey| Some(record.value(metric)? - reference.number(metric)?);
+    let force = gap(FORCE).zip(reference.number(FORCE)).map(|(gap, exact)| gap / exact);
+    let (separation, reattachment) = (gap(SEPARATION), gap(REATTACHMENT));
+    let none = "the run or the reference has no backward flow";
+    record.put_or(FORCE_ERROR, force, none);
+    record.put_or(SEPARATION_ERROR, separation, none);
+    record.put_or(REATTACHMENT_ERROR, reattachment, none);
+}
+
+/// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the
+/// largest difference between the depth of the nearest one and that of their first row.
+fn wall_offset(setup: &Setup, all: &[Particle]) -> f64 {
+    let (dx, lid, period) = (setup.flow.medium.dx, setup.hill.lid(), setup.hill.period());
+    let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
+    let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
+        let across = (to.x - from.x).abs().rem_euclid(period);
+        hypot(across.min(period - across), to.y - from.y)
+    };
+    let off = |place: Vector2<f64>, depth: &dyn Fn(Vector2<f64>) -> f64| {
+        let nearest =
+            walls().min_by(|a, b| distance(place, a).total_cmp(&distance(place, b))).map(depth);
+        (nearest.unwrap_or(f64::INFINITY) / dx - setup.first).abs()
+    };
+    let off_at = |x: f64| {
+        let below = off(Vector2::new(x, setup.floor(x)), &|p| behind_floor(setup, p));
+        below.max(off(Vector2::new(x, lid), &|p| p.y - lid))
+    };
+    (0..WALL).map(|k| off_at(along(k))).fold(0.0, f64::max)
+}
+
+/// Distance from the floor \[m\], positive behind it, by Gauss and Newton's iteration for its foot.
+fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
+    let mut x = place.x;
+    for _ in 0..20 {
+        let slope = setup.slope(x);
+        x += (place.x - x + (place.y - setup.floor(x)) * slope) / (1.0 + slope * slope);
+    }
+    let (slope, foot) = (setup.slope(x), Vector2::new(x, setup.floor(x)));
+    Vector2::new(slope, -1.0).normalize().dot(&(place - foot))
+}
+
+/// Where the particles are at the end, walls and fluid.
+pub fn particles(setup: &Setup, s: &dyn Stepper<()>, is_kept: bool, record: &mut Record) {
+    let all = s.particles();
+    record.put(WALL_OFFSET, wall_offset(setup, &all));
+    let period = setup.hill.period();
+    let place =
+        |p: &Particle| (Vector2::new(p.position.x.rem_euclid(period), p.position.y), p.velocity.x);
+    let fluid: Vec<_> = all.iter().filter(|p| p.role == Role::Fluid).map(place).collect();
+    let is_outside = |x: &Vector2<f64>| !(setup.floor(x.x)..=setup.hill.lid()).contains(&x.y);
+    record.put(OUTSIDE, fluid.iter().filter(|(x, _)| is_outside(x)).count() as f64);
+    if is_kept {
+        pictures::keep(record, pictures::END, "H", ("u", "U_b"), fluid.into_iter());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::random::Random;
+    use maths::geometry::Hill;
+    use solver::{QuinticSpline, Smoothing};
+
+    use crate::fluids::periodic_hill::{HillSettings, setup::FLUX as BULK};
+    use base::functions::{cos, sin};
+    use std::f64::consts::TAU;
+
+    /// The scene of some settings, its kernel, and the viscosity 1/50.
+    fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn schemes::hill::Driving>) {
+        let mut settings = HillSettings::default();
+        set(&mut settings);
+        let method = schemes::hill::carried();
+        let setup = Setup::new(&method, &settings).expect("sound settings");
+        let simulation = (method.build)(setup.parts()).expect("a scene");
+        (setup, simulation)
+    }
+
+    /// Backward flow between these places, where the floor is flat \[H\].
+    const BUBBLE: [f64; 2] = [2.5, 6.0];
+    /// Amplitude of the pressure \[ρ U_b²\].
+    const PRESSURE: f64 = -0.3;
+
+    /// Shape of the flow: u = Q/D (6 s (1 - s) - A s (1 - s)(1 - 2 s)) at the share s of a section of height
+    /// D carries the flux Q through every section. Its slope du/ds at the floor is 6 - A, at the lid
+    /// -6 - A.
+    fn shape(x: f64) -> f64 {
+        let [middle, half] =
+            [BUBBLE[0] + BUBBLE[1], BUBBLE[1] - BUBBLE[0]].map(|twice| 0.5 * twice);
+        6.0 + 4.0 * (cos(TAU * (x - middle) / 9.0) - cos(TAU * half / 9.0))
+    }
+
+    /// u, v and p: v so that the flow follows the floor.
+    fn made_up(setup: &Setup, x: f64, y: f64) -> [f64; 3] {
+        let gap = setup.hill.lid() - setup.floor(x);
+        let s = (y - setup.floor(x)) / gap;
+        let u = setup.flux() / gap * s * (1.0 - s) * (6.0 - shape(x) * (1.0 - 2.0 * s));
+        [u, u * setup.slope(x) * (1.0 - s), PRESSURE * sin(TAU * x / 9.0)]
+    }
+
+    /// Shear stress on hill and lid of that flow.
+    fn shear(setup: &Setup, x: f64) -> [f64; 2] {
+        let gap = setup.hill.lid() - setup.floor(x);
+        let scale = setup.flow.medium.nu * setup.flux() / gap.powi(2);
+        [scale * (6.0 - shape(x)) * (1.0 + setup.slope(x).powi(2)), scale * (6.0 + shape(x))]
+    }
+
+    /// The record of windows that hold the made-up flow, with this force and this flux.
+    fn measured(force: f64, flux: f64) -> (Setup, f64, Record) {
+        let (setup, simulation) = scene(|s| s.n = 40);
+        let mut points: Vec<[f64; 6]> = Vec::new();
+        for particle in simulation.particles() {
+            // With the images behind the ends of the period, as a simulation has them.
+            for x in [-9.0, 0.0, 9.0].map(|by| particle.position.x + by) {
+                let (y, volume) = (particle.position.y, particle.mass / particle.density);
+                let [u, v, p] = made_up(&setup, x, y);
+                points.push([x, y, volume, u, v, p]);
+            }
+        }
+        let mut window = Window::default();
+        window.add(&setup, points, &|r2| simulation.weight(r2));
+        for ripple in [-1e-3, 1e-3] {
+            window.forces.push([force * (1.0 + ripple), flux * (1.0 + 2.0 * ripple)]);
+        }
+        let area = setup.area();
+        let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
+        measure(&setup, &window, area, &mut record);
+        (setup, area, record)
+    }
+
+    fn assert_near(record: &Record, metric: MetricKey, exact: f64, tolerance: f64) {
+        let found = record.value(metric).expect("measured");
+        let name = String::from(metric);
+        assert!((found - exact).abs() < tolerance, "{name}: {found} is not {exact}");
+    }
+
+    /// Errors of 1 to 20 % in what is read of the hills passed every quick test.
+    #[test]
+    fn a_made_up_flow_is_measured_as_it_was_made() {
+        let (setup, area, record) = measured(0.04, 2.0);
+        assert_near(&record, SEPARATION, BUBBLE[0], 0.003);
+        assert_near(&record, REATTACHMENT, BUBBLE[1], 0.003);
+        assert_near(&record, SECTION_FLUX, 0.0, 2e-3);
+        assert_near(&record, FORCE, 0.04, 1e-12);
+        assert_near(&record, FLUX, 2.0 / BULK - 1.0, 1e-12);
+        // Integrals over the period by a rule and a floor of the test's own.
+        let hill = Hill::new(1.0).expect("the reference's");
+        let count = 3600;
+        let integral = |f: &dyn Fn(f64) -> f64| {
+            let at = |k: i32| f(9.0 * (f64::from(k) + 0.5) / f64::from(count));
+            (0..count).map(at).sum::<f64>() * 9.0 / f64::from(count)
+        };
+        let slope = |x: f64| (hill.wall(x + 1e-4) - hill.wall(x - 1e-4)) / 2e-4;
+        let drags = [
+            integral(&|x| shear(&setup, x)[0]),
+            integral(&|x| shear(&setup, x)[1]),
+            integral(&|x| PRESSURE * sin(TAU * x / 9.0) * slope(x)),
+        ];
+        for (metric, drag) in DRAGS.into_iter().zip(drags) {
+            assert_near(&record, metric, drag, 0.003 * drag.abs());
+        }
+        assert!((area / integral(&|x| hill.lid() - hill.wall(x)) - 1.0).abs() < 1e-4);
+        let balance = drags.iter().sum::<f64>() / (0.04 * area) - 1.0;
+        assert_near(&record, DRAG_BALANCE, balance, 0.003);
+        // Profiles are where they say they are.
+        let [x, y, u, v] = ["x", "y", "u", "v"].map(|name| record.column("stations", name));
+        let off = |k: usize| {
+            let [exact_u, exact_v, _] = made_up(&setup, x[k], y[k]);
+            (u[k] - exact_u).abs().max((v[k] - exact_v).abs())
+        };
+        let off = (0..x.len()).map(off).fold(0.0, f64::max);
+        assert!(off < 2.5e-3, "{off}");
+        let [x, hill, lid] =
+            ["x", "hill shear", "lid shear"].map(|name| record.column("wall", name));
+        assert_eq!((x.len(), x[40], x[360]), (WALL, 1.0, 9.0));
+        let worst = |column: &[f64], wall: usize| {
+            let off = |k: usize| (column[k] - shear(&setup, x[k])[wall]).abs();
+            (0..WALL).map(off).fold(0.0, f64::max)
+        };
+        let largest = (0..WALL).map(|k| shear(&setup, x[k])[0].abs()).fold(0.0, f64::max);
+        assert!(worst(hill, 0) < 0.01 * largest && worst(lid, 1) < 0.003 * largest);
+    }
+
+    #[test]
+    fn errors_that_are_put_in_are_measured() {
+        let (setup, _) = scene(|_| {});
+        let reference = setup.reference.expect("Re 50 has one");
+        let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
+        let number = |metric: MetricKey| reference.number(metric).expect("in the summary");
+        record.put(FORCE, 1.02 * number(FORCE));
+        record.put(SEPARATION, number(SEPARATION) - 0.03);
+        record.put(REATTACHMENT, number(REATTACHMENT) + 0.04);
+        let exact = reference.stations.iter().flat_map(|station| &station.v);
+        let sections: Vec<[f64; 2]> = exact.map(|v| [v.x + 0.01, v.y - 0.02]).collect();
+        let heights = reference.stations.iter().flat_map(|station| &station.y);
+        assert!(places(&setup).iter().zip(heights).all(|(p, y)| (p[1] - y).abs() < 1e-4));
+        compare(&setup, &sections, &mut record);
+        for (metric, exact) in [
+            (L2_U, 0.01),
+            (L2_V, 0.02),
+            (FORCE_ERROR, 0.02),
+            (SEPARATION_ERROR, -0.03),
+            (REATTACHMENT_ERROR, 0.04),
+        ] {
+            assert_near(&record, metric, exact, 1e-9);
+        }
+    }
+
+    /// Re 30, half the crest and half the flux were compared with a flow of other settings.
+    #[test]
+    fn what_has_no_reference_is_left_out_with_the_reason() {
+        let others: [fn(&mut HillSettings); 3] =
+            [|s| s.re = 30.0, |s| s.crest = 0.5, |s| s.flux = 0.5];
+        for set in others {
+            let (setup, _) = scene(set);
+            let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
+            compare(&setup, &[], &mut record);
+            assert!(record.metrics.is_empty());
+            assert!(
+                COMPARED
+                    .iter()
+                    .all(|m| record.absent[&String::from(*m)].to_string().contains("re = 10"))
+            );
+        }
+    }
+
+    #[test]
+    fn the_mean_velocity_is_that_of_the_volumes() {
+        let (setup, _) = scene(|_| {});
+        let method = schemes::hill::carried();
+        let mut parts = setup.parts();
+        for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
+            p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
+        }
+        let simulation = (method.build)(parts).expect("a scene");
+        let hill = Hill::new(1.0).expect("the reference's");
+        let count = 900;
+        let of_column = |k: i32| {
+            let floor = hill.wall(9.0 * (f64::from(k) + 0.5) / f64::from(count));
+            let (gap, middle) = (hill.lid() - floor, 0.5 * (hill.lid() + floor));
+            gap * (0.7 + 0.1 * (middle - 1.0)) * 9.0 / f64::from(count)
+        };
+        let exact = (0..count).map(of_column).sum::<f64>() / setup.area();
+        let found = mean_velocity(&*simulation, setup.area());
+        assert!((found / exact - 1.0).abs() < 2e-3, "{found} {exact}");
+    }
+
+    #[test]
+    fn a_hill_that_is_too_high_and_a_particle_behind_a_wall_are_seen() {
+        let seen = |setup: &Setup, simulation: &dyn Stepper<()>| {
+            let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
+            particles(setup, simulation, false, &mut record);
+            [WALL_OFFSET, OUTSIDE].map(|metric| record.value(metric).expect("measured"))
+        };
+        let (setup, simulation) = scene(|_| {});
+        let [offset, outside] = seen(&setup, &*simulation);
+        assert!(offset < 0.02 && outside == 0.0);
+        // The crest 2 % of H too high, a fifth of a spacing.
+        let [offset, _] = seen(&setup, &*scene(|s| s.crest = 1.02).1);
+        assert!((offset - 0.2).abs() < 0.02, "{offset}");
+        let method = schemes::hill::carried();
+        let mut parts = setup.parts();
+        let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
+        for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {
+            p.position.y = y;
+        }
+        assert_eq!(seen(&setup, &*(method.build)(parts).expect("a scene"))[1], 1.0);
+    }
+
+    /// The largest error of the slope at a wall y = c x²/2 that is turned by `angle`, of so many disordered
+    /// particles a length with the velocity `u` of distance along the wall and height above it, whose slope
+    /// there is 1 + s.
+    fn error_of_slope(n: f64, angle: f64, c: f64, u: fn(f64, f64) -> f64) -> f64 {
+        let (dx, mut random) = (1.0 / n, Random::new(7));
+        let along = Vector2::new(cos(angle), sin(angle));
+        let across = Vector2::new(-along.y, along.x);
+        let kernel = Smoothing::<QuinticSpline>::new(dx);
+        let mut points = Vec::new();
+        for place in solver::lattice(Vector2::new(-1.0, 0.5 * dx), dx, 2 * n as usize, n as usize) {
+            let mut moved = || 0.4 * dx * (random.uniform() - 0.5);
+            let (s, g) = (place.x + moved(), place.y + moved());
+            let v = along * u(s, g);
+            let p = along * s + across * (g + 0.5 * c * s * s) + Vector2::new(0.0, 2.0);
+            points.push([p.x, p.y, dx * dx, v.x, v.y, 0.0]);
+        }
+        let weight = |r2: f64| kernel.w(r2);
+        let field = Field::new((&weight, kernel.support()), points, 4.0);
+        let above = |p: &[f64; 6]| {
+            let p = Vector2::new(p[0], p[1] - 2.0);
+            p.dot(&across) - 0.5 * c * p.dot(&along).powi(2)
+        };
+        let off = |k: i32| {
+            let s = 0.05 * f64::from(k);
+            let foot = along * s + across * (0.5 * c * s * s) + Vector2::new(0.0, 2.0);
+            (field.slope_at(foot, above, along) - (1.0 + s)).abs()
+        };
+        (-6..=6).map(off).fold(0.0, f64::max)
+    }
+
+    /// A line fitted to the field made the slope at a wall wrong by 0.41 h u'', 0.15 H of the place where the
+    /// flow comes back at ten spacings, and 0.04 H at 40.
+    #[test]
+    fn the_slope_at_a_wall_is_exact_for_parabolas_and_else_of_second_order() {
+        let parabola = |s: f64, g: f64| g * (1.0 + s - 3.0 * g);
+        for (angle, c) in [(0.0, 0.0), (0.4, 0.0), (0.0, 1.5), (-0.3, -2.0)] {
+            let off = error_of_slope(20.0, angle, c, |_, g| g) - 0.3;
+            assert!(off.abs() < 1e-12, "a linear field, slope 1: {off:e}");
+            let off = error_of_slope(20.0, angle, c, parabola);
+            // Along a wall that is both curved and inclined x is not the distance along it.
+            let exact = angle == 0.0 || c == 0.0;
+            assert!(off < if exact { 1e-12 } else { 1e-3 }, "{angle}, curvature {c}: {off:e}");
+            let smooth = |s: f64, g: f64| sin(g) * (1.0 + sin(s) + s.powi(3) / 6.0) - 3.0 * g * g;
+            let [coarse, fine] = [20.0, 40.0].map(|n| error_of_slope(n, angle, c, smooth));
+            assert!(fine < 0.35 * coarse && coarse < 0.02, "{coarse:e} {fine:e}");
+        }
+    }
+
+    #[test]
+    fn a_field_misses_no_particle_in_reach() {
+        let (kernel, lid, mut random) = (Smoothing::<QuinticSpline>::new(0.1), 3.0, Random::new(7));
+        let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
+        let points: Vec<[f64; 6]> = (0..6000)
+            .map(|_| {
+                let [x, y] = [number(0.0, 2.0), number(-0.4, lid + 0.4)];
+                [x, y, 0.01, number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)]
+            })
+            .collect();
+        let weight = |r2: f64| kernel.w(r2);
+        let reach = kernel.support();
+        let field = Field::new((&weight, reach), points.clone(), lid);
+        assert!(field.bands.len() > 10);
+        let mut all = Field { weight: &weight, reach, bands: vec![points] };
+        all.bands[0].sort_by(|a, b| a[0].total_cmp(&b[0]));
+        for y in [-0.05, 0.0, 1e-9, 0.299, 0.3, 0.301, 1.5, lid - 0.1, lid, lid + 0.05] {
+            for (some, every) in field.at(1.0, y).into_iter().zip(all.at(1.0, y)) {
+                assert!((some - every).abs() < 1e-10, "{some} {every} at {y}");
+            }
+        }
+    }
+}

@@ -1,0 +1,344 @@
+//! Steady flow between two cylinders, the inner one turning: exact, with one convex and one concave wall.
+
+use base::{gate::*, record::*};
+use harness::table::{Row, Table};
+use harness::{case::*, composed::*, declare::*, method::*, problem::Simple};
+use maths::exact::TaylorCouette;
+use maths::geometry::{Curve, Row as Particles};
+use maths::metrics::norms::l2;
+use nalgebra::Vector2;
+use schemes::flow;
+use solver::*;
+
+use crate::fluids::unit_flow::LIMIT_BOX;
+
+base::settings! {
+    /// Settings of the flow between two cylinders, the inner one turning.
+    pub struct CylinderSettings {
+        /// spacings across the gap
+        layers: usize ["-"] in 6..=1000 = 16,
+        /// radius of the outer cylinder
+        ratio: f64 ["inner radius"] in 1.01..=10.0 = 2.0,
+        /// Reynolds number V d/nu, V the speed of the inner surface, d the gap
+        re: f64 ["-"] in 1e-9..=1e4 = 0.5,
+        /// width of the gap d
+        gap: f64 ["m"] in 1e-9..=1e3 = 1e-3,
+        /// kinematic viscosity
+        nu: f64 ["m^2/s"] in 1e-12..=1e3 = 1e-6,
+        /// density
+        rho: f64 ["kg/m^3"] in 1e-3..=1e5 = 1000.0,
+        /// smoothing length over spacing
+        h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.0,
+        /// eta^2 of the viscous term
+        eta2_over_h2: f64 ["h^2"] in 1e-12..=1.0 = 1e-6,
+        /// least sound speed
+        c0_viscous: f64 ["nu/h"] in 0.0..=100.0 = 2.2,
+        /// Courant number of the time step
+        courant: f64 ["-"] in 1e-6..=10.0 = 1.0,
+        /// viscous number of the time step
+        viscous: f64 ["h^2/nu"] in 1e-6..=10.0 = 0.4,
+        /// end of the run, from rest
+        end: f64 ["d^2/nu"] in 1e-6..=1e4 = 1.0,
+    }
+}
+
+const NAME: &str = "taylor_couette";
+const INTERFACE: &str = "interface-wall";
+const EXTRAPOLATING: &str = "extrapolating-wall";
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, viscous, layers or ratio";
+
+base::metrics! {
+    all ALL;
+    L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
+    RADIAL_RMS = "radial_rms" ["-"] "rms of the radial velocity over V";
+    OUTSIDE = "outside" ["-"] "particles inside of the inner or outside of the outer cylinder";
+}
+
+/// The numbers of one run, SI units.
+struct Cylinders {
+    settings: CylinderSettings,
+    flow: TaylorCouette,
+    /// Walls extrapolate the pressure without the centripetal acceleration of the inner surface: the pressure
+    /// that balances it is below Mach² = 1e-2 of ρ c², and the flow around the axis does not depend on it.
+    medium: Medium,
+    rules: Rules,
+}
+
+impl Cylinders {
+    fn new(method: &Method, s: &CylinderSettings) -> Result<Self, RunError> {
+        let dx = s.gap / s.layers as f64;
+        let (h, speed) = (s.h_over_dx * dx, s.re * s.nu / s.gap);
+        let inner = s.gap / (s.ratio - 1.0);
+        // Mach 0.1, and not below what is as stiff as viscosity.
+        let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
+        let medium = method.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
+        let medium = Medium { nu: s.nu, ..medium };
+        let step = Step::courant(s.courant, h, [sound_speed, speed]).viscous(s.viscous, h, s.nu);
+        let waves = medium.waves(&method.uses);
+        let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let (limits, end) = (limits.moving(h, speed, 0.0), s.end * s.gap * s.gap / s.nu);
+        let rules = Rules { step, limits, sound_speed, end };
+        let flow = TaylorCouette { inner, outer: inner + s.gap, speed };
+        // Rows out to the support must fit into the inner cylinder.
+        let share = method.support * h / inner;
+        if share >= 1.0 {
+            let (what, setting) = ("the support over the inner radius", "ratio or layers");
+            return Err(RunError::TooMuch { what, value: share, most: 1.0, setting });
+        }
+        Ok(Self { settings: s.clone(), flow, medium, rules })
+    }
+
+    /// Fluid in layers about the axis, and rows behind both cylinders, all with the velocity of the
+    /// surface before them.
+    fn particles(&self, method: &Method) -> Vec<Particle> {
+        let (Self { flow, settings: s, .. }, &Medium { dx, h, .. }) = (self, &self.medium);
+        let inner = Curve::circle(Vector2::zeros(), flow.inner, true, dx);
+        let outer = Curve::circle(Vector2::zeros(), flow.outer, false, dx);
+        let first = method.first_row.depth();
+        let (nearest, layers) = if first == 0.0 { (1.0, s.layers - 1) } else { (first, s.layers) };
+        let fluid = (0..layers).map(|k| (inner.row(-(nearest + k as f64) * dx, dx), 0.0));
+        let behind = |curve: &Curve| curve.rows_behind(dx, first, method.support * h);
+        let inside = behind(&inner).into_iter().map(|row| (row, flow.speed));
+        let outside = behind(&outer).into_iter().map(|row| (row, 0.0));
+        let particles = |(row, speed): (Particles, f64)| {
+            let around = |x: Vector2<f64>| Vector2::new(-x.y, x.x) / x.norm() * speed;
+            row.particles(dx, s.rho, around).collect::<Vec<Particle>>()
+        };
+        fluid.chain(inside).chain(outside).flat_map(particles).collect()
+    }
+}
+
+fn pose(method: &Method, s: &CylinderSettings) -> Result<Simple, RunError> {
+    let (cylinders, m) = (Cylinders::new(method, s)?, method.clone());
+    let Cylinders { medium, rules, flow, .. } = cylinders;
+    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
+    let numbers = [&numbers[..], &[("V [m/s]", flow.speed)]].concat();
+    let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
+    let size = (area / (medium.dx * medium.dx), DECISIVE);
+    let scene = move || Ok(Parts::new(medium, Domain::open(), cylinders.particles(&m)));
+    let at_end = move |end: &dyn Stepper<()>, record: &mut Record| {
+        measure(&flow, &end.particles(), record);
+    };
+    Ok(Simple::new(method, (medium, rules), size, &numbers, scene, at_end))
+}
+
+fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
+    let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
+    let polar = |p: &Particle| {
+        let (x, v, r) = (p.position, p.velocity, p.position.norm());
+        [r, x.perp(&v) / r, x.dot(&v) / r]
+    };
+    let mut fluid: Vec<[f64; 3]> = fluid.map(polar).collect();
+    fluid.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let around: Vec<f64> = fluid.iter().map(|f| f[1]).collect();
+    let exact: Vec<f64> = fluid.iter().map(|f| flow.velocity(f[0])).collect();
+    let square = fluid.iter().map(|f| f[2] * f[2]).sum::<f64>() / fluid.len() as f64;
+    let outside = fluid.iter().filter(|f| !(flow.inner..=flow.outer).contains(&f[0])).count();
+    record.put(L2, l2(&around, &exact));
+    record.put(RADIAL_RMS, square.sqrt() / flow.speed);
+    record.put(OUTSIDE, outside as f64);
+    let row =
+        |f: &[f64; 3]| [f[0] / flow.inner, f[1] / flow.speed, flow.velocity(f[0]) / flow.speed];
+    let columns = [("r", "inner radius"), ("u", "V"), ("u_exact", "V")];
+    let rows: Vec<[f64; 3]> = fluid.iter().map(row).collect();
+    record.profiles.insert("velocity".into(), Profile::of_rows(&columns, &rows));
+}
+
+fn variants() -> Compositions<CylinderSettings> {
+    let interface =
+        "interface and wall particles (section 4.2 of the paper) on and behind both cylinders";
+    let extrapolating =
+        "wall particles behind both cylinders that extrapolate velocity and pressure";
+    Variants::of(pose)
+        .with(INTERFACE, interface, flow::cylinders_interface(), |_| {})
+        .with(EXTRAPOLATING, extrapolating, flow::cylinders_extrapolating(), |_| {})
+        .all
+}
+
+/// Flow between two cylinders.
+pub static CASE: Composed<CylinderSettings> = Composed {
+    name: NAME,
+    problem: "Flow between two cylinders, the inner one turning",
+    recommended: Recommended {
+        variant: EXTRAPOLATING,
+        because: "with 8 spacings across the gap its velocity is wrong by \
+                  0.57 %<!-- taylor_couette.extrapolating-wall; layers=8; l2 -->, that of `interface-wall` \
+                  by 0.74 %<!-- taylor_couette.interface-wall; layers=8; l2 -->, whose order is lower",
+        papers: Some(INTERFACE),
+    },
+    about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \
+            exact velocity u = A r + B/r. It starts from rest. Both walls are curved, the inner one convex \
+            and the outer one concave, and made of rows of particles that are spaced by their own arc \
+            length.",
+    variants,
+    declaration,
+    plan: |_| Vec::new(),
+};
+
+/// The runs: both walls, over the spacings across the gap.
+fn table(tier: Tier) -> Table<CylinderSettings, ()> {
+    let mut table = Table::new(&CASE, tier);
+    let layers: [&[usize]; 2] = [&[8, 10, 13], &[8, 11, 16, 22, 32]];
+    table.over((), &[INTERFACE, EXTRAPOLATING], layers, |s, layers| s.layers = layers);
+    table.judge(|row| gates(row.variant, row.settings.layers));
+    table
+}
+
+fn gates(variant: &str, layers: usize) -> Vec<Gate> {
+    let across = layers as f64;
+    // The matrix of plane Poiseuille flow at 10 and 20 rows: 1.9e-2, 4.6e-3; 2.2e-2, 1.0e-2.
+    let most = if variant == EXTRAPOLATING { 1.9 / (across * across) } else { 0.22 / across };
+    let because = "Curved walls must have no larger error than flat ones. The bound is the error of plane \
+                   Poiseuille flow, whose profile is more curved, by the row-reduced matrix of the same \
+                   wall: 1.9/N^2 where it extrapolates, 0.22/N with interface particles.";
+    let inside = "No particle passes a cylinder.";
+    let run = format!("{variant}.{layers}");
+    vec![
+        CASE.gate(&run, L2, Bound::Below(most), Evidence::Theory, because)
+            .of_others(Bound::Below(most), because),
+        CASE.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside),
+    ]
+}
+
+/// The flow is exact for any spacing.
+const SEALED: Draws = Draws {
+    variants: &["extrapolating-wall", "interface-wall"],
+    resolution: ("layers", [8.0, 32.0]),
+    order: 1.0,
+    metrics: &["l2"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
+fn declaration(tier: Tier) -> Declaration {
+    let table = table(tier);
+    let boundary = "No slip: at both cylinders the velocity is that of the cylinder. The outer one rests; \
+                    the inner one turns, with the velocities that its particles have at the start, however \
+                    long it turns.";
+    Declaration {
+        posed: Posed::new(boundary, &[ALL]),
+        curves: vec![profiles(&table)],
+        accuracy: vec![accuracy(&table)],
+        sealed: Some(SEALED),
+        ..Declaration::default()
+    }
+}
+
+/// Both walls with the order that they should have.
+fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
+    let because = "As in the row-reduced matrix of flat walls, interface particles and the rows behind them, \
+                   which carry the velocity of the wall, are of first order, and walls that extrapolate \
+                   linearly of second. A tolerance of 0.3 tells one from the other, whatever the number of \
+                   levels, but not an order that falls slowly.";
+    let level = |s: &CylinderSettings| {
+        (1.0 / s.layers as f64, Resolution::new(s.layers, "{} spacings across"))
+    };
+    let ladder = |(variant, expected): (&'static str, f64)| {
+        let bound = Bound::Within(expected - 0.3, expected + 0.3);
+        let id = format!("{NAME}.{variant}.order");
+        let order = Gate::new(id, "order", bound, Evidence::Theory, because);
+        Ladder { order: Some(order), ..table.ladder(&[()], variant, level) }
+    };
+    let about = "Flow between cylinders, steady after t = d²/ν, at Re = V d/ν = 0.5; the gap d equals the \
+                 inner radius.";
+    Accuracy {
+        about: about.into(),
+        spacing: "dx/d [-]",
+        ladders: [(INTERFACE, 1.0), (EXTRAPOLATING, 2.0)].map(ladder).into(),
+        ..Accuracy::new("taylor-couette", L2, "relative L2 error of the velocity [-]")
+    }
+}
+
+/// Velocity over the radius at the finest level.
+fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
+    let finest = table.rows.iter().map(|row| row.settings.layers).max().unwrap_or_default();
+    let caption = format!(
+        "Velocity u around the axis between two cylinders at t = d²/ν, Re = 0.5: every seventeenth \
+         particle, with {finest} spacings across the gap d, and the exact A r + B/r (line). The inner \
+         cylinder turns with speed V, and the outer one, of twice its radius, rests."
+    );
+    let points = |record: &Record| {
+        let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
+        r.iter().zip(u).step_by(17).map(|(r, u)| (*r, *u)).collect()
+    };
+    let line = |row: &Row<CylinderSettings, ()>| CurveOf {
+        name: row.variant.into(),
+        spec: row.run.spec.clone(),
+        points: Box::new(points),
+    };
+    let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
+    let exact = |k: u32| {
+        let r = flow.inner + (flow.outer - flow.inner) * f64::from(k) / 100.0;
+        (r, flow.velocity(r))
+    };
+    let lines = table.rows.iter().filter(|row| row.settings.layers == finest).map(line).collect();
+    let (axes, exact) = (["r/inner radius [-]", "u/V [-]"], (0..=100).map(exact).collect());
+    let panel = CurvePanel::linear("", axes, lines, ("exact", exact));
+    let panel = CurvePanel { symbols: true, ..panel };
+    let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());
+    Curves { id, title, caption, panels: vec![panel] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn value(record: &Record, metric: base::record::MetricKey) -> f64 {
+        record.value(metric).expect("a metric")
+    }
+
+    /// Made-up particles 2 % too fast, drifting inwards by 1 % of V, one of them inside of the inner
+    /// cylinder, two beyond the outer one, and wall particles that do not count.
+    #[test]
+    fn errors_drift_and_escaped_particles_are_those_of_made_up_particles() {
+        let flow = TaylorCouette { inner: 1e-3, outer: 2e-3, speed: 0.5 };
+        let at = |k: usize, r: f64| {
+            let angle = 0.7 * k as f64;
+            let out = Vector2::new(base::functions::cos(angle), base::functions::sin(angle));
+            let velocity = Vector2::new(-out.y, out.x) * (1.02 * flow.velocity(r)) - out * 5e-3;
+            Particle::fluid(out * r, velocity, 1000.0, 1e-8)
+        };
+        let radii = [1.5e-3, 2.01e-3, 1.9e-3, 0.99e-3, 1.1e-3, 2.3e-3, 1.999e-3];
+        let mut particles: Vec<Particle> = (0..).zip(radii).map(|(k, r)| at(k, r)).collect();
+        particles.extend([at(9, 0.5e-3), at(10, 2.5e-3)].map(|p| p.with_role(Role::Wall)));
+        let mut record = Record::new(NAME, INTERFACE, serde_json::json!({}), 1);
+        measure(&flow, &particles, &mut record);
+        assert_relative_eq!(value(&record, L2), 0.02, max_relative = 1e-12);
+        assert_relative_eq!(value(&record, RADIAL_RMS), 0.01, max_relative = 1e-12);
+        assert_eq!(value(&record, OUTSIDE), 3.0);
+        let column = |name| record.column("velocity", name).to_vec();
+        let (r, u, exact) = (column("r"), column("u"), column("u_exact"));
+        assert!(r.len() == 7 && r.is_sorted());
+        assert_relative_eq!(r[2], 1.5, max_relative = 1e-12);
+        // A r + B/r with A = -1/3 and B = 4/3 of V and the inner radius.
+        assert_relative_eq!(exact[2], 7.0 / 18.0, max_relative = 1e-12);
+        assert_relative_eq!(u[2], 1.02 * 7.0 / 18.0, max_relative = 1e-12);
+    }
+
+    /// Re = V d/nu, and a run ends at a multiple of d^2/nu.
+    #[test]
+    fn speed_radii_and_end_follow_from_the_settings() {
+        let method = flow::cylinders_interface();
+        let settings = CylinderSettings { end: 0.5, ratio: 3.0, ..CylinderSettings::default() };
+        let cylinders = Cylinders::new(&method, &settings).expect("a flow");
+        assert_relative_eq!(cylinders.flow.speed, 0.5e-3, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.flow.inner, 0.5e-3, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.flow.outer, 1.5e-3, max_relative = 1e-12);
+        assert_relative_eq!(cylinders.rules.end, 0.5, max_relative = 1e-12);
+        let particles = cylinders.particles(&method);
+        let turning = |p: &&Particle| p.role != Role::Fluid && p.position.norm() < 0.6e-3;
+        let walls: Vec<&Particle> = particles.iter().filter(turning).collect();
+        assert!(!walls.is_empty());
+        for p in walls {
+            let around = p.position.perp(&p.velocity) / p.position.norm();
+            assert_relative_eq!(around, 0.5e-3, max_relative = 1e-9);
+        }
+        let fluid: f64 = particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum();
+        let area = std::f64::consts::PI * (1.5e-3 * 1.5e-3 - 0.5e-3 * 0.5e-3);
+        // Interface particles on both cylinders have half a row each.
+        assert_relative_eq!(fluid / (1000.0 * area), 15.0 / 16.0, max_relative = 0.01);
+    }
+}

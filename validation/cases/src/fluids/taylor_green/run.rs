@@ -1,0 +1,301 @@
+//! One run of the vortices: scene, stepping, record.
+
+use nalgebra::Vector2;
+use solver::{Domain, EquationOfState, Particle, Stepper};
+
+use super::VortexSettings;
+use crate::fluids::unit_flow::{Scales, UnitFlow};
+use base::{functions::hypot, random::Random, record::*};
+use harness::{
+    case::RunError,
+    method::{Method, Parts},
+    pictures,
+    problem::{Asked, Brief, Calls, Problem},
+    rules, simulate,
+};
+use maths::{exact::TaylorGreen, metrics::norms::largest};
+
+/// The numbers of one run, L = U = ρ = 1.
+pub struct Setup {
+    settings: VortexSettings,
+    method: Method,
+    exact: TaylorGreen,
+    /// Medium, time step, sound speed.
+    pub flow: UnitFlow,
+}
+
+base::metrics! {
+    all ALL;
+    L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
+    L2_WORST = "l2_worst" ["-"] "largest l2 over 40 times, while 1 % of the speed of the start is left";
+    ENERGY = "energy" ["-"] "kinetic energy over the exact one at the end, minus 1";
+    MOMENTUM_ADDED = "momentum_added" ["-"]
+        "|sum m v at the end - sum m v at the start|/(sum m U), exactly 0";
+    PRESSURE_L2 = "pressure_l2" ["-"] "(sum (p - mean - p_exact)^2/sum p_exact^2)^(1/2) at the end";
+    NEAREST = "nearest" ["-"] "least distance of two particles over dx";
+}
+
+impl Setup {
+    /// Follows the rules for a method.
+    pub fn new(method: &Method, s: &VortexSettings) -> Self {
+        let flow = s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt });
+        let exact = TaylorGreen { nu: flow.medium.nu };
+        Self { settings: s.clone(), method: method.clone(), exact, flow }
+    }
+
+    /// Particles of equal volume with the velocity and the pressure of the flow at their places.
+    fn particles(&self) -> Vec<Particle> {
+        let (s, dx, eos) = (&self.settings, self.flow.medium.dx, self.flow.medium.eos);
+        let mut random = Random::new(s.seed as u64);
+        let mut shake = || s.perturb * dx * (2.0 * random.uniform() - 1.0);
+        solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n)
+            .map(|x| x + Vector2::new(shake(), shake()))
+            .map(|x| {
+                let density = eos.density(self.exact.pressure(x, 0.0) + eos.background);
+                Particle::fluid(x, self.exact.velocity(x, 0.0), density, dx * dx)
+            })
+            .collect()
+    }
+
+    /// Relative L2 error of the velocity vector.
+    fn error(&self, time: f64, particles: &[Particle]) -> f64 {
+        relative(particles.iter().map(|p| {
+            let exact = self.exact.velocity(p.position, time);
+            [(p.velocity - exact).norm_squared(), exact.norm_squared()]
+        }))
+    }
+
+    /// Relative L2 error of the pressure, whose mean is free.
+    fn pressure_error(&self, time: f64, particles: &[Particle]) -> f64 {
+        let eos = self.flow.medium.eos;
+        let pressure = |p: &Particle| eos.pressure(p.density) - eos.background;
+        let mean = particles.iter().map(pressure).sum::<f64>() / particles.len() as f64;
+        relative(particles.iter().map(|p| {
+            let exact = self.exact.pressure(p.position, time);
+            [(pressure(p) - mean - exact).powi(2), exact.powi(2)]
+        }))
+    }
+}
+
+/// (Σ a/Σ b)^(1/2) of squares of differences and of exact values.
+fn relative(squares: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let [difference, scale] = squares.fold([0.0; 2], |[a, b], [d, e]| [a + d, b + e]);
+    (difference / scale).sqrt()
+}
+
+/// Exact speed over that of the start below which no error is relative to it: 1 %, what compressibility at
+/// c0 = 10 U leaves of the flow, (U/c0)^2.
+const DECAYED: f64 = 0.01;
+
+/// Samples of the series.
+const SAMPLES: usize = 40;
+
+/// The particles at the start, and time and error at the samples.
+pub struct Series {
+    start: Vec<Particle>,
+    errors: Vec<[f64; 2]>,
+}
+
+harness::observed! { Series: changes(errors), stays(start) }
+
+impl Problem for Setup {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Series;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        self.flow.brief()
+    }
+
+    fn times(&self) -> Vec<f64> {
+        rules::samples(self.settings.end, SAMPLES, self.settings.dt)
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        Ok(self.flow.parts(Domain::torus(1.0, 1.0), self.particles()))
+    }
+
+    fn watch(&self, _: &[Particle], simulation: &dyn Stepper<()>) -> Series {
+        let start = simulation.particles();
+        let errors = vec![[0.0, self.error(0.0, &start)]];
+        Series { start, errors }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("series", |setup, series, simulation, _, _| {
+            let time = simulation.time();
+            series.errors.push([time, setup.error(time, &simulation.particles())]);
+        })
+    }
+
+    fn measure(
+        &self,
+        Series { start, mut errors }: Series,
+        simulation: &dyn Stepper<()>,
+        record: &mut Record,
+    ) {
+        let end = simulation.particles();
+        if record.status == Status::Completed {
+            measure(self, [&start, &end], &errors, record);
+            if Asked::of(record).particles {
+                let time = simulation.time();
+                let scale = self.exact.decay(time);
+                let all = end.iter().map(|p| {
+                    let error = (p.velocity - self.exact.velocity(p.position, time)).norm() / scale;
+                    (p.position.map(|x| x.rem_euclid(1.0)), error)
+                });
+                pictures::keep(record, pictures::END, "L", ("error", "U exp(bt)"), all);
+            }
+        }
+        // The exact flow may have decayed to 0.
+        errors.retain(|[_, error]| error.is_finite());
+        let columns = [("t", "L/U"), ("error", "-")];
+        record.profiles.insert("series".into(), Profile::of_rows(&columns, &errors));
+    }
+}
+
+fn measure(
+    setup: &Setup,
+    [start, end]: [&[Particle]; 2],
+    series: &[[f64; 2]],
+    record: &mut Record,
+) {
+    let [time, error] = series[series.len() - 1];
+    let is_left = |[time, _]: &&[f64; 2]| setup.exact.decay(*time) >= DECAYED;
+    record.put(L2_WORST, largest(series.iter().filter(is_left).map(|s| s[1])));
+    let momentum = |particles: &[Particle]| {
+        simulate::momentum(particles) / particles.iter().map(|p| p.mass).sum::<f64>()
+    };
+    record.put(MOMENTUM_ADDED, (momentum(end) - momentum(start)).norm());
+    record.put(NEAREST, nearest(end) / setup.flow.medium.dx);
+    let left = setup.exact.decay(time);
+    if left < DECAYED {
+        let reason = format!(
+            "the exact speed has decayed to {left:.1e} of that of the start, below {DECAYED}"
+        );
+        for metric in [L2, ENERGY, PRESSURE_L2] {
+            record.leave_out(metric, &reason);
+        }
+        return;
+    }
+    record.put(L2, error);
+    let energy = end.iter().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum::<f64>();
+    record.put(ENERGY, energy / setup.exact.kinetic_energy(time) - 1.0);
+    record.put(PRESSURE_L2, setup.pressure_error(time, end));
+}
+
+/// The least distance of two particles of the periodic unit square \[m\].
+fn nearest(particles: &[Particle]) -> f64 {
+    let wrapped = |p: &Particle| p.position.map(|x| x.rem_euclid(1.0));
+    let mut places: Vec<Vector2<f64>> = particles.iter().map(wrapped).collect();
+    places.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let across: Vec<_> = places.iter().map(|place| place + Vector2::x()).collect();
+    places.extend(across);
+    let mut least = f64::INFINITY;
+    for (k, a) in places[..particles.len()].iter().enumerate() {
+        let ahead = places[k + 1..].iter().take_while(|b| b.x - a.x < least);
+        let apart = |b: &Vector2<f64>| {
+            let y = b.y - a.y;
+            hypot(b.x - a.x, y - y.round())
+        };
+        least = ahead.map(apart).fold(least, f64::min);
+    }
+    least
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use base::record::Record;
+
+    fn setup() -> Setup {
+        let settings = VortexSettings { n: 40, ..VortexSettings::default() };
+        Setup::new(&schemes::flow::vortices_modern(), &settings)
+    }
+
+    /// The record of particles that have the exact velocity times `1 + error`, a uniform velocity and the
+    /// exact pressure times `1 + pressure`, at `time`.
+    fn measured(setup: &Setup, time: f64, [error, drift, pressure]: [f64; 3]) -> Record {
+        let eos = setup.flow.medium.eos;
+        let at = |time: f64, [error, drift, pressure]: [f64; 3]| {
+            let mut particles = setup.particles();
+            for p in &mut particles {
+                let exact = setup.exact.velocity(p.position, time);
+                p.velocity = exact * (1.0 + error) + Vector2::new(drift, 0.0);
+                let exact = setup.exact.pressure(p.position, time);
+                p.density = eos.density(exact * (1.0 + pressure) + eos.background);
+            }
+            particles
+        };
+        let (start, end) = (at(0.0, [0.0; 3]), at(time, [error, drift, pressure]));
+        let series = [[0.0, setup.error(0.0, &start)], [time, setup.error(time, &end)]];
+        let mut record = Record::new("taylor_green", "plain", serde_json::Value::Null, 1);
+        measure(setup, [&start, &end], &series, &mut record);
+        record
+    }
+
+    fn assert_near(record: &Record, metric: base::record::MetricKey, exact: f64, tolerance: f64) {
+        let found = record.value(metric).expect("measured");
+        assert!(
+            (found - exact).abs() < tolerance,
+            "{}: {found} is not {exact}",
+            String::from(metric)
+        );
+    }
+
+    #[test]
+    fn errors_that_are_put_in_are_measured() {
+        let setup = setup();
+        let none = measured(&setup, 1.0, [0.0; 3]);
+        for metric in [L2, L2_WORST, MOMENTUM_ADDED] {
+            assert_near(&none, metric, 0.0, 1e-12);
+        }
+        // The density follows the pressure, and the energy the density, by (U/c0)^2/4 and less.
+        assert_near(&none, ENERGY, 0.0, 1e-4);
+        assert_near(&none, PRESSURE_L2, 0.0, 1e-9);
+        assert_near(&none, NEAREST, 1.0, 1e-9);
+        // A velocity 2 % too large: energy 4.04 %.
+        let fast = measured(&setup, 1.0, [0.02, 0.0, 0.03]);
+        assert_near(&fast, L2, 0.02, 1e-9);
+        assert_near(&fast, L2_WORST, 0.02, 1e-9);
+        assert_near(&fast, ENERGY, 0.0404, 1e-4);
+        assert_near(&fast, PRESSURE_L2, 0.03, 1e-6);
+        let adrift = measured(&setup, 1.0, [0.0, 0.01, 0.0]);
+        assert_near(&adrift, MOMENTUM_ADDED, 0.01, 1e-12);
+    }
+
+    /// Pairs across an edge were left out, which let particles pair there.
+    #[test]
+    fn particles_are_near_each_other_across_an_edge_too() {
+        let of = |places: [[f64; 2]; 3]| {
+            let places = places.map(|[x, y]| Vector2::new(x, y));
+            nearest(&places.map(|x| Particle::fluid(x, Vector2::zeros(), 1.0, 1.0)))
+        };
+        let third = [0.4, 0.7];
+        for pair in [[[0.999, 0.5], [0.001, 0.5]], [[0.1, 0.999], [0.1, 0.001]]] {
+            assert!((of([pair[0], pair[1], third]) - 0.002).abs() < 1e-12, "{pair:?}");
+            assert!((of([third, pair[1], pair[0]]) - 0.002).abs() < 1e-12, "{pair:?}");
+        }
+        let beyond = of([[-0.001, 0.001], [0.001, 0.999], third]);
+        assert!((beyond - 8e-6_f64.sqrt()).abs() < 1e-12, "{beyond}");
+    }
+
+    /// At Re 10 and t = 2 the flow is 1e-7 of its start, and an error of 6162 % relative to it was shown.
+    #[test]
+    fn no_error_is_relative_to_a_flow_that_has_decayed() {
+        let setup = setup();
+        // exp(-8 pi^2 0.01 t) is 0.01 at t = 5.83.
+        assert!(measured(&setup, 5.8, [0.0; 3]).value(L2).is_some());
+        let record = measured(&setup, 5.9, [0.0, 1e-3, 0.0]);
+        for metric in [L2, ENERGY, PRESSURE_L2] {
+            assert_eq!(record.value(metric), None);
+            assert!(record.absent[&String::from(metric)].to_string().contains("decayed to 9.5e-3"));
+        }
+        assert_near(&record, L2_WORST, 0.0, 1e-12);
+        assert_near(&record, MOMENTUM_ADDED, 1e-3, 1e-12);
+    }
+}

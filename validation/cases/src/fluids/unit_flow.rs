@@ -1,0 +1,131 @@
+//! Flows whose length, velocity and density are 1: the settings, methods and rules that the flow over hills
+//! and the vortices have in common.
+
+use nalgebra::Vector2;
+use solver::{Domain, Limits, Particle, Tait};
+
+use harness::{case::*, method::*, problem::Brief};
+
+/// What a case adds to its settings.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    /// Largest speed of the flow \[m/s\].
+    pub speed: f64,
+    /// Body force along x \[m/s²\].
+    pub force: f64,
+    /// Area of the flow, of which the number of particles follows \[m²\].
+    pub area: f64,
+    /// Time step, unless it follows from the settings \[s\].
+    pub dt: Option<f64>,
+}
+
+/// The numbers of one run.
+#[derive(Clone, Debug)]
+pub struct UnitFlow {
+    /// What terms are made from.
+    pub medium: Medium,
+    /// Support radius \[m\].
+    pub support: f64,
+    /// Time step, its theoretical limit on a lattice at rest, sound speed.
+    pub rules: Rules,
+    /// About how many particles there are.
+    pub particles: f64,
+    /// h/dx as it is set: h over dx differs from it by round-off.
+    h_over_dx: f64,
+    speed: f64,
+    skin: f64,
+}
+
+/// The settings on which time and memory of a run depend.
+pub const DECISIVE: &str = "end, courant, c0 or n";
+/// Particles of the box whose waves give the limit of dt: even, so that it has the stiffest ones.
+pub const LIMIT_BOX: usize = 32;
+
+impl UnitFlow {
+    /// A medium with Courant and viscous number of the time step, skin \[h\] and end \[s\].
+    pub fn new(
+        method: &Properties,
+        medium: Medium,
+        [h_over_dx, courant, viscous, skin, end]: [f64; 5],
+        Scales { speed, force, area, dt }: Scales,
+    ) -> Self {
+        let Medium { h, dx, nu, eta2_over_h2, eos: Tait { sound_speed, .. }, .. } = medium;
+        let step = Step::courant(courant, h, [sound_speed, speed]).viscous(viscous, h, nu);
+        let waves = medium.waves(&method.uses);
+        let limits = method.limits([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
+        let (step, limits) = (step.or_given(dt), limits.moving(h, speed, force));
+        let rules = Rules { step, limits, sound_speed, end };
+        let medium = Medium { acceleration: Vector2::new(force, 0.0), ..medium };
+        let particles = area / (dx * dx);
+        let (support, skin) = (method.support * h, skin * h);
+        Self { medium, support, rules, particles, h_over_dx, speed, skin }
+    }
+
+    /// What is known of its run before the particles are made.
+    pub fn brief(&self) -> Brief {
+        let dx = self.medium.dx;
+        Brief::new(self.medium, self.rules, self.particles, DECISIVE)
+            .numbers(&self.rules.numbers([self.h_over_dx, dx]))
+    }
+
+    /// The scene of these particles.
+    pub fn parts(&self, domain: Domain, particles: Vec<Particle>) -> Parts {
+        // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
+        let speed = 2.0 * (self.speed + self.rules.sound_speed);
+        let limits = Limits { density: [0.7, 1.3], speed };
+        let parts = Parts::new(self.medium, domain, particles);
+        Parts { skin: Some(self.skin), limits, ..parts }
+    }
+}
+
+/// Declares the settings of a case: its own, among them `re`, `n`, `end`, `h_over_dx` and `c0`, and those
+/// that all these flows have.
+macro_rules! unit_settings {
+    ($(#[doc = $doc:literal])+ pub struct $Struct:ident { $($own:tt)+ }) => {
+        base::settings! {
+            $(#[doc = $doc])+
+            pub struct $Struct {
+                $($own)+
+                /// guard against 0/0 in the viscous term
+                eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 1e-6,
+                /// exponent of the Tait equation
+                gamma: usize ["-"] in 1..=20 = 7,
+                /// background pressure p0
+                background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
+                /// Courant number of the time step: two thirds of the theoretical limit
+                courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
+                /// viscous number of the time step
+                viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
+                /// density diffusion δ
+                diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
+                /// particle shifting, amplitude
+                shift: f64 ["-"] in 0.0..=10.0 = 0.5,
+                /// Verlet skin: reach of neighbour lists beyond the support radius
+                skin: f64 ["h"] in 0.0..=2.0 = 0.6,
+            }
+        }
+
+        impl $Struct {
+            /// Follows the rules for a method.
+            fn flow(
+                &self,
+                method: &harness::method::Properties,
+                scales: $crate::fluids::unit_flow::Scales,
+            ) -> $crate::fluids::unit_flow::UnitFlow {
+                let (dx, nu) = (1.0 / self.n as f64, 1.0 / self.re);
+                let h = self.h_over_dx * dx;
+                let eos = solver::Tait {
+                    gamma: self.gamma as i32,
+                    background: self.background * self.c0 * self.c0,
+                    ..solver::Tait::new(1.0, self.c0)
+                };
+                let medium = method.medium(eos, [dx, h]).set_by(self);
+                let medium = harness::method::Medium { nu, ..medium };
+                let numbers =
+                    [self.h_over_dx, self.courant, self.viscous, self.skin, self.end];
+                $crate::fluids::unit_flow::UnitFlow::new(method, medium, numbers, scales)
+            }
+        }
+    };
+}
+pub(crate) use unit_settings;

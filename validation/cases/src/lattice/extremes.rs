@@ -1,0 +1,304 @@
+//! Settings far outside of the usual, each with its own criterion.
+//!
+//! Common to all: nothing hangs, nothing panics, and a run that leaves its bounds ends as
+//! [`solver::Outcome::Diverged`] with step, time, particle and quantity. What is not a scene is refused with
+//! its reason; `tests/tests/extremes.rs` shows that, and particles without neighbours.
+
+use base::{gate::*, random::Random, record::*, settings::Settings};
+use harness::{
+    case::*,
+    composed::*,
+    declare::Declaration,
+    method::*,
+    problem::{Asked, Brief, Calls, Problem},
+    simulate::momentum,
+    table::{Row, Table},
+};
+use maths::metrics::norms::largest;
+use nalgebra::Vector2;
+use solver::{Domain, Particle, Stepper, Tait};
+
+use crate::lattice::torus;
+
+base::settings! {
+    /// Settings of the experiments; each uses some of them.
+    pub struct ExtremeSettings {
+        /// particles along each side of the periodic box
+        n: usize ["-"] in 4..=400 = 10,
+        /// smoothing length over spacing
+        h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.2,
+        /// number of time steps
+        steps: usize ["-"] in 10..=100000000 = 400,
+        /// time step
+        dt: f64 ["dx/c0"] in 1e-9..=100.0 = 0.6,
+        /// pressure at rest
+        background: f64 ["rho0 c0^2"] in 0.0..=1.0 = 0.0,
+        /// distance of the two particles that are too close
+        distance: f64 ["dx"] in 0.0..=1.0 = 0.0,
+        /// speed of the moving block
+        speed: f64 ["c0"] in 0.0..=1e6 = 1000.0,
+    }
+}
+
+/// Settings far outside of the usual.
+pub static EXTREMES: Composed<ExtremeSettings> = Composed {
+    name: "extremes",
+    problem: "Extreme settings and scenes: does the program stay sound?",
+    recommended: Recommended {
+        variant: "rest",
+        because: "each variant is an experiment of its own, and this one is the plainest",
+        papers: None,
+    },
+    about: "Extreme scenes and settings must end well. They are a lattice at rest for very long, particles \
+            on top of each other, and a block at a thousand times the speed of sound. Each variant is an \
+            experiment of its own.",
+    variants,
+    declaration: |_| Declaration::default(),
+    plan,
+};
+
+base::metrics! {
+    HEAT = "heat" ["c0^2"] "largest v^2/2 of a particle at the end";
+    CLOCK_ERROR = "clock_error" ["dx/c0"]
+        "largest |t - n dt| at ten times, infinite if the steps are not n";
+    MOMENTUM_ERROR = "momentum_error" ["-"] "|change of sum m v|/sum m |v| of the moving particles";
+    FASTEST = "fastest" ["c0"] "largest speed at the end";
+}
+
+/// The scene of a variant.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Scene {
+    AtRest,
+    Stirred,
+    Blocks,
+}
+
+const REST: &str = "rest";
+const PRESSED: &str = "pressed";
+const COINCIDENT: &str = "coincident";
+const BULLET: &str = "bullet";
+
+fn variants() -> Compositions<ExtremeSettings> {
+    const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
+    const SHORT: &[&str] = &["distance", "steps", "dt"];
+    let cubic = schemes::lattice::cubic;
+    let rest = "does round-off heat a lattice at rest? cubic spline";
+    // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
+    let pressed = "does it under pressure? Wendland function";
+    let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
+    let bullet = "does a block that hits another keep the momentum?";
+    let all_but = |uses: &[&str]| {
+        let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
+        names.filter(|name| !uses.contains(name)).collect()
+    };
+    let wendland = schemes::lattice::wendland();
+    Variants::<_, (Method, Scene)>::of(|(method, scene), s: &ExtremeSettings| {
+        Ok(Extreme { method: method.clone(), scene: *scene, settings: s.clone() })
+    })
+    .lacking([REST, rest], (cubic(), Scene::AtRest), all_but(AT_REST), |s| {
+        (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
+    })
+    .lacking([PRESSED, pressed], (wendland, Scene::AtRest), all_but(AT_REST), |s| {
+        (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
+    })
+    .lacking([COINCIDENT, coincident], (cubic(), Scene::Stirred), all_but(SHORT), |_| ())
+    .lacking([BULLET, bullet], (cubic(), Scene::Blocks), all_but(&["speed", "steps", "dt"]), |s| {
+        (s.steps, s.dt) = (200, 0.3);
+    })
+    .all
+}
+
+/// A run of any variant.
+struct Extreme {
+    method: Method,
+    scene: Scene,
+    settings: ExtremeSettings,
+}
+
+/// The particles at the start, and how far the clock was off.
+struct Watch {
+    start: Vec<Particle>,
+    late: f64,
+}
+
+harness::observed! { Watch: changes(late), stays(start) }
+
+impl Extreme {
+    fn is_resting(&self) -> bool {
+        self.scene == Scene::AtRest
+    }
+
+    /// How often it is looked at.
+    fn looks(&self) -> usize {
+        if self.is_resting() { 10 } else { 1 }
+    }
+
+    /// Steps before a look.
+    fn done(&self, look: usize) -> usize {
+        (look + 1) * self.settings.steps / self.looks()
+    }
+}
+
+impl Problem for Extreme {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    type Watch = Watch;
+    const READS_START: bool = true;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    /// No theory has limits for these.
+    fn brief(&self) -> Brief {
+        let ExtremeSettings { n, steps, dt, .. } = self.settings;
+        let rules = Rules { step: Step::given(dt), end: steps as f64 * dt, ..Rules::REFUSED };
+        let (medium, particles) = (medium(&self.method, &self.settings), (n * n) as f64);
+        let brief = Brief::new(medium, rules, particles, "steps or n").numbers(&[(PLANNED_DT, dt)]);
+        Brief { is_limited: false, is_serial: true, ..brief }
+    }
+
+    fn not_exported(&self) -> Option<&'static str> {
+        Some("its experiments are about this program")
+    }
+
+    fn times(&self) -> Vec<f64> {
+        (0..self.looks()).map(|look| self.done(look) as f64 * self.settings.dt).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        let scene = match self.scene {
+            Scene::AtRest => at_rest,
+            Scene::Stirred => stirred,
+            Scene::Blocks => blocks,
+        };
+        Ok(scene(&self.method, &self.settings))
+    }
+
+    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Watch {
+        Watch { start: start.to_vec(), late: 0.0 }
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+        calls.at("samples", |extreme, Watch { late, .. }, simulation, look, _| {
+            let done = extreme.done(look);
+            let is_on_time = simulation.work().steps == done as u64;
+            let off = (simulation.time() - done as f64 * extreme.settings.dt).abs();
+            *late = late.max(if is_on_time { off } else { f64::INFINITY });
+        })
+    }
+
+    fn measure(&self, Watch { start, late }: Watch, end: &dyn Stepper<()>, record: &mut Record) {
+        let end = end.particles();
+        if self.is_resting() {
+            record.put(HEAT, fastest(&end));
+            record.put(CLOCK_ERROR, late);
+        } else {
+            let scale: f64 = start.iter().map(|p| p.mass * p.velocity.norm()).sum();
+            let change = (momentum(&end) - momentum(&start)).norm();
+            record.put(MOMENTUM_ERROR, if scale > 0.0 { change / scale } else { change });
+            record.put(FASTEST, (2.0 * fastest(&end)).sqrt());
+        }
+    }
+}
+
+/// Kinetic energy per mass of the fastest particle \[c₀²\]; NaN stays.
+fn fastest(particles: &[Particle]) -> f64 {
+    largest(particles.iter().map(|p| 0.5 * p.velocity.norm_squared()))
+}
+
+/// ρ₀ = c₀ = dx = 1, ν = 0.1.
+fn medium(method: &Method, s: &ExtremeSettings) -> Medium {
+    let eos = Tait { background: s.background, ..Tait::new(1.0, 1.0) };
+    Medium { nu: 0.1, eta2_over_h2: 1e-6, ..method.medium(eos, [1.0, s.h_over_dx]) }
+}
+
+/// A lattice at rest, for very many steps.
+fn at_rest(method: &Method, s: &ExtremeSettings) -> Parts {
+    let resting = |_, place| (place, Vector2::zeros());
+    torus((s.n as f64, s.n), medium(method, s), resting)
+}
+
+/// Two particles at one place, or all but, in a lattice stirred at 0.05 c₀.
+fn stirred(method: &Method, s: &ExtremeSettings) -> Parts {
+    let mut random = Random::new(5);
+    let start = |_, place| (place, Vector2::new(random.normal(), random.normal()) * 0.05);
+    let mut parts = torus((10.0, 10), medium(method, s), start);
+    let Particle { position, velocity, .. } = parts.particles[33];
+    parts.particles[34].position = position + Vector2::new(s.distance, 0.0);
+    parts.particles[34].velocity = velocity;
+    parts
+}
+
+/// A block that hits another.
+fn blocks(method: &Method, s: &ExtremeSettings) -> Parts {
+    let block = |first, velocity| {
+        let places = solver::lattice(Vector2::new(first, 0.0), 1.0, 10, 10);
+        places.map(move |place| Particle::fluid(place, velocity, 1.0, 1.0))
+    };
+    let moving = block(-12.0, Vector2::new(s.speed, 0.0));
+    let particles = block(0.0, Vector2::zeros()).chain(moving).collect();
+    Parts::new(medium(method, s), Domain::open(), particles)
+}
+
+/// The runs of a tier.
+fn plan(tier: Tier) -> Vec<Planned> {
+    let mut table = Table::new(&EXTREMES, tier);
+    table.one((), REST, |_| ());
+    table.over((), &[PRESSED], [&[10_000], &[1_000_000]], |s, steps| s.steps = steps);
+    table.over((), &[COINCIDENT], [&[0.0, 1e-14]; 2], |s, distance| s.distance = distance);
+    // Steps for sound, and steps for the speed of the block.
+    table.over((), &[BULLET], [&[(0.3, 200), (1e-4, 2000)]; 2], |s, of| (s.dt, s.steps) = of);
+    table.judge(gates);
+    table.plan()
+}
+
+/// What is judged of a run, and why.
+fn gates(Row { variant, settings: s, .. }: &Row<ExtremeSettings, ()>) -> Vec<Gate> {
+    let gate = |id: &str, metric: MetricKey, bound, evidence, because: &str| {
+        Gate::new(format!("extremes.{id}"), String::from(metric), bound, evidence, because)
+    };
+    let momentum = |id: &str, because| {
+        gate(id, MOMENTUM_ERROR, Bound::Below(1e-12), Evidence::Invariant, because)
+    };
+    match *variant {
+        REST | PRESSED => {
+            let [energy, time] = ["energy", "time"].map(|what| format!("{variant}.{what}"));
+            let cold = "Round-off of forces that cancel must not heat the lattice.";
+            let exact = "Time is counted in whole steps, so it does not drift.";
+            vec![
+                gate(&energy, HEAT, Bound::Below(1e-20), Evidence::Invariant, cold),
+                gate(&time, CLOCK_ERROR, Bound::Equals(0.0), Evidence::Invariant, exact),
+            ]
+        }
+        COINCIDENT => vec![momentum(
+            &format!("coincident.{:e}", s.distance),
+            "The distance 0 must not be divided by. The run stays finite for 400 steps, and every pair force \
+             has its opposite.",
+        )],
+        _ => vec![momentum(
+            if s.dt < 0.3 { "bullet.its speed" } else { "bullet.sound" },
+            "The run stays finite with exact momentum. With time steps for sound the blocks pass through \
+             each other without a force, so there only finiteness is judged.",
+        )],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::lattice::tests::judged;
+
+    #[test]
+    fn the_quick_tier_survives_its_extremes() {
+        let judged = judged(&[&EXTREMES]);
+        let names: BTreeSet<&str> = judged.iter().map(|judged| &*judged.gate.id).collect();
+        assert_eq!(names.len(), judged.len(), "gates have names of their own");
+        for judged in &judged {
+            let (id, value) = (&judged.gate.id, judged.judgement.value);
+            assert!(!judged.judgement.verdict.is_failure(), "{id}: {value:?}");
+        }
+    }
+}

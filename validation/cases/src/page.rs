@@ -1,0 +1,283 @@
+//! The report: from a judged suite to one page.
+
+use base::{
+    gate::Verdict,
+    manifest::Manifest,
+    record::Record,
+    reference::Reference,
+    spec::{RunSpec, Task},
+};
+use harness::{
+    case::{self, Case},
+    columns::Columns,
+    notes::Notes,
+    runs::{Judged, JudgedRun, counts},
+    study::Study,
+    suite::{CaseResults, JudgedOf, Of, Suite},
+};
+use report::{
+    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, code, counted,
+    plain,
+};
+
+use crate::{limitations, stiffness, time};
+
+/// The whole report; `made` is the time at which it is made, for people.
+pub fn assemble(suite: &Suite, made: &str) -> Page {
+    let manifest = Manifest::of_this_process(rayon::current_num_threads());
+    let (mut cards, mut others) = (Vec::new(), Vec::new());
+    for results in &suite.cases {
+        match &results.card {
+            Some(card) => cards.push(with_grades(card.clone())),
+            None => {
+                let name = results.case.name();
+                others.push(format!("[{name}](#{name}) {}", results.counts().short()));
+            }
+        }
+    }
+    let mut notes = vec![
+        format!("**Supporting cases:** {}.", others.join("; ")),
+        "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
+         known limitation if it lies outside and inside of a second bound, which follows from the cause, or \
+         is fitted to own runs and says so, and fails otherwise; controls must lie outside. \
+         [All verdicts](#verdicts) can be searched, and [limitations](#limitations) are grouped by cause. \
+         Results of other codes and [reference data](#references) are stored; all else comes from the \
+         runs of this report."
+            .to_string(),
+    ];
+    notes.splice(0..0, of_others(suite));
+    let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
+    sections.extend(suite.cases.iter().map(case_section));
+    sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
+    Page {
+        title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
+        lead: vec![format!(
+            "{:?} tier, {made}. {}{} {}",
+            suite.tier,
+            cost(suite),
+            reused(suite),
+            provenance(&manifest)
+        )],
+        counts: suite.counts(),
+        cards,
+        notes,
+        sections,
+        png_folder: "figures".into(),
+    }
+}
+
+/// A card that says what stands behind the references of its case.
+fn with_grades(mut card: Card) -> Card {
+    let grades = crate::graded(&card.id).into_iter();
+    card.facts.extend(grades.map(|(name, grade)| (format!("Reference `{name}`:"), grade)));
+    card
+}
+
+/// How runs of other codes ended that the store has, and where they are shown.
+fn of_others(suite: &Suite) -> Option<String> {
+    let has_some = |of: &&CaseResults| !of.runs.submissions.is_empty();
+    let link = |of: &CaseResults| {
+        let name = of.case.name();
+        format!("[{name}](#study-{}-submissions)", name.replace('_', "-"))
+    };
+    let links: Vec<String> = suite.cases.iter().filter(has_some).map(link).collect();
+    let counts = Counts::of(suite.submitted().map(|of| of.judged.judgement.verdict));
+    let words = format!("**Runs of other codes in the store:** {}", counts.headline());
+    (!links.is_empty()).then(|| format!("{words} ({}).", links.join(", ")))
+}
+
+/// What all runs of the report cost together.
+fn cost(suite: &Suite) -> String {
+    let records = || suite.cases.iter().flat_map(|results| &results.runs.all).map(|r| &r.record);
+    let cost = || records().map(|record| &record.cost);
+    let repeated: f64 = cost().flat_map(|cost| cost.alone_s.iter().skip(1)).sum();
+    let stepping: f64 = cost().map(|cost| cost.cpu_s).sum();
+    let pairs: f64 = cost().map(|cost| cost.pair_interactions as f64).sum();
+    format!(
+        "{} took {} of processor time for stepping and {} pair interactions.",
+        counted(records().count(), "run", "runs"),
+        report::seconds(stepping + repeated),
+        report::sci(pairs, 2)
+    )
+}
+
+/// What was not made for this page.
+fn reused(suite: &Suite) -> String {
+    if suite.made.reused == 0 {
+        return String::new();
+    }
+    let were = counted(suite.made.reused, "record was", "records were");
+    let other = match suite.made.of_other_sources {
+        0 => String::new(),
+        count => format!(" **Made by a build of other sources: {count} of them.**"),
+    };
+    format!(" {were} in the store before.{other}")
+}
+
+fn provenance(made_by: &Manifest) -> String {
+    let Manifest { touchstone, profile, rustc, cpu, .. } = made_by;
+    let state = made_by.state();
+    let cores = counted(made_by.cores, "core", "cores");
+    let threads = counted(made_by.threads, "thread", "threads");
+    format!(
+        "Made by touchstone {touchstone} at {state} ({profile} build, {}) on {}, \
+         {cores}, {threads}.",
+        plain(rustc),
+        plain(cpu)
+    )
+}
+
+/// A gate, its verdict, and the numbers of the reasons.
+struct Row<'a> {
+    of: JudgedOf<'a>,
+    reasons: String,
+}
+
+/// All verdicts, the worst first, and below each other the reasons, each once.
+fn verdicts(suite: &Suite) -> Section {
+    let mut notes = Notes::default();
+    let mut rows = Vec::new();
+    for of in suite.judged() {
+        rows.push(Row { of, reasons: reasons(of.judged, &mut notes).join(" ") });
+    }
+    rows.sort_by_key(|row| std::cmp::Reverse(row.of.judged.judgement.verdict));
+    let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
+    let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
+    let gates = Columns::<Row>::default()
+        .with(Column::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
+        .text("gate", |row| row.of.judged.gate.id.clone())
+        .marked("run or study", judged_on)
+        .num(["value", ""], move |row| value(row.of.judged.judgement.value))
+        .text("bound", |row| row.of.judged.gate.bounds())
+        .num(["margin", ""], move |row| margin(row.of.judged.judgement.margin))
+        .text("evidence", |row| format!("{:?}", row.of.judged.gate.evidence).to_lowercase())
+        .text("reasons", |row| row.reasons.clone())
+        .table("", &rows);
+    let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
+    Section::new(VERDICTS, "All verdicts")
+        .prose(
+            "The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the \
+             bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
+        )
+        .block(Block::Explorer(Explorer { gates, reasons }))
+        .block(Block::Details {
+            summary: "How to read cost and convergence diagrams".into(),
+            blocks: vec![Block::Prose(READING.map(String::from).into())],
+        })
+}
+
+/// What holds for all diagrams of a kind.
+const READING: [&str; 2] = [
+    "A cost diagram shows one point for each run. The number at a point is the resolution. Run time is the \
+     processor time of the time stepping on one core, the median of repeated runs with no other run at work; \
+     bars reach from the fastest to the slowest. The pale band joins the points that no other beats in both \
+     error and cost.",
+    "A convergence diagram shows the error over the spacing of particles. The grey line has the \
+     order that theory expects. The order in the table below it is a least-squares fit over all levels, with \
+     the 95 % interval of Student's t distribution.",
+];
+
+/// Numbers of the reasons for a bound, and for a limitation.
+fn reasons<'a>(judged: &'a Judged, notes: &mut Notes<'a>) -> Vec<String> {
+    let limitation = judged.limitation();
+    let cause = judged.gate.cause.as_ref().filter(|_| limitation.is_some());
+    let texts = [Some(&*judged.gate.because), cause.map(|cause| &*cause.what), limitation];
+    texts.into_iter().flatten().map(|text| notes.number(text).to_string()).collect()
+}
+
+/// The run or the study that is judged.
+fn judged_on(row: &Row) -> String {
+    match row.of.of {
+        Of::Run(run) => {
+            let spec = &run.planned.spec;
+            let set = plain(&what(row.of.case, spec));
+            format!("{} {set}", code(&spec.variant)).trim_end().to_string()
+        }
+        Of::Study(study) => format!("[{}](#{})", study.title, anchor(study)),
+    }
+}
+
+fn case_section(results: &CaseResults) -> Section {
+    let case = results.case;
+    let section =
+        Section::new(case.name(), case.name()).counts(results.counts()).prose(case.about());
+    let section = results.studies.iter().map(study_section).fold(section, Section::child);
+    let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
+    section.block(Block::Details {
+        summary: "Variants and all runs".into(),
+        blocks: vec![Block::List(variants), run_table(case, &results.runs.all).into()],
+    })
+}
+
+/// Sections and figures share a name space; figures are named by their study.
+fn anchor(study: &Study) -> String {
+    format!("study-{}", study.id)
+}
+
+fn study_section(study: &Study) -> Section {
+    let section = Section::new(anchor(study), &study.title).counts(counts(&study.judged));
+    study.blocks.iter().cloned().fold(section, Section::block)
+}
+
+/// A measured value: a whole number as such, any other with four digits.
+fn measured(value: f64) -> Cell {
+    let is_whole = value == value.trunc() && value.abs() < 1e6;
+    if is_whole { Cell::exact(value) } else { Cell::num(value, 4) }
+}
+
+fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
+    let caption = "All runs, the settings that are not the defaults of their variant (`touchstone list` and \
+                   the name of the case show these), and their cost. Seconds alone are the median of timings \
+                   with nothing else of this program at work; other seconds were taken side by side and are \
+                   only rough. The state is a digest of the bits at the end: the same for any number of \
+                   threads.";
+    let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
+    Columns::<Record>::default()
+        .code("variant", |record| record.variant.clone())
+        .text("set", |record| what(case, &record.spec()))
+        .text("ended", |record| record.status.to_string())
+        .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
+        .num(["steps", "1"], |record| Cell::count(record.cost.steps))
+        .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
+        .num(["stepping, alone", "s"], alone)
+        .num(["stepping", "s"], |record| Cell::seconds(record.cost.cpu_s))
+        .num(["observers", "s"], |record| Cell::seconds(record.cost.observing_s))
+        .num(["solver memory", "kB"], |r| Cell::num(r.cost.solver_bytes as f64 / 1e3, 4))
+        .code("state", |r| r.state.iter().flat_map(|s| s.chars()).take(8).collect::<String>())
+        .table(caption, runs.iter().map(|run| &run.record))
+}
+
+/// `key=value` of what differs from the defaults of the variant, and what is done with it.
+pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
+    let mut words = case::changed(case, spec);
+    match &spec.task {
+        Task::Simulate => {}
+        Task::Bisect(bisect) => words.push(format!("(bisects {})", bisect.setting)),
+        Task::Detect(detect) => {
+            words.push(format!("(smallest detected error of {})", detect.of.words()))
+        }
+    }
+    words.extend(spec.mutation.map(|m| format!("({} × {})", m.of.words(), m.factor)));
+    words.extend(spec.disorder.map(|d| format!("(disorder {} dx, seed {})", d.most, d.seed)));
+    words.join(" ")
+}
+
+fn references_section() -> Section {
+    let row = |name: &str| {
+        let cell = Cell::marked(code(name));
+        let (cell, texts) = match Reference::load(name) {
+            Ok(reference) => {
+                let package = &reference.package;
+                let names: Vec<&str> = package.licenses.iter().map(|l| l.name.as_str()).collect();
+                (cell, [package.title.clone(), reference.graded(), names.join(", ")])
+            }
+            Err(error) => (cell.with(Verdict::Fail), [error.to_string(), "–".into(), "–".into()]),
+        };
+        [vec![cell], texts.map(Cell::text).into()].concat()
+    };
+    let caption = "Reference data, embedded with its provenance and checked by hash.";
+    let columns = ["reference", "what", "grade", "licence"].map(Column::text);
+    let table = Table::new(caption, columns.into());
+    let table = Reference::names().into_iter().fold(table, |table, name| table.row(row(name)));
+    Section::new("references", "References").block(table)
+}

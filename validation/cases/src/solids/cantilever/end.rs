@@ -1,0 +1,159 @@
+//! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
+
+use super::*;
+use base::absent::Absent;
+
+/// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
+const SAMPLES: f64 = 1600.0;
+/// Samples between those of the energy.
+const ENERGY_EVERY: usize = 10;
+/// Fewer points of a path, such as that of another code, do not determine what is read from it.
+pub const LEAST_POINTS: usize = 400;
+
+/// The motion of the end.
+pub struct End {
+    /// Of the bar.
+    pub settings: CantileverSettings,
+    /// When it is sampled next \[s\].
+    pub until: f64,
+    /// t \[s\], displacement of the end along x and y \[m\].
+    pub path: Vec<[f64; 3]>,
+    /// t \[s\], kinetic energy and all energy, less that of the start \[J/m\].
+    pub energies: Vec<[f64; 3]>,
+}
+
+harness::observed! { End: changes(until, path, energies), stays(settings) }
+
+impl End {
+    fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        let all = simulation.particles();
+        let columns = self.settings.columns();
+        let middle = |column: usize| {
+            let rows = (0..self.settings.n).map(|row| all[row * columns + column].position);
+            rows.fold(Vector2::zeros(), |sum, x| sum + x) / self.settings.n as f64
+        };
+        // The line through the last two columns, continued by half a spacing: the end has no curvature.
+        let end = 1.5 * middle(columns - 1) - 0.5 * middle(columns - 2);
+        self.path.push([simulation.time(), end.x - self.settings.length, end.y]);
+        if self.path.len().is_multiple_of(ENERGY_EVERY) {
+            self.energies.push(self.energy(simulation));
+        }
+    }
+
+    /// A row of the energies. That of the weight is 0 at the start, for the bar lies along y = 0.
+    fn energy(&self, simulation: &dyn Stepper<Symmetric>) -> [f64; 3] {
+        let mut found = Energy::of(simulation, &self.settings.material());
+        if simulation.potential().is_none() {
+            let height = |(mass, p): (f64, &Evolved<Symmetric>)| mass * p.position.y;
+            let height = simulation.data().fluid().map(height).fold(0.0, |sum, one| sum + one);
+            found.compression += self.settings.gravity * height;
+        }
+        [simulation.time(), found.kinetic, found.total()]
+    }
+}
+
+impl Watch for End {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        if simulation.time() >= self.until {
+            self.until = simulation.time() + self.settings.end / SAMPLES;
+            self.sample(simulation);
+        }
+    }
+
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        self.energies.push(self.energy(simulation));
+        let most = |k: usize| {
+            self.energies
+                .iter()
+                .map(|row| row[k])
+                .fold(0.0, |a: f64, b| if b.abs() > a.abs() || b.is_nan() { b } else { a })
+        };
+        record.put(ENERGY_CHANGE, most(2) / most(1));
+        let energies =
+            Profile::of_rows(&[("t", "s"), ("kinetic", "J/m"), ("change", "J/m")], &self.energies);
+        record.profiles.insert("energy".into(), energies);
+        let path = Path(std::mem::take(&mut self.path));
+        let columns = [("t", "s"), ("x", "m"), ("y", "m")];
+        record.profiles.insert("end".into(), Profile::of_rows(&columns, &path.0));
+        if path.0.len() < LEAST_POINTS {
+            let why = Absent::NotGiven(format!("{LEAST_POINTS} times, for the path of the end"));
+            let all = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
+            let all = all.chain([PATH_RMS]).chain(OF_METHODS.iter().copied());
+            all.for_each(|metric| record.leave_out(metric, why.clone()));
+            return;
+        }
+        for (metric, value) in path::measure(&path) {
+            record.put_or(metric, value, "the run is too short for it");
+        }
+        let (s, exact) = (&self.settings, elements(&record.variant, &self.settings));
+        // All but the first swing was measured over 4 s.
+        let is_whole = s.end == CantileverSettings::default().end;
+        let (whole, first) = COMPARED.split_at(if is_whole { 0 } else { COMPARED.len() - 1 });
+        let lacks = "the run is too short, or finite elements have no such bar: they have 0.35 m and 0.02 m, \
+                     1.4 MPa, Poisson's ratio 0.4, 1000 kg/m^3, under 2 and 0.2 m/s^2 for 4 s";
+        whole.iter().for_each(|(_, error)| record.leave_out(*error, lacks));
+        let of_path = (PATH_RMS, "harmonic_y");
+        solid::compare(exact.as_ref(), first, of_path, (&path, lacks), record);
+        compare_with_theory(s, record);
+    }
+}
+
+/// Puts the distances of a total Lagrangian bar from one that bends as finite elements would with the
+/// stiffness that the method has by theory.
+fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
+    let [frequency, sag] = [FREQUENCY_ERROR, AVERAGE_Y_ERROR].map(|error| record.value(error));
+    let is_known = record.variant != "seed";
+    let Some((frequency, sag)) = frequency.zip(sag).filter(|_| is_known) else {
+        let lacks = if is_known { "no distance from finite elements" } else { "no theory" };
+        OF_METHODS.iter().for_each(|of| record.leave_out(*of, format!("there is {lacks}")));
+        return;
+    };
+    let stiffness = lagrangian::bending(settings.n, settings.poisson);
+    record.put(BENDING_FREQUENCY_ERROR, (1.0 + frequency) / stiffness.sqrt() - 1.0);
+    record.put(BENDING_SAG_ERROR, (1.0 + sag) * stiffness - 1.0);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solids::solid::Body;
+    use approx::assert_relative_eq;
+    use harness::method::Parts;
+
+    /// The frequency goes with the root of the stiffness, the sag with its inverse.
+    #[test]
+    fn a_bar_of_the_stiffness_of_theory_has_no_distance_from_theory() {
+        let s = CantileverSettings { n: 5, ..CantileverSettings::default() };
+        let stiffness = lagrangian::bending(5, s.poisson);
+        assert!((stiffness - 1.0).abs() > 1e-3, "5 layers have the stiffness of a bar");
+        for (more, frequency, sag) in [(1.0, 0.0, 0.0), (1.21, 0.1, -0.21 / 1.21)] {
+            let mut record =
+                Record::new("cantilever", lagrangian::LAGRANGIAN, serde_json::json!({}), 1);
+            record.put(FREQUENCY_ERROR, (more * stiffness).sqrt() - 1.0);
+            record.put(AVERAGE_Y_ERROR, 1.0 / (more * stiffness) - 1.0);
+            compare_with_theory(&s, &mut record);
+            let value = |metric| record.value(metric).expect("a metric");
+            assert_relative_eq!(value(BENDING_FREQUENCY_ERROR), frequency, epsilon = 1e-12);
+            assert_relative_eq!(value(BENDING_SAG_ERROR), sag, epsilon = 1e-12);
+        }
+    }
+
+    /// Stretched and turned: the end is where the line through the last columns ends.
+    #[test]
+    fn the_end_is_half_a_spacing_beyond_the_last_column() {
+        let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
+        let method = schemes::total::hencky();
+        let (medium, domain) = (solid::medium(&s, &method), Domain::open());
+        let parts = Parts::new(medium, domain, s.particles());
+        let mut simulation =
+            (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");
+        let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
+        lagrangian::displace(&mut *simulation, place);
+        let (path, energies) = (vec![[0.0; 3]], Vec::new());
+        let mut end = End { settings: s, until: 0.0, path, energies };
+        end.sample(&*simulation);
+        let [_, x, y] = end.path[1];
+        assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);
+        assert_relative_eq!(y, -0.2 * 0.35, max_relative = 1e-9);
+    }
+}

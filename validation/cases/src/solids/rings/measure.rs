@@ -1,0 +1,375 @@
+//! What is measured of the rings, sample by sample and at the end.
+
+use maths::geometry::{Bonds, Topology};
+
+use super::*;
+
+/// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
+const SAMPLES: f64 = 800.0;
+const COUNTED_EVERY: usize = 8;
+/// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
+/// nearest one or two of the layers beside it.
+pub const NEIGHBOURS: f64 = 1.2;
+/// Shares of the run at which particles are kept for pictures.
+pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
+
+/// The particles in the frame whose x axis is the line of flight, as the scene orders them.
+fn along_flight(settings: &RingSettings, mut particles: Vec<Solid>) -> Vec<Solid> {
+    if settings.angle != 0.0 {
+        let rotation = settings.to_flight();
+        for p in &mut particles {
+            (p.position, p.velocity) = (rotation * p.position, rotation * p.velocity);
+        }
+    }
+    particles
+}
+
+/// A ring's centre of mass \[m\], its velocity \[m/s\], and its extents along and across the line of flight,
+/// half a spacing beyond the outermost particles \[m\].
+pub fn side(ring: &[Solid], dx: f64) -> [Vector2<f64>; 3] {
+    let (mut mass, mut centre, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
+    for p in ring {
+        mass += p.mass;
+        centre += p.position * p.mass;
+        momentum += p.velocity * p.mass;
+    }
+    let [low, high] = corners(ring.iter().map(|p| p.position));
+    [centre / mass, momentum / mass, high - low + Vector2::repeat(dx)]
+}
+
+/// Where the particles of a ring are.
+fn places(ring: &[Solid]) -> Vec<Vector2<f64>> {
+    ring.iter().map(|p| p.position).collect()
+}
+
+/// Are there two pieces, each with a hole?
+fn is_whole([pieces, holes]: [f64; 2]) -> bool {
+    pieces == 2.0 && holes >= 1.0
+}
+
+/// The ring on the left and the one on the right.
+pub fn halves<T>(particles: &[T]) -> [&[T]; 2] {
+    let (left, right) = particles.split_at(particles.len() / 2);
+    [left, right]
+}
+
+type Solid = Particle<Symmetric>;
+
+/// Watches a run.
+pub struct Series {
+    settings: RingSettings,
+    /// Neighbours of each ring at the start.
+    bonds: [Bonds; 2],
+    next: f64,
+    rows: Vec<[f64; COLUMNS]>,
+}
+
+harness::observed! { Series: changes(next, rows), stays(settings, bonds) }
+
+const COLUMNS: usize = 11;
+const NAMES: [(&str, &str); COLUMNS] = [
+    ("t", "L/c0"),
+    ("x_c", "L"),
+    ("v_c", "c0"),
+    ("width", "L"),
+    ("height", "L"),
+    ("pieces", "1"),
+    ("kinetic", "J/m"),
+    ("compression", "J/m"),
+    ("shear", "J/m"),
+    ("holes", "1"),
+    ("stretch", "dx"),
+];
+
+impl Series {
+    /// A series over a run with this start.
+    pub fn new(settings: &RingSettings, start: &[Solid], energy: Option<Energy>) -> Self {
+        let next = settings.end() / SAMPLES;
+        let start = along_flight(settings, start.to_vec());
+        let bonds = halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
+        let mut this = Self { settings: settings.clone(), bonds, next, rows: Vec::new() };
+        this.sample(0.0, &start, energy);
+        this
+    }
+
+    /// Pieces of both rings, and the fewest holes of one.
+    fn count(&self, particles: &[Solid]) -> [f64; 2] {
+        let least_hole = Topology::least_hole_of_ring(self.settings.inner, self.settings.outer);
+        let found = halves(particles)
+            .map(|ring| Topology::of(&places(ring), self.settings.dx(), least_hole));
+        let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
+        [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
+    }
+
+    /// Takes a sample: the ring on the right, whose centre has x > 0. The energies are those of the particles
+    /// unless the simulation knows them.
+    pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
+        let (c0, dx) = (self.settings.c0(), self.settings.dx());
+        let [left, right] = halves(particles);
+        let [pieces, holes] = match self.rows.last() {
+            Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => [last[5], last[9]],
+            _ => self.count(particles),
+        };
+        let [centre, velocity, extent] = side(right, dx);
+        let Energy { kinetic, compression, shear } =
+            known.unwrap_or_else(|| Energy::of_all(particles, &self.settings.material()));
+        let bonds = self.bonds.iter().zip([left, right]);
+        let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
+        self.rows.push([
+            time * c0,
+            centre.x,
+            velocity.x / c0,
+            extent.x,
+            extent.y,
+            pieces,
+            kinetic,
+            compression,
+            shear,
+            holes,
+            stretch,
+        ]);
+    }
+
+    /// (t \[L/c0\], column number `k`) of every sample.
+    fn points(&self, k: usize) -> Vec<(f64, f64)> {
+        self.rows.iter().map(|row| (row[0], row[k])).collect()
+    }
+
+    /// Metrics of the whole run, and the distances of a variant from finite elements.
+    pub fn put(&self, record: &mut Record) {
+        let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return };
+        let column = |k: usize| self.rows.iter().map(move |row| row[k]);
+        let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
+        let most = |k: usize| column(k).fold(0.0, f64::max);
+        record.put(PIECES_MOST, most(5));
+        // A hole that is narrower than a disc is not seen at the start either.
+        if is_whole([first[5], first[9]]) {
+            record.put(HOLES_LEAST, least(9));
+            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[9]])) {
+                record.put(TORN_AT, torn[0]);
+            }
+        }
+        record.put(STRETCH_MOST, largest(column(10)));
+        record.put(WIDTH_MIN, least(3));
+        record.put(HEIGHT_MAX, most(4));
+        let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
+        let highest = self.rows.iter().map(energy).fold(0.0, f64::max);
+        let speed = self.settings.speed;
+        for (metric, value) in [
+            (ENERGY_LOST, 1.0 - energy(last) / energy(first)),
+            (ENERGY_GAINED, highest / energy(first) - 1.0),
+        ] {
+            let moving = (speed > 0.0).then_some(value);
+            record.put_or(metric, moving, "the rings are at rest at the start");
+        }
+        self.put_contact(last[2] / speed, record);
+        let columns = [1, 2, 3, 4].map(|k| self.points(k));
+        reference::compare(&self.settings, &self.phases(), &columns, record);
+    }
+
+    /// Metrics of contact; `restitution` is that of rings that have parted.
+    fn put_contact(&self, restitution: f64, record: &mut Record) {
+        let phases = self.phases();
+        record.put(PHASES, phases.len() as f64);
+        let parted = phases.last().filter(|last| last.is_over).map(|_| restitution);
+        let never = phases.is_empty();
+        let why = if never { "the rings never touch" } else { "the rings still touch at the end" };
+        record.put_or(RESTITUTION, parted, why);
+        const METRICS: [MetricKey; 3] = [IMPULSE, T_IMPULSE_1, T_IMPULSE_99];
+        for (k, Phase { impulse, times: [early, late], is_over }) in
+            phases.into_iter().enumerate().take(2)
+        {
+            for (metric, value) in METRICS.into_iter().zip([impulse, early, late]) {
+                let why = "the phase lasts until the end of the run";
+                record.put_or(metric.at(phase(k)), is_over.then_some(value), why);
+            }
+        }
+    }
+
+    /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
+    /// than 5 L/c0 bridged, as in `references/rubber_rings`.
+    fn phases(&self) -> Vec<Phase> {
+        let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
+        let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
+        let round_off = ROUND_OFF * self.settings.speed;
+        let least = (TOUCH * forces.iter().copied().fold(0.0, f64::max)).max(round_off);
+        let mut spans: Vec<[usize; 2]> = Vec::new();
+        for k in (0..forces.len()).filter(|&k| forces[k] > least) {
+            match spans.last_mut() {
+                Some([_, end]) if self.rows[k][0] - self.rows[*end][0] < PAUSE => *end = k + 1,
+                _ => spans.push([k, k + 1]),
+            }
+        }
+        spans.into_iter().map(|span| self.phase(span)).collect()
+    }
+
+    fn phase(&self, [start, end]: [usize; 2]) -> Phase {
+        let rows = &self.rows[start..=end];
+        let s = &self.settings;
+        let mass = std::f64::consts::PI * (s.outer * s.outer - s.inner * s.inner);
+        let (first, last) = (rows[0][2], rows[rows.len() - 1][2]);
+        let times = SHARES.map(|share| {
+            let wanted = first + share * (last - first);
+            let crossing = rows.windows(2).find(|w| w[0][2] < wanted && w[1][2] >= wanted);
+            crossing.map_or(f64::NAN, |w| {
+                let part = (wanted - w[0][2]) / (w[1][2] - w[0][2]);
+                w[0][0] + part * (w[1][0] - w[0][0])
+            })
+        });
+        let is_over = end + 1 < self.rows.len();
+        Phase { impulse: mass * (last - first), times, is_over }
+    }
+}
+
+/// Shares of a phase's impulse whose times are kept.
+const SHARES: [f64; 2] = [0.01, 0.99];
+/// Force, over the largest, above which rings touch; pause that ends a phase \[L/c₀\].
+const TOUCH: f64 = 0.01;
+const PAUSE: f64 = 5.0;
+/// Force of round-off, over mass and speed of a ring \[c₀/L\].
+const ROUND_OFF: f64 = 1e-9;
+
+impl Watch for Series {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        if simulation.time() >= self.next {
+            self.next += self.settings.end() / SAMPLES;
+            let particles = along_flight(&self.settings, simulation.particles());
+            self.sample(simulation.time(), &particles, Energy::known(simulation));
+        }
+    }
+
+    /// x, y and the largest principal stress of the ring on the right, for pictures.
+    fn keep(&self, simulation: &dyn Stepper<Symmetric>, stop: usize, record: &mut Record) {
+        let s = &self.settings;
+        let share = (stop + 1) as f64 / s.samples as f64;
+        if !PICTURES.contains(&share) {
+            return;
+        }
+        let all = along_flight(s, simulation.particles());
+        let eos = s.material().eos();
+        let stress = |p: &Solid| {
+            let (m, d) = (0.5 * (p.extra.xx + p.extra.yy), 0.5 * (p.extra.xx - p.extra.yy));
+            m + hypot(d, p.extra.xy) - eos.pressure(p.density)
+        };
+        let [_, right] = halves(&all);
+        let stressed = right.iter().map(|p| (p.position, stress(p)));
+        let name = format!("particles@{share}");
+        pictures::keep(record, &name, "L", ("stress", "Pa"), stressed);
+    }
+
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        if record.status == Status::Completed {
+            let particles = along_flight(&self.settings, simulation.particles());
+            let time = simulation.time();
+            if self.rows.last().is_some_and(|row| row[0] < time * self.settings.c0()) {
+                self.sample(time, &particles, Energy::known(simulation));
+            }
+            self.put(record);
+            let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
+            let of_ring = 0.5 * mass * self.settings.speed().max(f64::MIN_POSITIVE);
+            let momentum = simulate::momentum(&particles);
+            record.put(MOMENTUM, momentum.norm() / of_ring);
+        }
+        record.profiles.insert("series".into(), Profile::of_rows(&NAMES, &self.rows));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solids::rings::RUBBER_RINGS;
+    use harness::case::Case;
+    use harness::context::Context;
+
+    #[test]
+    fn centre_velocity_and_extents_are_those_of_the_ring() {
+        let particles = RingSettings::default().particles();
+        let [left, _] = halves(&particles);
+        let [centre, velocity, extent] = side(left, 0.1);
+        assert!((centre.x + 5.0).abs() < 1e-12 && centre.y.abs() < 1e-12);
+        assert!((extent.x - 8.0).abs() < 1e-3 && (extent.y - 8.0).abs() < 1e-3);
+        assert!((velocity.x - 0.059).abs() < 1e-12);
+    }
+
+    /// A run of made-up places: the rings of the scene, changed.
+    fn watched(change: impl Fn(f64, &mut Particle<Symmetric>)) -> (Record, Vec<(f64, f64)>) {
+        let settings = RingSettings::default();
+        let mut series = Series::new(&settings, &settings.particles(), None);
+        for k in 1..40 {
+            let time = f64::from(k);
+            let mut particles = settings.particles();
+            particles.iter_mut().for_each(|p| change(time, p));
+            series.sample(time, &particles, None);
+        }
+        let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
+        series.put(&mut record);
+        (record, series.points(9))
+    }
+
+    /// Seen from outside at 0.09 to 0.12 c0: a ring opens at its rear pole into a C. It is one piece still.
+    #[test]
+    fn a_ring_that_is_cut_at_its_rear_pole_is_torn() {
+        // From t = 11 on the two halves of the right ring's rear move apart, 0.05 dx each a unit of time.
+        let open = |time: f64, p: &mut Particle<Symmetric>| {
+            let moved = if p.position.x > 5.0 { 0.005 * (time - 11.0).max(0.0) } else { 0.0 };
+            p.position.y += moved * p.position.y.signum();
+        };
+        let (record, holes) = watched(open);
+        assert_eq!(record.value(PIECES_MOST), Some(2.0));
+        assert_eq!(record.value(HOLES_LEAST), Some(0.0));
+        // 1.5 dx apart at t = 16, 1.7 at 18; counted at every eighth sample.
+        assert_eq!(record.value(TORN_AT), Some(24.0));
+        assert!(holes.iter().all(|(t, holes)| *holes == if *t < 24.0 { 1.0 } else { 0.0 }));
+        let stretch = record.value(STRETCH_MOST).unwrap();
+        assert!((stretch - 3.85).abs() < 0.1, "{stretch} dx: 1 + 28 x 0.1");
+    }
+
+    #[test]
+    fn rings_that_move_and_bend_are_whole_and_a_ring_in_two_is_not() {
+        let bend = |time: f64, p: &mut Particle<Symmetric>| {
+            p.position.y *= 1.0 + 0.005 * time;
+            p.position.x *= 1.0 - 0.005 * time;
+        };
+        let (record, _) = watched(bend);
+        assert_eq!((record.value(HOLES_LEAST), record.value(PIECES_MOST)), (Some(1.0), Some(2.0)));
+        assert_eq!(record.value(TORN_AT), None);
+        let stretch = record.value(STRETCH_MOST).unwrap();
+        assert!((1.2..1.45).contains(&stretch), "{stretch} dx: at most 1.2 x 1.195");
+        let split = |time: f64, p: &mut Particle<Symmetric>| {
+            if p.position.x < 0.0 && time > 20.0 {
+                p.position.y += 0.3 * p.position.y.signum();
+            }
+        };
+        let (record, _) = watched(split);
+        assert_eq!((record.value(HOLES_LEAST), record.value(PIECES_MOST)), (Some(0.0), Some(3.0)));
+        assert_eq!(record.value(TORN_AT), Some(24.0));
+    }
+
+    #[test]
+    fn energies_are_those_of_simple_states() {
+        let material = RingSettings::default().material();
+        let mut p = Particle::fluid(Vector2::zeros(), Vector2::new(0.6, 0.8), 1.0, 0.01);
+        let at_rest = Energy::of_all(&[p], &material);
+        assert!((at_rest.kinetic - 0.005).abs() < 1e-15 && at_rest.compression.abs() < 1e-15);
+        // Small compression: K e²/2 an area; pure shear: tau²/(2 mu) an area.
+        (p.density, p.extra.xy) = (1.0 + 1e-4, 1e-4);
+        let strained = Energy::of_all(&[p], &material);
+        assert!((strained.compression / (0.01 * 0.5e-8) - 1.0).abs() < 1e-3);
+        assert!((strained.shear / (0.01 * 1e-8 / (2.0 * 0.22)) - 1.0).abs() < 1e-3);
+    }
+
+    /// The series had no row at t = 0 and its last row twice.
+    #[test]
+    fn the_series_begins_at_the_start_and_has_each_time_once() {
+        // With steps that meet the end and the times of samples, and with steps that do not.
+        for dt in [None, Some(0.125)] {
+            let set = |s: &mut RingSettings| (s.spacing, s.end, s.dt) = (0.5, 5.0, dt);
+            let spec = RUBBER_RINGS.spec("leapfrog", set);
+            let record = RUBBER_RINGS.run(&spec, &Context::default()).expect("a run");
+            let times = record.column("series", "t");
+            assert_eq!((times.first(), times.last()), (Some(&0.0), Some(&5.0)));
+            assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
+            assert_eq!(record.column("series", "x_c")[0], 5.0);
+        }
+    }
+}

@@ -1,0 +1,157 @@
+//! From settings to a scene: spacing, moduli, particles.
+
+use super::*;
+
+/// The most layers that are known to stay whole with corrected gradients at the paper's speed. Those of 20
+/// tear at the inner face (docs/limits.md).
+const MOST_CORRECTED: f64 = 10.0;
+
+impl SharedSettings for RingSettings {
+    fn material(&self) -> Material {
+        let shear = self.shear_modulus * self.bulk_modulus;
+        Material { density: self.rho, bulk: self.bulk_modulus, shear }
+    }
+
+    fn h_over_dx(&self) -> f64 {
+        self.h_over_dx
+    }
+
+    fn given_step(&self) -> [Option<f64>; 2] {
+        [self.dt, Some(self.courant)]
+    }
+}
+
+impl RingSettings {
+    /// Bulk sound speed c₀ \[m/s\].
+    pub fn c0(&self) -> f64 {
+        self.material().sound_speed()
+    }
+
+    /// Layers of particles.
+    fn layers(&self) -> f64 {
+        ((self.outer - self.inner) / self.spacing).round().max(1.0)
+    }
+
+    /// Rotates the line of flight to the x axis.
+    pub fn to_flight(&self) -> Rotation2<f64> {
+        rotation(-self.angle.to_radians())
+    }
+}
+
+impl Body for RingSettings {
+    /// Twice the density or twice the speed of sound is no rubber any more.
+    fn scales(&self) -> Scales {
+        let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
+        let (density, speed) = (self.rho, self.speed * c0);
+        let most = 2.0 * (self.material().p_wave_speed() + speed);
+        Scales {
+            dx,
+            length: 2.0 * self.outer,
+            speed,
+            end: self.end / c0,
+            count: TAU * (self.outer * self.outer - self.inner * self.inner) / (dx * dx),
+            decisive: "end, dt, courant, spacing or outer",
+            meet: true,
+            stops: self.samples,
+            bounds: Limits { density: [0.5 * density, 2.0 * density], speed: most },
+            ..Scales::default()
+        }
+    }
+
+    fn check(&self) -> Result<(), RunError> {
+        let too_much =
+            |what, value, most, setting| Err(RunError::TooMuch { what, value, most, setting });
+        let widest = self.outer - 2.0 * self.spacing;
+        if self.inner > widest {
+            return too_much("the inner radius", self.inner, widest, "inner, outer or spacing");
+        }
+        if self.outer > self.centre {
+            // The rings would overlap before the first step.
+            return too_much("the outer radius", self.outer, self.centre, "outer or centre");
+        }
+        Ok(())
+    }
+
+    fn unstable(&self, method: &Properties) -> Option<RunError> {
+        (method.is_corrected && self.layers() > MOST_CORRECTED).then(|| RunError::TooMuch {
+            what: "the number of layers of rings with corrected gradients",
+            value: self.layers(),
+            most: MOST_CORRECTED,
+            setting: "spacing, or use --allow-unstable",
+        })
+    }
+
+    /// Concentric layers, their numbers multiples of four, so that mass is exact, the edge is smooth, and
+    /// each ring is its own mirror image. The ring on the right is the mirror image of the one on the left,
+    /// in the same order.
+    fn particles(&self) -> Vec<Particle<Symmetric>> {
+        let (dx, v) = (self.dx(), self.speed());
+        let rotation = self.to_flight().inverse();
+        let mut places = Vec::new();
+        for k in 0..((self.outer - self.inner) / dx).round() as usize {
+            let r = self.inner + (k as f64 + 0.5) * dx;
+            let quarter = (TAU * r / (4.0 * dx)).round().max(1.0) as usize;
+            let volume = TAU * r * dx / (4 * quarter) as f64;
+            places.extend((0..4 * quarter).map(|j| (r * quadrant_point(j, quarter), volume)));
+        }
+        let ring = |side: f64| {
+            // On the right: the mirror image, to the last bit.
+            places.iter().map(move |(place, volume)| {
+                let place = Vector2::new(side * (self.centre + place.x), place.y);
+                let velocity = Vector2::new(-side * v, 0.0);
+                Particle::fluid(rotation * place, rotation * velocity, self.rho, *volume)
+            })
+        };
+        ring(-1.0).chain(ring(1.0)).collect()
+    }
+
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch> {
+        Box::new(Series::new(self, start, energy))
+    }
+}
+
+/// The unit vector number j of 4 `quarter`, which begin half a step above the x axis; the four
+/// quadrants are mirror images of the first to the last bit.
+fn quadrant_point(j: usize, quarter: usize) -> Vector2<f64> {
+    let (quadrant, k) = (j / quarter, j % quarter);
+    let k = if quadrant % 2 == 0 { k } else { quarter - 1 - k };
+    let (sin, cos) = sin_cos(TAU * (k as f64 + 0.5) / (4 * quarter) as f64);
+    let x = if quadrant == 0 || quadrant == 3 { cos } else { -cos };
+    Vector2::new(x, if quadrant < 2 { sin } else { -sin })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solids::{rings::RUBBER_RINGS, solid};
+
+    #[test]
+    fn mass_is_exact_and_rings_are_mirror_images() {
+        let rings = RingSettings::default();
+        let particles = rings.particles();
+        let mass: f64 = particles.iter().map(|p| p.mass).sum();
+        assert!((mass / (TAU * 7.0) - 1.0).abs() < 1e-12, "{mass}");
+        let (left, right) = particles.split_at(particles.len() / 2);
+        for (l, r) in left.iter().zip(right) {
+            assert_eq!((l.position.x, l.position.y), (-r.position.x, r.position.y));
+            assert_eq!((l.velocity.x, l.mass), (-r.velocity.x, r.mass));
+        }
+        let mirrored = |p: &Particle<Symmetric>| {
+            left.iter().any(|q| q.position == Vector2::new(p.position.x, -p.position.y))
+        };
+        assert!(left.iter().all(mirrored));
+        assert_eq!(rings.dx(), 0.1);
+    }
+
+    #[test]
+    fn settings_that_make_no_rings_are_refused() {
+        let refused = |set| {
+            let error = solid::tests::refused(&RUBBER_RINGS, "leapfrog", set);
+            error.unwrap_or_else(|| panic!("{set} is not refused")).to_string()
+        };
+        assert!(refused("centre=3.9").contains("outer radius"));
+        assert!(refused("inner=3.9").contains("inner radius"));
+        assert!(refused("dt=1").contains("theoretical limit"));
+        assert!(refused("dt=1e-12").contains("time steps"));
+    }
+}

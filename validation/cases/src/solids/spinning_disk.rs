@@ -1,0 +1,412 @@
+//! A free elastic disk that spins: is a rotation a rotation to the method?
+
+use base::{gate::*, record::*};
+use harness::{case::*, composed::*, declare::*, simulate, table::*};
+use maths::metrics::history;
+use nalgebra::Vector2;
+use solver::*;
+use std::f64::consts::{PI, TAU};
+
+use super::{
+    causes::FREE_FACES,
+    solid::{self, *},
+};
+crate::solid_settings! {
+    /// Settings of a disk cut from a square lattice.
+    pub struct DiskSettings of [2e6, 0.3975] {
+        /// spacings along the radius
+        n: usize ["-"] in 3..=1000 = 8,
+        /// radius
+        radius: f64 ["m"] in 1e-9..=1e6 = 0.04,
+        /// speed of the rim
+        speed: f64 ["c0"] in 1e-6..=0.5 = 0.05,
+        /// end of the run, of a rigid disk
+        end: f64 ["revolutions"] in 1e-4..=1e4 = 1.0,
+    }
+}
+
+/// A spinning disk.
+pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
+    name: "spinning_disk",
+    problem: "A free elastic disk spins",
+    recommended: Recommended {
+        variant: LAGRANGIAN,
+        because: "it keeps its angular momentum to round-off, where the paper's disk loses all of its spin",
+        papers: Some("seed"),
+    },
+    about: "A free elastic disk begins to spin without stress. Angular momentum must stay, and stress must \
+            stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
+            for strain.",
+    variants: || solid::variants(schemes::solid::free()).all,
+    declaration,
+    plan: |tier| table(tier).plan(),
+};
+
+base::metrics! {
+    all ALL;
+    INTERIOR_STRAIN = "interior_strain" ["-"]
+        "largest ((S_xx - S_yy)^2/2 + 2 S_xy^2)^(1/2)/(2 mu dt) over the spin after one step, of particles \
+         farther than 4 h + dx from the rim";
+    RIM_STRAIN = "rim_strain" ["-"] "root mean square of the same for the other particles";
+    ANGULAR_MOMENTUM_DRIFT = "angular_momentum_drift" ["-"]
+        "|angular momentum at the end over that at the start - 1|, a revolution";
+    ANGULAR_MOMENTUM_TENTH = "angular_momentum_tenth" ["-"]
+        "angular momentum after a tenth of a revolution over that at the start, minus 1";
+    LARGEST_STRESS = "largest_stress" ["-"] "largest (mean S:S)^(1/2) over rho U^2";
+    ENERGY_DRIFT = "energy_drift" ["-"] "change of energy, a revolution";
+    MOMENTUM_ERROR = "momentum_error" ["-"] "|sum m v|/(sum m times the speed of the rim)";
+}
+
+/// Samples of the series.
+const SAMPLES: f64 = 200.0;
+/// When the angular momentum is looked at first, of a revolution.
+const TENTH: f64 = 0.1;
+
+impl Body for DiskSettings {
+    fn scales(&self) -> Scales {
+        let speed = self.speed * self.material().sound_speed();
+        Scales {
+            dx: self.radius / self.n as f64,
+            length: 2.0 * self.radius,
+            speed,
+            end: self.end * TAU * self.radius / speed,
+            count: PI * (self.n as f64).powi(2),
+            decisive: "end, dt or n",
+            ..Scales::default()
+        }
+    }
+
+    /// Around the origin, without stress.
+    fn particles(&self) -> Vec<Particle<Symmetric>> {
+        let (dx, side) = (self.dx(), 2 * self.n + 1);
+        let (spin, density) = (self.speed() / self.radius, self.material().density);
+        solver::lattice(Vector2::repeat(-self.radius), dx, side, side)
+            .filter(|x| x.norm() <= self.radius * (1.0 + 1e-9))
+            .map(|x| Particle::fluid(x, Vector2::new(-x.y, x.x) * spin, density, dx * dx))
+            .collect()
+    }
+
+    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Box<dyn Watch> {
+        Box::new(History::new(self, start))
+    }
+}
+
+/// What happens to the disk through time.
+pub struct History {
+    settings: DiskSettings,
+    /// \[kg/m\].
+    mass: f64,
+    until: f64,
+    /// t \[s\], angular momentum, energy, mean square of the deviator.
+    series: Vec<[f64; 4]>,
+    /// Shear squared after the first step: the largest inside, the mean in the rim \[Pa²\]; and the
+    /// step \[s\].
+    first: Option<([f64; 2], f64)>,
+}
+
+harness::observed! { History: changes(until, series, first), stays(settings, mass) }
+
+impl History {
+    fn new(s: &DiskSettings, start: &[Particle<Symmetric>]) -> Self {
+        let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
+        let energy = Energy::of_all(start, &s.material()).total();
+        let (mass, until) = (start.iter().map(|p| p.mass).sum(), s.end() / SAMPLES);
+        let series = vec![[0.0, spin, energy, 0.0]];
+        Self { settings: s.clone(), mass, until, series, first: None }
+    }
+
+    fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        let (mut mass, mut stress) = (0.0, 0.0);
+        for (m, p) in simulation.data().fluid() {
+            mass += m;
+            stress += m * norm_squared(&p.extra);
+        }
+        let energy = Energy::of(simulation, &self.settings.material()).total();
+        let spin = angular_momentum(simulation);
+        // A sample after the last step, when the velocities of a leapfrog lag, gives way to that of the end.
+        self.series.pop_if(|row| row[0] == simulation.time());
+        self.series.push([simulation.time(), spin, energy, stress / mass]);
+    }
+}
+
+/// The square of the shear in the plane, the largest inside of this radius and the mean outside
+/// \[Pa²\]. A step along tangents dilates a rotation by (W dt)²/2, which is no shear.
+fn mistaken(simulation: &dyn Stepper<Symmetric>, radius: f64) -> [f64; 2] {
+    let (mut inside, mut rim, mut count) = (0.0_f64, 0.0, 0.0);
+    for (_, p) in simulation.data().fluid() {
+        let Symmetric { xx, yy, xy } = p.extra;
+        let square = 0.5 * (xx - yy) * (xx - yy) + 2.0 * xy * xy;
+        if p.position.norm() < radius {
+            inside = inside.max(square);
+        } else {
+            (rim, count) = (rim + square, count + 1.0);
+        }
+    }
+    [inside, rim / count]
+}
+
+impl Watch for History {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+        let s = &self.settings;
+        if self.first.is_none() {
+            // One support for the gradient, one for the neighbours that XSPH has moved before it.
+            let interior = s.radius - 4.0 * (s.h_over_dx * s.dx()) - s.dx();
+            self.first = Some((mistaken(simulation, interior), simulation.dt()));
+        }
+        if simulation.time() >= self.until {
+            self.until += s.end() / SAMPLES;
+            self.sample(simulation);
+        }
+    }
+
+    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+        self.sample(simulation);
+        let (material, speed) = (self.settings.material(), self.settings.speed());
+        let scale = material.density * speed * speed;
+        metrics(&self.series, self.settings.end, scale, record);
+        let time = TENTH / self.settings.end * self.settings.end();
+        let spin = || momentum_at(&self.series, time) / self.series[0][1] - 1.0;
+        let tenth = (self.settings.end > TENTH).then(spin);
+        let short = "the run is not longer than a tenth of a revolution";
+        record.put_or(ANGULAR_MOMENTUM_TENTH, tenth, short);
+        let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
+        let scale = 2.0 * material.shear * speed / self.settings.radius;
+        record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
+        record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
+        let momentum = simulate::momentum(&simulation.particles()).norm();
+        record.put(MOMENTUM_ERROR, momentum / (self.mass * speed));
+    }
+}
+
+/// Angular momentum at a time \[s\], between two samples of the series; NaN outside of it.
+fn momentum_at(series: &[[f64; 4]], time: f64) -> f64 {
+    let spins: Vec<(f64, f64)> = series.iter().map(|row| (row[0], row[1])).collect();
+    history::differences(&spins, &[(time, 0.0)]).map_or(f64::NAN, |found| found[0])
+}
+
+fn metrics(series: &[[f64; 4]], revolutions: f64, scale: f64, record: &mut Record) {
+    let [first, last] = [series[0], series[series.len() - 1]];
+    let drift = (last[1] / first[1] - 1.0).abs() / revolutions;
+    record.put(ANGULAR_MOMENTUM_DRIFT, drift);
+    let largest = series.iter().map(|row| row[3]).fold(0.0, f64::max).sqrt();
+    record.put(LARGEST_STRESS, largest / scale);
+    record.put(ENERGY_DRIFT, (last[2] / first[2] - 1.0) / revolutions);
+    let columns = [
+        ("t", "s"),
+        ("angular momentum", "of the start"),
+        ("energy", "of the start"),
+        ("stress", "rho U^2"),
+    ];
+    let row =
+        |row: &[f64; 4]| [row[0], row[1] / first[1], row[2] / first[2], row[3].sqrt() / scale];
+    let profile = Profile::of_rows(&columns, &series.iter().map(row).collect::<Vec<_>>());
+    record.profiles.insert("spin".into(), profile);
+}
+
+/// What a run is for.
+#[derive(Clone, Copy, PartialEq)]
+enum For {
+    /// How fast the stress in the rim brakes the disk.
+    Braked,
+    /// Gradients that are exact for linear fields, and forces that derive from an energy, keep it spinning.
+    Kept,
+    /// The order alone.
+    Order,
+    /// Whether the time step matters: a tenth of a revolution at Courant numbers.
+    Steps,
+}
+
+/// Every run.
+fn table(tier: Tier) -> Table<DiskSettings, For> {
+    let spacings = |s: &mut DiskSettings, n| s.n = n;
+    let mut table = Table::new(&SPINNING_DISK, tier);
+    table.over(For::Braked, &["seed", "bare"], [&[8], &[8]], spacings);
+    table.over(For::Order, &["seed"], [&[4], &[4, 16]], spacings);
+    table.over(For::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
+    table.over(For::Kept, &[LAGRANGIAN], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
+    table.over(For::Steps, &["bare"], [&[0.4, 0.1, 0.8], &[0.4, 0.1, 0.8]], |s, courant| {
+        (s.n, s.end, s.courant) = (8, 0.1, Some(courant));
+    });
+    table.judge(gates);
+    table
+}
+
+/// How fast a disk is braked at first.
+const BRAKED: &str = "The bound: disks of 4 spacings lose 1.9 % of their angular momentum in a tenth of a \
+    revolution without viscosity and 13 % with it, and the loss falls at least as fast as the width of the \
+    rim.";
+
+/// How far the angular momentum can be from what it was.
+const REVERSED: &str = "The disk can spring back. The bound: the square of the angular momentum is at most \
+    twice the moment of inertia times the energy, which grows by at most 5 %.";
+
+/// How large the stress can become.
+const ALL_SHEAR: &str = "The stress grows as long as there is kinetic energy to feed it. The bound: all of \
+    it, rho U^2/4 per area, and 5 % more, stored as energy of shear, S:S/(4 mu).";
+
+/// Those of all disks, and those of what keeps spinning or does not.
+fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
+    if matches!(row.group, For::Order | For::Steps) {
+        return Vec::new();
+    }
+    let (s, variant) = (&row.settings, row.variant);
+    let run = format!("{variant}.{}", s.n);
+    let gate = |metric, bound, evidence, because| {
+        SPINNING_DISK.gate(&run, metric, bound, evidence, because)
+    };
+    let law = Evidence::Invariant;
+    let opposite =
+        "Forces of pairs are equal and opposite, central or not, so only round-off is left.";
+    let no_strain = "Where gradients are exact for linear fields, a rotation has no strain. What is left is \
+                     round-off, divided by the angle of one step, 1e-3 to 1e-2 rad.";
+    let noticed = "A free body keeps its angular momentum. A change of 1 % per revolution, or of 0.1 % in a \
+                   tenth of it, would not be noticed in colliding rings. Forces that derive from an energy \
+                   have no torque but round-off.";
+    let stressed = "A disk that spins steadily in plane strain has a root-mean-square deviatoric stress of \
+                    about 0.1 rho U^2. After a start without stress it swings to twice that; twice that is \
+                    allowed.";
+    let is_braked = row.group == For::Braked;
+    let [tenth, drift] = if is_braked { [1e-3, 1e-2] } else { [1e-11; 2] };
+    let tenth = gate(ANGULAR_MOMENTUM_TENTH, Bound::Within(-tenth, tenth), law, noticed);
+    let drift = gate(ANGULAR_MOMENTUM_DRIFT, Bound::Below(drift), law, noticed);
+    let stress = gate(LARGEST_STRESS, Bound::Below(0.4), Evidence::Theory, stressed);
+    let mut gates = vec![
+        gate(MOMENTUM_ERROR, Bound::Below(1e-12), law, opposite),
+        gate(INTERIOR_STRAIN, Bound::Below(1e-10), law, no_strain),
+    ];
+    if is_braked {
+        let first = -if variant == "bare" { 0.08 } else { 0.53 } / s.n as f64;
+        gates.extend([
+            tenth.with_limitation(Bound::Within(first, 0.001), BRAKED, &FREE_FACES).fitted(),
+            drift.with_limitation(Bound::Below(2.1), REVERSED, &FREE_FACES),
+            stress.with_limitation(Bound::Below(9.6), ALL_SHEAR, &FREE_FACES),
+        ]);
+        return gates;
+    }
+    let energy = "The forces derive from the stored energy; the leapfrog keeps it within (omega dt)^2/8 of \
+                  the share of the energy that is in waves, about 1e-3.";
+    let rim = gate(RIM_STRAIN, Bound::Below(1e-10), law, no_strain);
+    let energy = gate(ENERGY_DRIFT, Bound::Within(-1e-4, 1e-4), Evidence::Theory, energy);
+    gates.extend([tenth, drift, rim, stress, energy]);
+    gates
+}
+
+fn declaration(tier: Tier) -> Declaration {
+    let table = table(tier);
+    let error = ANGULAR_MOMENTUM_DRIFT;
+    let level = |s: &DiskSettings| (1.0 / s.n as f64, Resolution::new(s.n, "n = {}"));
+    let ladder = |variant| table.ladder(&[For::Braked, For::Order], variant, level);
+    let accuracy = Accuracy {
+        about:
+            "A free disk, rim at 0.05 c0, makes one revolution; exactly, angular momentum stays."
+                .into(),
+        spacing: "dx/R [-]",
+        slope: None,
+        ladders: ["seed", "bare"].map(ladder).into(),
+        ..Accuracy::new("spinning-disk", error, "change of angular momentum a revolution [-]")
+    };
+    let changes = ["none", "dt/4", "2 dt"].into_iter().zip(table.specs(For::Steps));
+    let changes = changes.map(|(what, spec)| Change::new(what, "time", spec)).collect();
+    let budgets = Budgets {
+        about: "A free disk, rim at 0.05 c0, makes a tenth of a revolution.".into(),
+        of: vec![changes],
+    };
+    let stepwise = &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS];
+    let posed = Posed::new("No force acts on the rim.", &[ALL]);
+    Declaration { posed, accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use harness::{
+        case::{Case, RunError},
+        context::Context,
+        method::Parts,
+    };
+
+    /// c0 is 57.02 m/s, so 0.05 c0 is 2.851 m/s.
+    #[test]
+    fn the_disk_spins_with_the_speed_of_its_rim() {
+        let s = DiskSettings::default();
+        let particles = s.particles();
+        let rim =
+            particles.iter().find(|p| p.position.x == s.radius).expect("a particle at the rim");
+        let [x, y] = [rim.velocity.x, rim.velocity.y];
+        assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
+        let History { mass, series, .. } = History::new(&s, &particles);
+        let row = series[0];
+        let spin = 2.851 / 0.04;
+        let inertia = mass * 0.5 * 0.04 * 0.04;
+        assert!((row[1] / (inertia * spin) - 1.0).abs() < 0.05, "R^2/2 in the mean");
+        assert!((row[2] / (0.5 * row[1] * spin) - 1.0).abs() < 2e-3);
+        assert!((s.end() / (TAU * 0.04 / 2.851) - 1.0).abs() < 1e-3);
+    }
+
+    /// Shear 2 inside, where one particle has 5, and 3 in the rim.
+    #[test]
+    fn the_strain_of_the_rim_is_that_of_its_particles() {
+        let s = DiskSettings { n: 4, ..DiskSettings::default() };
+        let mut particles = s.particles();
+        for p in &mut particles {
+            let shear = if p.position.norm() < 0.03 { 2.0 } else { 3.0 };
+            p.extra.xy = shear * 0.5_f64.sqrt();
+        }
+        let centre = particles
+            .iter_mut()
+            .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
+        centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
+        let method = schemes::solid::bare();
+        let parts = Parts::new(solid::medium(&s, &method), Domain::open(), particles);
+        let simulation = (method.build)(parts).expect("a scene");
+        let [inside, rim] = mistaken(&*simulation, 0.03);
+        assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");
+    }
+
+    /// A disk that stopped passed: its angular momentum changed by less than 2.2 a revolution.
+    #[test]
+    fn a_disk_that_stops_fails() {
+        let rows = |left: f64| -> Vec<[f64; 4]> {
+            let row = |k: i32| {
+                let share = 0.01 * f64::from(k);
+                [2.0 * share, 3.0 * (1.0 - (1.0 - left) * share), 5.0, 4.0 * share]
+            };
+            (0..=100).map(row).collect()
+        };
+        let mut record = Record::new("spinning_disk", "made-up", serde_json::Value::Null, 1);
+        metrics(&rows(0.2), 0.5, 10.0, &mut record);
+        let metric = |name| record.value(name).expect("measured");
+        assert!((metric(ANGULAR_MOMENTUM_DRIFT) - 1.6).abs() < 1e-12, "0.8 in half a revolution");
+        assert!((metric(LARGEST_STRESS) - 0.2).abs() < 1e-12);
+        assert!((momentum_at(&rows(0.2), 0.405) / 3.0 - (1.0 - 0.8 * 0.2025)).abs() < 1e-12);
+        let stopped = [[0.0, 3.0, 0.0, 0.0], [0.01, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0]];
+        let change = momentum_at(&stopped, 0.2) / 3.0 - 1.0;
+        let fails = |gate: &Gate| gate.judge(Some(change)).verdict.is_failure();
+        for planned in table(Tier::Full).plan().iter().filter(|planned| !planned.gates.is_empty()) {
+            let name = String::from(ANGULAR_MOMENTUM_TENTH);
+            let gates = planned.gates.iter().filter(|gate| gate.metric == name);
+            assert_eq!(gates.filter(|gate| fails(gate)).count(), 1);
+        }
+    }
+
+    #[test]
+    fn a_rotation_is_no_strain_where_no_neighbour_is_missing() {
+        for variant in ["bare", "seed"] {
+            let spec = SPINNING_DISK.spec(variant, |s| (s.end, s.n) = (0.002, 10));
+            let record = SPINNING_DISK.run(&spec, &Context::default()).expect("a run");
+            let metric = |name| record.value(name).expect("measured");
+            assert!(metric(INTERIOR_STRAIN) < 1e-10, "{}", metric(INTERIOR_STRAIN));
+            assert!(metric(RIM_STRAIN) > 1e-3, "{}", metric(RIM_STRAIN));
+            assert!(metric(MOMENTUM_ERROR) < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_disk_that_makes_no_sense_is_refused() {
+        let refused = |set| solid::tests::refused(&SPINNING_DISK, "seed", set);
+        assert!(matches!(refused("n=2"), Some(RunError::Setting(_))));
+        assert!(matches!(refused("speed=0.9"), Some(RunError::Setting(_))));
+        assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
+        assert!(matches!(refused("dt=1e-15"), Some(RunError::TooLong { .. })));
+    }
+}

@@ -1,0 +1,105 @@
+//! Which mechanism limits the time step of each variant, and what it costs that the others are slower.
+
+use harness::{
+    case::{self, Case, Rules, RunError},
+    columns::Columns,
+    limits::Mechanism,
+    suite::{CaseResults, Suite},
+};
+use report::{Block, Cell, Section, Table};
+
+/// A variant at its default settings.
+pub struct Row {
+    /// Name of the case.
+    pub case: &'static str,
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// What its rules choose.
+    pub rules: Rules,
+}
+
+impl Row {
+    /// The variants of a case whose rules state a step before the run.
+    ///
+    /// # Errors
+    /// If the default settings of a variant are refused.
+    pub fn of(case: &dyn Case) -> Result<Vec<Self>, RunError> {
+        let row = |variant: case::Variant| {
+            let rules = case.rules(&case::spec(case, variant.name, &[])?);
+            Ok(Self { case: case.name(), variant: variant.name, rules: rules? })
+        };
+        let all = case.variants().into_iter().map(row);
+        all.filter(|row| !matches!(row, Err(RunError::NoRules(_)))).collect()
+    }
+
+    /// Steps of the run.
+    pub fn steps(&self) -> f64 {
+        self.rules.end / self.rules.dt()
+    }
+
+    /// The limit of the slowest mechanism over that of the stiffest.
+    pub fn stiffness(&self) -> f64 {
+        let Rules { limits, end, .. } = &self.rules;
+        limits.slowest(*end) / limits.alone(limits.binding())
+    }
+
+    /// Steps of the run over those that the slowest mechanism alone would need.
+    pub fn cost(&self) -> f64 {
+        self.rules.limits.slowest(self.rules.end) / self.rules.dt()
+    }
+}
+
+/// What the columns of [`table`] mean.
+pub const READING: &str = "\
+    Limits of the time step at default settings, each over the step that is taken: below 1 the \
+    mechanism would forbid the step by itself. Limits of waves, viscosity, artificial viscosity and \
+    density diffusion are 2 over the largest rate on the lattice at rest; with the predictor-corrector, \
+    sound needs damping as well. Motion is the time h/V, body force (h/F)^(1/2), contact the time in \
+    which bodies approach each other by h. *Together* is the limit of all waves, beyond which a step is \
+    refused; for particles that move at most 0.8 of it is advised. *Bound by* names the stiffest \
+    mechanism; super-time-stepping takes viscosity out of the contest. The slowest mechanism is the \
+    slowest of the problem (waves, viscosity, motion, force, contact) that acts within the run, else the \
+    run itself. *Slowest/stiffest* is the ratio of their limits, *steps/slowest* the number of steps \
+    over that which the slowest alone would need. *Sweeps* are the pair sweeps of the run, which count \
+    the stages of super-time-stepping.";
+
+/// The table of these rows.
+pub fn table(rows: &[Row]) -> Table {
+    let columns = Columns::<Row>::default()
+        .code("variant", |row| format!("{} {}", row.case, row.variant))
+        .num(["step", "s"], |row| Cell::sci(row.rules.dt(), 3))
+        .text("set by", |row| {
+            let step = row.rules.step;
+            let number =
+                if step.number == 1.0 { String::new() } else { report::sig(step.number, 3) };
+            format!("{number} {}", step.by).trim_start().to_string()
+        });
+    let limit = |value: f64| Cell::num(value, 3);
+    let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, mechanism| {
+        // Infinite if the scene lacks it.
+        let headroom = move |Row { rules, .. }: &Row| rules.limits.alone(mechanism) / rules.dt();
+        columns.of([mechanism.name(), ""], headroom, limit)
+    });
+    mechanisms
+        .of(["together", ""], |row| row.rules.dt_limit() / row.rules.dt(), limit)
+        .text("bound by", |row| row.rules.limits.binding().name())
+        .num(["slowest/stiffest", ""], |row| Cell::num(row.stiffness(), 3))
+        .num(["steps", "1"], |row| Cell::num(row.steps(), 3))
+        .num(["steps/slowest", ""], |row| Cell::num(row.cost(), 3))
+        .num(["sweeps", "1"], |row| Cell::num(row.steps() * row.rules.sweeps(), 3))
+        .table("What limits the time step: each limit over the step that is taken.", rows)
+}
+
+/// The table of all cases.
+pub fn section(suite: &Suite) -> Section {
+    let of_case = |results: &CaseResults| Row::of(results.case).unwrap_or_default();
+    let rows: Vec<Row> = suite.cases.iter().flat_map(of_case).collect();
+    let summary = format!("The limits of {} variants", rows.len());
+    let note = "`touchstone stability --theory` prints the table without any run. Each case compares the \
+                longest stable step by bisection with *together*; on lattices at rest the two agree within \
+                3 %, as gates of the case `resting_box` demand.";
+    Section::new("stiffness", "What limits the time step").prose(READING).block(Block::Details {
+        summary,
+        blocks: vec![table(&rows).into(), Block::Prose(vec![note.into()])],
+    })
+}

@@ -1,0 +1,353 @@
+//! What the studies that every case has are made of: the front of the column of Martin & Moyce over
+//! resolutions, what its error is made of, the longest stable time steps, and the errors of constants that
+//! the gates must detect.
+
+use base::reference::Reference;
+use report::{ColourMap, sig};
+use serde_json::Value;
+
+use super::{run::COSTLY, *};
+
+/// A run that ended, with the energy that it began with.
+pub fn is_stable(record: &Record) -> bool {
+    let is_below = |metric, most: f64| record.value(metric).is_some_and(|value| value < most);
+    record.status == Status::Completed && is_below(ENERGY_GAP, 0.02) && is_below(MACH, 0.5)
+}
+
+/// The experiment is the same at any spacing, and its distance from the model does not fall with it.
+const SEALED: Draws = Draws {
+    variants: &["modern"],
+    resolution: ("n", [14.0, 40.0]),
+    order: 0.0,
+    metrics: &["front_rms_shifted", "height_rms_shifted"],
+    set: &[],
+    others: &[],
+    free: &[],
+};
+
+/// All of it.
+pub fn declaration(tier: Tier) -> Declaration {
+    let accuracy = accuracy(tier);
+    let comparisons = comparisons(tier);
+    let boundary = "Water slips along floor and walls without friction, and nothing passes them below their \
+                    rim. The surface is free: no pressure acts on it. At the start the water is at rest; no \
+                    wall holds it on its right.";
+    let posed = Posed { metrics: metrics::every(), ..Posed::new(boundary, &[]) };
+    Declaration {
+        posed,
+        card: Some(card(&accuracy)),
+        ensembles: ensembles::ensembles(tier),
+        comparisons,
+        curves: curves::curves(tier),
+        pictures: vec![picture(tier)],
+        budgets: budgets(tier, &accuracy),
+        accuracy: vec![accuracy, in_the_tank(tier)],
+        limits: limits(tier),
+        is_stable: Some(is_stable),
+        sensitivity: Some(sensitivity(tier)),
+        costly: COSTLY,
+        curve: Some(front()),
+        sealed: Some(SEALED),
+        ..Declaration::default()
+    }
+}
+
+/// What the report says first of the case: the front against volume of fluid, and both distances from the
+/// experiment.
+fn card(accuracy: &Accuracy) -> Card {
+    Card {
+        title: "Dam break",
+        picture: "dam-break-martin-moyce",
+        metric: FRONT_AWAY.at(2),
+        stated: |settings| {
+            let n = &settings["n"];
+            let (name, uncertainty, unit) = match scene(settings) {
+                Some(Scene::MartinMoyce) => {
+                    let name = format!("front at T = 2 in the tank of Martin & Moyce, a/dx = {n}");
+                    (name, 2.0 * vof("martin_moyce", "front_at_1")[1], "a")
+                }
+                Some(Scene::Lobovsky) => {
+                    let name =
+                        format!("front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}");
+                    (name, vof("lobovsky", "front_at_2")[1], "H")
+                }
+                None => (format!("front, dx a part of 1/{n} of the column"), f64::NAN, "a"),
+            };
+            let uncertainty = Some(uncertainty).filter(|u| u.is_finite());
+            Stated { name, against: "volume of fluid", uncertainty, unit }
+        },
+        beside: Some(against_the_experiment),
+        runs: accuracy.finest(&[DAM_BREAK.recommended.variant, "seed"]),
+        breaks: Breaks {
+            setting: "n",
+            words: ["", " spacings across the column"],
+            has_broken: |record| Some(record.value(MACH).is_some_and(|mach| mach >= 0.5)),
+            sign: "water is faster than half of the sound speed",
+        },
+    }
+}
+
+/// The experiment whose scene the settings of a record are.
+fn scene(settings: &Value) -> Option<Scene> {
+    base::settings::of_json::<DamSettings>(settings).ok()?.scene()
+}
+
+/// The distance of the front from that of the experiment whose tank the settings are.
+fn against_the_experiment(record: &Record) -> Option<String> {
+    let (experiment, spread, unit) = match scene(&record.settings)? {
+        Scene::MartinMoyce => ("Martin & Moyce", FRONT_SPREAD, "a"),
+        Scene::Lobovsky => ("Lobovsky et al.", TANK_FRONT_SPREAD, "H"),
+    };
+    let number = |value| format!("{}\u{a0}{unit}", sig(value, 2));
+    let [released, shifted, shift] =
+        [FRONT.rms, FRONT.rms_shifted, FRONT.shift].map(|of| record.value(of));
+    Some(format!(
+        "front against the experiment of {experiment} (± {}), rms: {} as released, {} after the best shift \
+         of its clock, by {}",
+        number(spread),
+        number(released?),
+        number(shifted?),
+        sig(shift?, 2)
+    ))
+}
+
+/// The finest run in the tank, while the jet is at the far wall.
+fn picture(tier: Tier) -> Picture {
+    let caption = "Water of variant `modern` in the tank of Lobovsky et al. when its jet has risen at the \
+                   far wall, coloured by pressure; colours end at 0 and 1 ρ g H.";
+    let texts = ["dam-break-picture", "Picture of the tank", caption];
+    let colours = ("p [ρ g H]", ColourMap::Sequential);
+    let picture = plan::table(tier).picture(texts, colours, [560.0, 230.0], |row| {
+        let DamSettings { n, end, .. } = row.settings;
+        let title = format!("time {} √(H/g), H/dx = {n}", sig(run::PICTURE * end, 3));
+        let panel = row.panel(title, 1.0 / n as f64);
+        vec![PicturePanel { profile: run::PICTURED.into(), ..panel }]
+    });
+    // A few drops that meet have many times the pressure of the water.
+    Picture { range: Some([0.0, 1.0]), ..picture }
+}
+
+/// The front over time: the column, moved with it, stands for it.
+fn front() -> Curve {
+    Curve {
+        columns: &[("front", "m")],
+        about: "front is the x of the foremost water below H/4, from the back wall: of particles that of the \
+                foremost one plus what it lacks of the width of the column at the start, which is dx/2",
+        least: 0,
+        rows: |_| 1,
+        place: |settings, at, starts| {
+            let width = settings["width"].as_f64().unwrap_or(f64::NAN);
+            let moved = Vector2::new(at[0][0] - width, 0.0);
+            starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
+        },
+        metrics: vec![Z, FRONT_AWAY, FRONT_BACK, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
+        coarsen: None,
+        shown: ("series", &["t", "front"]),
+    }
+}
+
+/// `modern` as a method, against volume of fluid, and its model, against both experiments. The tank has a
+/// ladder in the full tier alone.
+fn comparisons(tier: Tier) -> Vec<Comparison> {
+    // What is compared, its metric, and u_D as a method.
+    let column = [
+        ("front at T = 2 [a]", FRONT_AWAY.at(2), 2.0 * vof("martin_moyce", "front_at_1")[1]),
+        ("residual height, rms [H]", HEIGHT_AWAY.into(), vof("martin_moyce", "height_at_1.65")[1]),
+    ];
+    let measured_column = [
+        ("front after its best shift, rms [a]", FRONT.rms_shifted.into(), FRONT_SPREAD),
+        ("residual height after its best shift, rms [H]", HEIGHT.rms_shifted.into(), 1.0 / 18.0),
+    ];
+    let mut all = compared(tier, Group::Ladder, 0.005 / 2.25, &column, &measured_column);
+    if tier == Tier::Full {
+        let mut tank = vec![
+            ("tank: front at t = 2 [H]", FRONT_AWAY.at(2), vof("lobovsky", "front_at_2")[1]),
+            ("tank: level at H4, rms [H]", LEVEL_AWAY[3].into(), vof("lobovsky", "H4_at_5")[1]),
+        ];
+        let mut measured_tank = vec![
+            (
+                "tank: front after its best shift, rms [H]",
+                FRONT.rms_shifted.into(),
+                TANK_FRONT_SPREAD,
+            ),
+            (
+                "tank: levels after their best shift, rms [H]",
+                LEVELS.rms_shifted.into(),
+                LEVEL_SPREAD,
+            ),
+        ];
+        let sensors = ["impulse on P1", "impulse on P2", "impulse on P3", "impulse on P4"];
+        for (k, what) in sensors.into_iter().enumerate() {
+            let [value, uncertainty] = vof("lobovsky", &format!("impulse_P{}_1", k + 1));
+            tank.push((what, IMPULSE_AWAY[k].at(1), uncertainty / value));
+            measured_tank.push((what, IMPULSE[k].at(1), IMPULSE_SPREAD));
+        }
+        all.extend(compared(tier, Group::Tank, 0.5 / 300.0, &tank, &measured_tank));
+    }
+    all
+}
+
+/// A value of the reference by volume of fluid and its uncertainty.
+fn vof(scene: &str, name: &str) -> [f64; 2] {
+    Reference::summarised("dam_break_vof", &[("scene", scene), ("quantity", name)])
+}
+
+/// Comparisons of the ladder of a group with volume of fluid and with an experiment, each with what is
+/// compared, its metric and u_D; `digit` is half of the last digit of a height over that height.
+fn compared(
+    tier: Tier,
+    group: Group,
+    digit: f64,
+    method: &[(&str, MetricName, f64)],
+    model: &[(&str, MetricName, f64)],
+) -> Vec<Comparison> {
+    let of_method =
+        "computed for the same inputs; u_D: meshes and steps (`references/dam_break_vof`)";
+    let of_model = "u_input: heights wrong by half of the last digit that is stated, of a = 2.25 \
+                    inches and of H = 300 mm; u_D: spread of digitised curves, of two series, of two \
+                    sensors";
+    let level = |s: &DamSettings| (1.0 / s.n as f64, Resolution::default());
+    let ladder = plan::table(tier).ladder(&[group], "modern", level);
+    let higher = Mutation { of: Constant::Height, factor: 1.0 + digit };
+    let coarsest = ladder.levels.first().map(|level| level.run.spec.clone());
+    let inputs = coarsest.map(|run| [run.clone(), run.mutated(higher)]);
+    let new = |of: &(&str, MetricName, f64), against, because| {
+        Comparison::new(of.0, against, of.1.clone(), &ladder, (of.2, because))
+    };
+    let method = method.iter().map(|of| new(of, "volume of fluid: the method", of_method));
+    let model = model.iter().map(|of| Comparison {
+        inputs: inputs.clone().into_iter().collect(),
+        ..new(of, "the experiment: the model", of_model)
+    });
+    method.chain(model).collect()
+}
+
+fn accuracy(tier: Tier) -> Accuracy {
+    let table = plan::table(tier);
+    let level = |s: &DamSettings| (1.0 / s.n as f64, Resolution::new(s.n, "a/dx {}"));
+    let mut ladders =
+        ["seed", "modern"].map(|variant| table.ladder(&[Group::Ladder], variant, level));
+    if tier == Tier::Full {
+        let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
+                       order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \
+                       0.5.";
+        let id = format!("{NAME}.martin-moyce.modern.front.order");
+        let bound = Bound::Within(0.5, 1.5);
+        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
+    }
+    Accuracy {
+        about: "Front of the column of Martin & Moyce at T = 1, minus the front of the same model by volume \
+                of fluid, in widths a of the column. Later fronts of fine runs are ahead of that one by up \
+                to its uncertainty of 0.008 a, so they do not show how the error falls."
+            .into(),
+        spacing: "dx/a [-]",
+        slope: Some(1.0),
+        ladders: ladders.into(),
+        ..Accuracy::new("dam-break", FRONT_AWAY.at(1), "error of the front at T = 1 [a]")
+    }
+}
+
+/// The front of the column in the tank of Lobovsky et al.
+fn in_the_tank(tier: Tier) -> Accuracy {
+    let level = |s: &DamSettings| (1.0 / s.n as f64, Resolution::new(s.n, "H/dx {}"));
+    Accuracy {
+        about: "Front of the column in the tank at t = 2 √(H/g), minus the front of the same model by volume \
+                of fluid, which is known to 0.028 H."
+            .into(),
+        spacing: "dx/H [-]",
+        slope: Some(1.0),
+        ladders: vec![plan::table(tier).ladder(&[Group::Tank], "modern", level)],
+        ..Accuracy::new("dam-break-tank", FRONT_AWAY.at(2), "error of the front at t = 2 [H]")
+    }
+}
+
+/// A change of the settings.
+type Set = fn(&mut DamSettings);
+
+/// What is changed, the part of the error that this changes, how, and the only variant that has it.
+const CHANGES: [(&str, &str, Set, Option<&str>); 9] = [
+    ("none", "all", |_| (), None),
+    ("dt/2", "time", |s| s.courant *= 0.5, None),
+    ("dx/2", "spacing", |s| s.n *= 2, None),
+    ("2 c0", "compressibility", |s| s.c0 *= 2.0, None),
+    ("alpha/2", "artificial viscosity", |s| s.alpha *= 0.5, None),
+    ("h/dx 2", "smoothing", |s| s.h_over_dx = 2.0, None),
+    ("delta/2", "density diffusion", |s| s.diffusion *= 0.5, Some("modern")),
+    ("no artificial stress", "artificial stress", |s| s.xi = 0.0, Some("seed")),
+    ("no XSPH", "XSPH", |s| s.xsph = 0.0, Some("seed")),
+];
+
+fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
+    let (n, variants): (usize, &[&str]) = match tier {
+        Tier::Quick => (10, &["modern"]),
+        _ => (20, &["modern", "seed"]),
+    };
+    let of = |variant: &&'static str| {
+        let has = CHANGES.iter().filter(|change| change.3.is_none_or(|of| of == *variant));
+        let change = |&(what, part, set, _): &(&str, &'static str, Set, _)| {
+            let spec = DAM_BREAK.spec(variant, |s| {
+                s.n = n;
+                set(s);
+            });
+            // Other changes may ask more of the time step than the variant's own settings do.
+            let is_ladder = ["all", "spacing"].contains(&part);
+            Change::new(what, part, if is_ladder { spec } else { spec.allow_unstable() })
+        };
+        has.map(change).collect()
+    };
+    Budgets { about: accuracy.about.clone(), of: variants.iter().map(of).collect() }
+}
+
+fn limits(tier: Tier) -> StepLimits {
+    let most = if tier == Tier::Quick { 1 } else { usize::MAX };
+    let about = "A time step counts as stable if the collapse ends with its energy accounted for within 2 %.";
+    let of = ["modern", "seed"].map(limit).into_iter().take(most).collect();
+    StepLimits { about: about.into(), of }
+}
+
+fn limit(variant: &'static str) -> StepLimit {
+    // Stable is what keeps its energy.
+    let spec = DAM_BREAK.spec(variant, |s| s.n = 15).measure_all();
+    let rules = DAM_BREAK.rules(&spec).unwrap_or(Rules::REFUSED);
+    let because = "Theory is the limit of a lattice at rest. Moving, disordered water is expected at 0.7 \
+                   to 1.0 of it, and the step of the case must be below what is measured. A run that holds \
+                   at 1.2 would measure another limit, because the stiffest mode of leapfrog grows \
+                   3.5-fold a step there.";
+    let default_at = rules.dt() / rules.dt_limit();
+    let bound = Bound::Within(default_at, 1.2);
+    let id = format!("{NAME}.limit.{variant}.Martin");
+    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
+    // The limit as the record's dt and dt/limit state it.
+    let setting = ("dt", rules.dt() / default_at);
+    StepLimit::proportional("Martin & Moyce", spec, setting, &rules, Some(gate))
+}
+
+const DENSITY: &str = "Times and lengths of a collapse do not depend on the density. Water at rest \
+                       (`hydrostatic`) detects 0.1 % by its exact pressure.";
+const SOUND: &str = "The model holds for any sound speed that is large compared with the speed of the water, \
+                     so what is compared with the experiment must not depend on it.";
+const PLACE: &str = "An error of 10 % moves the front by less than 0.1 a, to which the experiment fixes it, \
+                     a being the width of the column. The error budget shows how much each part of the \
+                     method moves it.";
+const PRESSURE: &str =
+    "Density diffusion smooths the pressure, which is not judged in this experiment.";
+
+/// The coarsest judged column, released freely.
+fn sensitivity(tier: Tier) -> Sensitivity {
+    let blind = |constant, why, cause| Watched::blind_up_to(constant, 1.0, why, cause);
+    let watched = [
+        Watched::new(Constant::BodyForce),
+        Watched::new(Constant::Height).quick(),
+        blind(Constant::Density, DENSITY, &NOT_MEASURED),
+        blind(Constant::SoundSpeed, SOUND, &NOT_MEASURED),
+        Watched::new(Constant::Normalisation),
+        Watched::new(Constant::SmoothingLength),
+        blind(Constant::TimeStep, STEP, &SAFETY_MARGIN),
+        blind(Constant::ArtificialViscosity, PLACE, &WIDE_BOUNDS),
+        blind(Constant::DensityDiffusion, PRESSURE, &NOT_MEASURED).faults(&[-1.0]),
+        blind(Constant::ArtificialStress, PLACE, &WIDE_BOUNDS),
+        blind(Constant::Xsph, PLACE, &WIDE_BOUNDS).faults(&[-1.0]),
+    ];
+    let runs = ["modern", "seed"].map(|variant| DAM_BREAK.spec(variant, |_| {}));
+    Sensitivity::new(tier, runs, watched)
+}

@@ -1,0 +1,533 @@
+//! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
+//! them: from the model it is an error of the method.
+
+use base::reference::Reference as Package;
+use std::{f64::consts::SQRT_2, sync::LazyLock};
+
+use super::*;
+
+/// Spread of digitised curves of the front of Martin & Moyce \[a\].
+pub const FRONT_SPREAD: f64 = 0.1;
+/// Standard uncertainty of the front of Lobovsky et al. \[H\]: two series arrive 0.038 (H/g)^(1/2) apart, √2
+/// times that of one, at a speed of 1.515 (g H)^(1/2).
+pub const TANK_FRONT_SPREAD: f64 = 0.041;
+/// Standard uncertainty of levels: the rms distance of two series at H4 \[H\].
+pub const LEVEL_SPREAD: f64 = 0.024;
+/// Standard uncertainty of impulses, as a share: those on P2L and P2 for one (H/g)^(1/2) from the arrival at
+/// P1 differ by 0.06, √2 times that of one sensor.
+pub const IMPULSE_SPREAD: f64 = 0.06 / SQRT_2;
+/// What three other codes of particles gave for Z at T = 2 and 3, as the founders measured it in 2025-26:
+/// SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
+pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
+
+/// A curve: points in ascending order of the first number.
+pub type Points = Vec<(f64, f64)>;
+
+/// The value of a curve, linear between its points and constant beyond its ends.
+pub fn value(curve: &[(f64, f64)], t: f64) -> f64 {
+    let next = curve.partition_point(|(time, _)| *time < t);
+    match (next.checked_sub(1).map(|k| curve[k]), curve.get(next)) {
+        (Some((t0, y0)), Some(&(t1, y1))) => y0 + (t - t0) / (t1 - t0) * (y1 - y0),
+        (None, Some(&(_, y))) | (Some((_, y)), None) => y,
+        (None, None) => f64::NAN,
+    }
+}
+
+/// rms over the points of `measured` of the distance to `computed`, whose clock is put forward by
+/// `shift`.
+fn rms(computed: &[(f64, f64)], measured: &[(f64, f64)], shift: f64) -> f64 {
+    let square = |(t, y): &(f64, f64)| (value(computed, t - shift) - y).powi(2);
+    (measured.iter().map(square).sum::<f64>() / measured.len() as f64).sqrt()
+}
+
+/// Sum of squares of the distance over pairs of curves, computed and measured.
+fn squares(pairs: &[(Points, Points)], shift: f64) -> f64 {
+    pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum()
+}
+
+/// The shift of the clock within ± `range` with the least sum of squares over pairs of curves.
+fn best_shift(pairs: &[(Points, Points)], range: f64) -> f64 {
+    let cost = |shift: f64| squares(pairs, shift);
+    let (mut best, mut step) = (0.0, range / 20.0);
+    for _ in 0..4 {
+        let trials = (-20..=20).map(|k| best + f64::from(k) * step);
+        let inside = trials.filter(|shift| shift.abs() <= range);
+        best = inside.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(best);
+        step /= 10.0;
+    }
+    best
+}
+
+/// Front (T, Z) and residual height (τ, η) of Martin & Moyce. Packages are embedded and checked by a test.
+pub static MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
+    [("front", ["T", "Z"]), ("height", ["tau", "H"])]
+        .map(|(table, columns)| Package::curve("dambreak_martin_moyce", table, columns, &[]))
+});
+
+/// Z over T and residual height \[H\] of that column by volume of fluid.
+pub static MODEL_OF_MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
+    let [front, height] = ["front", "height"].map(|name| of_model("martin_moyce", name));
+    // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
+    [front.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect(), height]
+});
+
+/// Potential energy \[M g H/2\] of both columns by volume of fluid.
+static POTENTIAL: LazyLock<[Points; 2]> =
+    LazyLock::new(|| ["martin_moyce", "lobovsky"].map(|scene| of_model(scene, "potential")));
+
+/// Curves of the tank of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
+pub struct OfTank {
+    /// x of the front, measured from the gate and computed from the back wall.
+    pub front: Points,
+    /// Levels at H1 to H4: each series there is.
+    pub levels: [Vec<Points>; 4],
+    /// P1 to P4.
+    pub pressure: [Points; 4],
+}
+
+const MEASURED: &str = "dambreak_lobovsky";
+
+/// The experiment: one series of the level at H1 and two of the others.
+pub static LOBOVSKY: LazyLock<OfTank> = LazyLock::new(|| {
+    let levels: [&[&str]; 4] = [&["H1_1"], &["H2_1", "H2_2"], &["H3_1", "H3_2"], &["H4_1", "H4_2"]];
+    OfTank::read(MEASURED, Package::curve(MEASURED, "front", ["t", "x"], &[]), levels)
+});
+
+/// The pressure on the second sensor at the height of P2.
+pub fn aside() -> Points {
+    Package::curve(MEASURED, "pressure", ["t", "P2L"], &[])
+}
+
+const COMPUTED: &str = "dam_break_vof";
+
+/// The same by volume of fluid.
+pub static MODEL: LazyLock<OfTank> = LazyLock::new(|| {
+    let levels: [&[&str]; 4] = [&["H1"], &["H2"], &["H3"], &["H4"]];
+    OfTank::read(COMPUTED, of_model("lobovsky", "front"), levels)
+});
+
+/// A history of a scene by volume of fluid.
+fn of_model(scene: &str, name: &str) -> Points {
+    Package::curve(COMPUTED, "series", ["t", name], &[("scene", scene)])
+}
+
+impl OfTank {
+    fn read(package: &str, front: Points, levels: [&[&str]; 4]) -> Self {
+        let curve = |table: &str, name: &str| Package::curve(package, table, ["t", name], &[]);
+        Self {
+            front,
+            levels: levels.map(|of| of.iter().map(|series| curve("levels", series)).collect()),
+            pressure: ["P1", "P2", "P3", "P4"].map(|sensor| curve("pressure", sensor)),
+        }
+    }
+
+    /// The mean of the series at a probe, until t.
+    pub fn level(&self, k: usize, until: f64) -> Points {
+        let series = &self.levels[k];
+        let mean = |(n, (t, _)): (usize, &(f64, f64))| {
+            (*t, series.iter().map(|s| s[n].1).sum::<f64>() / series.len() as f64)
+        };
+        series[0].iter().enumerate().map(mean).filter(|(t, _)| *t <= until).collect()
+    }
+}
+
+/// A column of a profile of a run over time, each in a unit.
+fn history(record: &Record, profile: &str, name: &str, units: [f64; 2]) -> Points {
+    let points = record.column(profile, "t").iter().zip(record.column(profile, name));
+    points.map(|(t, y)| (t / units[0], y / units[1])).collect()
+}
+
+/// Z over T of a run of the column of Martin & Moyce.
+pub fn front(record: &Record) -> Points {
+    let DamSettings { width: a, gravity: g, .. } = record.settings_as();
+    history(record, "series", "front", [(0.5 * a / g).sqrt(), a])
+}
+
+/// The residual height \[H\] over time in a unit \[s\].
+pub fn height(record: &Record, unit: f64) -> Points {
+    let height = record.settings_as::<DamSettings>().height;
+    history(record, "series", "height", [unit, height])
+}
+
+/// The front in the tank \[H\] over time \[(H/g)^(1/2)\], from a place \[m\].
+pub fn front_from(record: &Record, place: f64) -> Points {
+    let s: DamSettings = record.settings_as();
+    let front = history(record, "series", "front", [s.unit_time(), 1.0]);
+    front.into_iter().map(|(t, x)| (t, (x - place) / s.height)).collect()
+}
+
+/// The level at a probe \[H\] over time \[(H/g)^(1/2)\].
+pub fn depth(record: &Record, probe: usize) -> Points {
+    let s: DamSettings = record.settings_as();
+    history(record, "series", &format!("H{}", probe + 1), [s.unit_time(), s.height])
+}
+
+/// The pressure on a sensor \[ρ g H\] over time \[(H/g)^(1/2)\].
+pub fn pressure(record: &Record, sensor: usize) -> Points {
+    history(record, "pressure", &format!("P{}", sensor + 1), [1.0, 1.0])
+}
+
+/// T = t (2g/a)^(1/2) at which the fronts of the column of Martin & Moyce are compared.
+const FREE_TIMES: [f64; 2] = [1.0, 2.0];
+/// t (g/H)^(1/2) at which those in the tank are, before any arrives.
+const TANK_TIME: f64 = 2.0;
+/// t (g/H)^(1/2) until when levels are compared: later the overturning jet is above the last probe.
+pub const LEVELS_UNTIL: f64 = 5.5;
+/// t (g/H)^(1/2) until when the potential energy in the tank is compared: later a thin jet at the rim holds
+/// the difference, which is known to 0.03 there and to 0.002 before.
+const POTENTIAL_UNTIL: f64 = 3.0;
+/// Share of ρ g H that P1 first exceeds when the wave arrives.
+const ARRIVED: f64 = 0.1;
+/// Impulses are counted for this long after the arrival \[(H/g)^(1/2)\]: the jet has risen, and the
+/// wave that it falls back into has not yet closed over air.
+pub const WINDOWS: [f64; 2] = [1.0, 2.5];
+
+/// When a wave with this pressure on P1 \[ρ g H\] arrives.
+pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
+    pressure.iter().find(|(_, p)| *p > ARRIVED).map_or(f64::NAN, |(t, _)| *t)
+}
+
+/// ∫ p dt from `from` for `window`, by the trapezoidal rule over the points in between; NaN of less than two.
+pub fn impulse(pressure: &[(f64, f64)], from: f64, window: f64) -> f64 {
+    let inside: Vec<(f64, f64)> =
+        pressure.iter().filter(|(t, _)| *t >= from && *t <= from + window).copied().collect();
+    if inside.len() < 2 {
+        return f64::NAN;
+    }
+    inside.windows(2).map(trapezoid).sum()
+}
+
+/// ∫ y dt between two points of a curve.
+pub fn trapezoid(pair: &[(f64, f64)]) -> f64 {
+    0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1)
+}
+
+/// The mean of the points of a curve between two times; NaN if there are none.
+pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
+    let inside = curve.iter().filter(|(t, _)| (from..=to).contains(t));
+    let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
+    sum / count
+}
+
+/// Why a metric of a time that a run does not reach is absent.
+const TOO_SHORT: &str = "the run ends before the times that this is of";
+
+/// Why a metric of a probe or a sensor is absent.
+const DRY: &str = "the run ends before water comes to this place";
+
+/// Puts a metric whose value is of a time, if the run goes on until then: a curve is constant beyond its end,
+/// and an impulse would be of a part of its window. A time that is not a number never comes.
+fn put_if_reached(
+    record: &mut Record,
+    metric: impl Into<MetricName>,
+    [reached, time]: [f64; 2],
+    value: impl FnOnce() -> f64,
+) {
+    let is_reached = time <= reached * (1.0 + 1e-9);
+    record.put_or(metric, is_reached.then(value), TOO_SHORT);
+}
+
+/// The time of the last point of a curve, 0 if it has none.
+fn end_of(curve: &[(f64, f64)]) -> f64 {
+    curve.last().map_or(0.0, |(t, _)| *t)
+}
+
+/// rms of curves as they are and after their best common shift.
+fn put_distance(
+    record: &mut Record,
+    of: Distance,
+    pairs: &[(Points, Points)],
+    range: f64,
+    what: &str,
+) {
+    let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
+    if count == 0.0 {
+        for metric in [of.rms.of(what), of.rms_shifted.into(), of.shift.into()] {
+            record.leave_out(metric, TOO_SHORT);
+        }
+        return;
+    }
+    let all = |shift: f64| (squares(pairs, shift) / count).sqrt();
+    let shift = best_shift(pairs, range);
+    record.put(of.rms.of(what), all(0.0));
+    record.put(of.rms_shifted, all(shift));
+    record.put(of.shift, shift);
+}
+
+/// A curve until a time.
+pub fn until(curve: &[(f64, f64)], end: f64) -> Points {
+    curve.iter().filter(|(t, _)| *t <= end).copied().collect()
+}
+
+/// Adds to a record, which has the series and the pressures, the distance from the experiment that the
+/// settings are those of, if they are, and from the same model by volume of fluid.
+pub fn compare(dam: &Dam, record: &mut Record) {
+    if dam.is_martin_moyce() {
+        with_martin_moyce(&dam.settings, record);
+    }
+    if dam.is_lobovsky() {
+        with_lobovsky(&dam.settings, record);
+    }
+}
+
+/// The distance of the potential energy from that of a scene by volume of fluid until a time.
+fn with_potential(model: &[(f64, f64)], end: f64, s: &DamSettings, record: &mut Record) {
+    let computed = history(record, "series", "potential", [s.unit_time(), 1.0]);
+    record.put(POTENTIAL_AWAY, rms(&computed, &until(model, end.min(s.end)), 0.0));
+}
+
+fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
+    with_potential(&POTENTIAL[0], s.end, s, record);
+    let front = front(record);
+    let height_of = |unit| height(record, unit);
+    let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
+    let [measured_front, measured_height] = &*MARTIN_MOYCE;
+    let reached = end_of(&front);
+    for t in FREE_TIMES {
+        let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE[0], t);
+        put_if_reached(record, FRONT_AWAY.at(t), [reached, t], away);
+    }
+    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
+    for (t, ..) in PEERS {
+        put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
+    }
+    let measured = until(measured_front, reached);
+    put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
+    let measured = until(measured_height, end_of(&height));
+    let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
+                from what was read there, at equal tau";
+    put_distance(record, HEIGHT, &[(height, measured)], 1.0, what);
+}
+
+fn with_lobovsky(s: &DamSettings, record: &mut Record) {
+    with_potential(&POTENTIAL[1], POTENTIAL_UNTIL, s, record);
+    let [front, from_wall] = [s.width, 0.0].map(|place| front_from(record, place));
+    let away = || value(&from_wall, TANK_TIME) - value(&MODEL.front, TANK_TIME);
+    put_if_reached(record, FRONT_AWAY.at(TANK_TIME), [end_of(&from_wall), TANK_TIME], away);
+    let measured = until(&LOBOVSKY.front, s.end);
+    put_distance(record, FRONT, &[(front, measured)], 0.6, "x of the tip from the gate/H");
+    let pair = |k| (depth(record, k), LOBOVSKY.level(k, s.end));
+    let pairs = [0, 1, 2, 3].map(pair);
+    for (k, (computed, _)) in pairs.iter().enumerate() {
+        let model = MODEL.level(k, LEVELS_UNTIL.min(s.end));
+        let is_wet = |curve: &[(f64, f64)]| curve.iter().any(|(_, level)| *level > 0.0);
+        let has_come = is_wet(computed) || is_wet(&model);
+        record.put_or(LEVEL_AWAY[k], has_come.then(|| rms(computed, &model, 0.0)), DRY);
+    }
+    put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
+    let pressures = [0, 1, 2, 3].map(|k| pressure(record, k));
+    let [ours, theirs, models] =
+        [&pressures, &LOBOVSKY.pressure, &MODEL.pressure].map(|pressure| arrival(&pressure[0]));
+    let reached = end_of(&pressures[0]);
+    put_if_reached(record, ARRIVAL, [reached, ours], || ours);
+    for (k, computed) in pressures.iter().enumerate() {
+        for window in WINDOWS {
+            let [a, b, c] =
+                [(computed, ours), (&LOBOVSKY.pressure[k], theirs), (&MODEL.pressure[k], models)]
+                    .map(|(curve, from)| impulse(curve, from, window));
+            let times = [reached, ours + window];
+            put_if_reached(record, IMPULSE[k].at(window), times, || a / b - 1.0);
+            put_if_reached(record, IMPULSE_AWAY[k].at(window), times, || a / c - 1.0);
+        }
+    }
+    let peak = pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
+    record.put_or(PEAK, ours.is_finite().then_some(peak), DRY);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::waters::dam_break::{
+        lobovsky,
+        measure::{Gauge, Samples},
+    };
+
+    /// They had the value of the last sample, or of a part of a window, and NaN.
+    #[test]
+    fn what_a_short_run_does_not_reach_is_absent() {
+        let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
+        for (time, is_put) in [(2.0, true), (2.0 + 1e-10, true), (2.1, false), (f64::NAN, false)] {
+            record.metrics.clear();
+            record.absent.clear();
+            put_if_reached(&mut record, FRONT_AWAY.at(2), [2.0, time], || 1.0);
+            let found = [record.metrics.len(), record.absent.len()];
+            assert_eq!(found, if is_put { [1, 0] } else { [0, 1] }, "{time}");
+        }
+        put_distance(&mut record, FRONT, &[(vec![(0.0, 1.0)], vec![])], 1.0, "none");
+        assert!(record.metrics.is_empty() && record.absent.len() == 4, "{:?}", record.absent);
+    }
+
+    #[test]
+    fn a_curve_that_starts_late_is_found_shifted() {
+        let early: Points = (0..100).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t)).collect();
+        let late: Points =
+            (8..60).map(|k| 0.07 * f64::from(k)).map(|t| (t, (t - 0.21).powi(2))).collect();
+        let shift = best_shift(&[(early.clone(), late.clone())], 1.0);
+        assert!((shift - 0.21).abs() < 2e-3, "{shift}");
+        assert!(rms(&early, &late, shift) < 1e-3 && rms(&early, &late, 0.0) > 0.5);
+        assert_eq!((value(&early, -1.0), value(&late, 99.0)), (0.0, late[51].1));
+    }
+
+    #[test]
+    fn an_impulse_is_an_integral_and_the_experiment_repeats_itself() {
+        let ramp: Points = (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
+        assert!((impulse(&ramp, 1.0, 2.0) - 4.0).abs() < 1e-9);
+        assert!((arrival(&ramp) - 0.11).abs() < 1e-9);
+        // The package: arrival at 2.44; its neighbour differs from P2 more in the longer window.
+        let at = arrival(&LOBOVSKY.pressure[0]);
+        assert!((at - 2.443).abs() < 2e-3, "{at}");
+        let spread = |window: f64| {
+            impulse(&aside(), at, window) / impulse(&LOBOVSKY.pressure[1], at, window) - 1.0
+        };
+        let [short, long] = WINDOWS.map(spread);
+        assert!(
+            (short + SQRT_2 * IMPULSE_SPREAD).abs() < 5e-4 && (long + 0.135).abs() < 1e-3,
+            "{short} {long}"
+        );
+    }
+
+    /// The metrics that a comparison of these samples (t, front, height, levels, potential energy) and
+    /// pressures puts.
+    fn compared(
+        dam: &Dam,
+        samples: impl Iterator<Item = [f64; 8]>,
+        pressures: Vec<[f64; 5]>,
+    ) -> Box<dyn Fn(MetricName) -> f64> {
+        let mut record =
+            Record::new("dam_break", "modern", base::settings::to_json(&dam.settings), 1);
+        Samples::made_up(samples).measure(dam, &mut record);
+        Gauge::made_up(dam, pressures).measure(dam, &mut record);
+        compare(dam, &mut record);
+        let value = move |metric: MetricName| record.value(metric.clone());
+        Box::new(move |metric| value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}")))
+    }
+
+    /// Is the value the one that is expected?
+    #[track_caller]
+    fn is(value: f64, expected: f64, tolerance: f64) {
+        assert!((value - expected).abs() <= tolerance, "{value} instead of {expected}");
+    }
+
+    /// A computation that is early by 0.2 T and by 0.1 tau.
+    #[test]
+    fn a_computation_that_has_the_curves_of_martin_and_moyce_early_is_that_early() {
+        let dam = Dam::changed(|_| {}).unwrap();
+        let [front, height] = &*MARTIN_MOYCE;
+        let (a, g) = (dam.settings.width, dam.settings.gravity);
+        let (t, tau) = ((0.5 * a / g).sqrt(), (a / g).sqrt());
+        let row = |k: u32| {
+            let time = 1e-3 * f64::from(k);
+            let [z, eta] = [value(front, time / t + 0.2), value(height, time / tau + 0.1)];
+            [time, a * z, dam.settings.height * eta, 0.0, 0.0, 0.0, 0.0, 0.0]
+        };
+        let metric = compared(&dam, (0..192).map(row), Vec::new());
+        is(metric(FRONT.shift.into()), 0.2, 2e-3);
+        is(metric(HEIGHT.shift.into()), 0.1, 2e-3);
+        assert!(
+            metric(FRONT.rms_shifted.into()) < 0.01 && metric(HEIGHT.rms_shifted.into()) < 0.01
+        );
+        assert!(metric(FRONT.rms.into()) > 0.2 && metric(HEIGHT.rms.into()) > 0.02);
+        is(metric(Z.at(2)), value(front, 2.2), 2e-3);
+        is(metric(Z.at(3)), value(front, 3.2), 2e-3);
+    }
+
+    /// Pressures 5, 10, 15 and 20 % too high, on another clock; levels 5 % too high.
+    #[test]
+    fn what_a_computation_of_lobovsky_has_too_much_of_is_measured() {
+        let dam = Dam::changed(lobovsky).unwrap();
+        let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
+        let levels = [0, 1, 2, 3].map(|k| LOBOVSKY.level(k, 6.0));
+        let row = |k: u32| {
+            let t = 0.01 * f64::from(k);
+            let level = |k: usize| 1.05 * h * value(&levels[k], t);
+            let front = dam.settings.width + h * value(&LOBOVSKY.front, t);
+            [unit * t, front, 0.0, level(0), level(1), level(2), level(3), 0.0]
+        };
+        let sensor = |t: f64| {
+            let p = |k: usize| scale * (1.05 + 0.05 * k as f64) * value(&LOBOVSKY.pressure[k], t);
+            [unit * (t + 0.3005), p(0), p(1), p(2), p(3)]
+        };
+        let rows: Vec<[f64; 5]> = (0..5400).map(|k| sensor(0.001 * f64::from(k))).collect();
+        let metric = compared(&dam, (0..=600).map(row), rows.clone());
+        // Ten readings a block.
+        let mean = |rows: &[[f64; 5]], k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / 10.0;
+        is(metric(ARRIVAL.into()), 2.443 + 0.3, 0.011);
+        for (k, too_much) in [0.05, 0.10, 0.15, 0.20].into_iter().enumerate() {
+            is(metric(IMPULSE[k].at(1)), too_much, 0.015);
+            is(metric(IMPULSE[k].at(2.5)), too_much, 0.01);
+        }
+        let most = rows.chunks(10).map(|rows| mean(rows, 1)).fold(0.0, f64::max) / scale;
+        is(metric(PEAK.into()) / most, 1.0, 1e-9);
+        let of_level = |level: &Points| level.iter().map(|(_, y)| y * y).sum::<f64>();
+        let points: usize = levels.iter().map(Vec::len).sum();
+        let all = levels.iter().map(of_level).sum::<f64>() / points as f64;
+        is(metric(LEVELS.rms.into()) / all.sqrt(), 0.05, 5e-4);
+        is(metric(FRONT.rms.into()), 0.0, 1e-3);
+    }
+
+    /// The numbers of the reference's README.
+    #[test]
+    fn the_reference_is_read_in_the_units_of_the_cases() {
+        for (t, z) in [(1.0, 1.548), (2.0, 2.662), (3.0, 4.099)] {
+            is(value(&MODEL_OF_MARTIN_MOYCE[0], t), z, 1e-3);
+        }
+        is(value(&MODEL_OF_MARTIN_MOYCE[1], 1.5), 0.4638, 1e-3);
+        is(value(&MODEL.front, 2.0), 4.649, 1e-3);
+        is(value(&MODEL.levels[3][0], 4.0), 0.1751, 1e-3);
+        let at = arrival(&MODEL.pressure[0]);
+        is(at, 2.37, 0.01);
+        for (k, expected) in [1.581, 1.293, 0.912, 0.116].into_iter().enumerate() {
+            is(impulse(&MODEL.pressure[k], at, 1.0), expected, 0.015);
+        }
+    }
+
+    /// A front 0.03 a ahead, a height 0.02 H too large, a potential energy 0.01 M g H/2 too small.
+    #[test]
+    fn how_far_a_column_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
+        let dam = Dam::changed(|_| {}).unwrap();
+        let of = &dam.settings;
+        let row = |k: u32| {
+            let t = 0.002 * f64::from(k);
+            let front = of.width * (0.03 + value(&MODEL_OF_MARTIN_MOYCE[0], 2.0 * t));
+            let height = of.height * (0.02 + value(&MODEL_OF_MARTIN_MOYCE[1], t));
+            let potential = value(&POTENTIAL[0], t) - 0.01;
+            [t * of.unit_time(), front, height, 0.0, 0.0, 0.0, 0.0, potential]
+        };
+        let metric = compared(&dam, (0..900).map(row), Vec::new());
+        FREE_TIMES.iter().for_each(|t| is(metric(FRONT_AWAY.at(*t)), 0.03, 1e-4));
+        is(metric(HEIGHT_AWAY.into()), 0.02, 1e-4);
+        is(metric(POTENTIAL_AWAY.into()), 0.01, 1e-4);
+    }
+
+    /// A front 0.03 H ahead, levels 0.01 to 0.04 H too high, pressures 5 to 20 % too high and late by 0.3,
+    /// a potential energy 0.01 M g H/2 too large until t = 3, and anything later.
+    #[test]
+    fn how_far_a_tank_is_from_volume_of_fluid_is_measured_in_the_units_of_the_gates() {
+        let dam = Dam::changed(lobovsky).unwrap();
+        let (unit, h, scale) = (dam.settings.unit_time(), dam.settings.height, dam.unit_pressure());
+        let row = |k: u32| {
+            let t = 0.01 * f64::from(k);
+            let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&MODEL.levels[k][0], t));
+            let front = h * (0.03 + value(&MODEL.front, t));
+            let potential = if t > 3.1 { 9.0 } else { 0.01 + value(&POTENTIAL[1], t) };
+            [t * unit, front, 0.0, level(0), level(1), level(2), level(3), potential]
+        };
+        let too_much = |k: usize| 0.05 * (k + 1) as f64;
+        let sensor = |step: u32| {
+            let t = 0.001 * f64::from(step) + 0.0005;
+            let p = |k: usize| scale * (1.0 + too_much(k)) * value(&MODEL.pressure[k], t - 0.3);
+            [t * unit, p(0), p(1), p(2), p(3)]
+        };
+        let metric = compared(&dam, (0..600).map(row), (0..6000).map(sensor).collect());
+        is(metric(FRONT_AWAY.at(2)), 0.03, 1e-4);
+        is(metric(POTENTIAL_AWAY.into()), 0.01, 1e-4);
+        is(metric(ARRIVAL.into()), arrival(&MODEL.pressure[0]) + 0.3, 0.011);
+        for k in 0..4 {
+            is(metric(LEVEL_AWAY[k].into()), 0.01 * (k + 1) as f64, 1e-4);
+            for window in WINDOWS {
+                // The arrival is known to 0.011 of a window of 1, in which the pressure on P4 doubles.
+                is(metric(IMPULSE_AWAY[k].at(window)), too_much(k), 0.022);
+            }
+        }
+    }
+}

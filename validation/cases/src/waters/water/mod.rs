@@ -1,0 +1,124 @@
+//! What cases of water with a free surface have in common: settings, the rule of the time step, and the
+//! particles of a tank's walls.
+
+pub mod ledger;
+
+use base::settings::SettingError;
+use harness::{
+    case::RunError,
+    limits::Limits,
+    method::{FirstRow, Medium, Properties},
+};
+use maths::{exact, geometry::Tank};
+use nalgebra::Vector2;
+use solver::{Particle, Role};
+
+pub use ledger::Ledger;
+
+/// η²/h² of the lattice whose waves give the limit of the time step.
+const ETA2: f64 = 0.01;
+
+/// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every
+/// pair and the terms of the method. `c0` is the largest sound speed \[m/s\].
+pub fn limits(method: &Properties, medium: &Medium, [h_over_dx, c0]: [f64; 2], n: usize) -> Limits {
+    let waves = maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
+    method.limits([h_over_dx, ETA2], n, &waves)
+}
+
+/// Water of a medium at rest under its gravity.
+pub fn at_rest(medium: &Medium) -> exact::Hydrostatic {
+    exact::Hydrostatic { eos: medium.eos, gravity: -medium.acceleration.y }
+}
+
+/// Refuses a scene whose wall particles, which have the density of water at their height, have none far above
+/// the surface: (γ − 1) g y/c₀² must be less than 1 at each height y above it. `setting` states the setting
+/// to change, its value and what is allowed, from the largest of these heights \[m\].
+///
+/// # Errors
+/// What `setting` states.
+pub fn check_above(
+    particles: &[Particle],
+    surface: f64,
+    setting: impl FnOnce(f64) -> (&'static str, f64, String),
+) -> Result<(), RunError> {
+    if particles.iter().all(|p| p.density > 0.0) {
+        return Ok(());
+    }
+    let highest = particles.iter().map(|p| p.position.y).fold(surface, f64::max);
+    let (name, value, allowed) = setting(highest - surface);
+    let why = "otherwise wall particles far above the surface would have no density";
+    let words =
+        format!("setting {name} is {value:?}; allowed with these settings is {allowed}; {why}");
+    Err(SettingError(words).into())
+}
+
+/// Places and roles of the particles of a tank's walls, out to the support \[m\].
+pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector2<f64>, Role)> {
+    match walls {
+        FirstRow::Nowhere => Vec::new(),
+        FirstRow::OnSurface => tank.interface_walls(support),
+        FirstRow::Behind => {
+            tank.rows_behind(support).into_iter().map(|place| (place, Role::Wall)).collect()
+        }
+    }
+}
+
+/// Declares the settings of a case of water: its own, then those that every such case has, and what follows
+/// from the latter.
+#[macro_export]
+macro_rules! water_settings {
+    (
+        $(#[doc = $doc:literal])+
+        pub struct $Struct:ident { $($own:tt)* }
+    ) => {
+        base::settings! {
+            $(#[doc = $doc])+
+            pub struct $Struct {
+                $($own)*
+                /// density at rest
+                rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
+                /// smoothing length over spacing: 1.5 as in the rings; at 1.2 artificial stress adds more
+                /// energy than viscosity can take
+                h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
+                /// artificial viscosity: linear part
+                alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
+                /// artificial viscosity: quadratic part
+                beta: f64 ["-"] in 0.0..=20.0 = 0.0,
+                /// XSPH: share of the neighbours' mean
+                xsph: f64 ["-"] in -0.99..=0.99 = 0.5,
+                /// artificial stress: strength
+                xi: f64 ["-"] in 0.0..=10.0 = 0.3,
+                /// artificial stress: exponent
+                exponent: usize ["-"] in 1..=12 = 4,
+                /// density diffusion, in h c0
+                diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
+                /// Courant number dt (c0 + v)/h, v the largest speed expected
+                courant: f64 ["-"] in 1e-6..=10.0 = 0.25,
+                /// time step; auto: by the Courant number
+                dt: Option<f64> ["s"] in 1e-15..=1e6 = None,
+            }
+        }
+
+        impl $Struct {
+            /// Water with this spacing \[m\], sound speed \[m/s\] and gravity \[m/s²\], and what the rules
+            /// choose; `speed` is the largest speed expected \[m/s\], `end` the end \[s\].
+            pub fn medium(
+                &self,
+                method: &schemes::water::WaterMethod,
+                [dx, c0, gravity, speed, end]: [f64; 5],
+            ) -> (harness::method::Medium, harness::case::Rules) {
+                let (h, eos) = (self.h_over_dx * dx, solver::Tait::new(self.rho, c0));
+                let down = nalgebra::Vector2::new(0.0, -gravity);
+                let medium = harness::method::Medium {
+                    acceleration: down,
+                    wall_acceleration: down,
+                    ..method.medium(eos, [dx, h]).set_by(self)
+                };
+                let step = harness::case::Step::courant(self.courant, h, [c0, speed]);
+                let limits = $crate::waters::water::limits(method, &medium, [self.h_over_dx, c0], 24);
+                let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
+                (medium, harness::case::Rules { step, limits, sound_speed: c0, end })
+            }
+        }
+    };
+}
