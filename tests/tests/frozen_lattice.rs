@@ -44,7 +44,7 @@ fn smoothing(kernel: &str) -> [f64; 2] {
 
 /// The setup of a flow by this method.
 fn setup(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) -> Setup {
-    let [h_over_dx, eta2_over_h2] = smoothing(method.kernel);
+    let [h_over_dx, eta2_over_h2] = smoothing(method.properties.kernel);
     let s = ChannelSettings { re: 1e-9, rows, h_over_dx, eta2_over_h2, ..Default::default() };
     let s = ChannelSettings { wall_curvature, ..s };
     Setup::new(flow, &s, method).expect("settings")
@@ -166,7 +166,7 @@ fn apart(setup: &Setup, fluid: &[(f64, f64)], model: &RowModel, u: &DVector<f64>
 fn check_steps(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) {
     let setup = setup(method, rows, wall_curvature, flow);
     let mut simulation = simulation(method, &setup);
-    let model = reduced(method.kernel, &setup, rule(&setup, method.walls));
+    let model = reduced(method.properties.kernel, &setup, rule(&setup, method.properties.walls));
     let Properties { kernel, walls, integrator, .. } = &method.properties;
     let name = format!("{flow:?}, {kernel}, {walls}, {integrator}, {:?}", setup.settings);
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
@@ -175,7 +175,7 @@ fn check_steps(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) {
         assert_eq!(simulation.advance(until, setup.rules.dt(), &mut ()), Outcome::Reached);
         let (steps, dt) = division(until - before, setup.rules.dt());
         assert_eq!(simulation.dt(), dt, "{name}");
-        let by = (method.theory, setup.medium.explicit_limit());
+        let by = (method.properties.theory, setup.medium.explicit_limit());
         let u = stepped(&model, by, &mut lagging, dt, steps);
         let apart = apart(&setup, &fluid(&*simulation), &model, &u);
         assert!(apart < ROUND_OFF, "{tau}: {apart:e} V from the matrix, {name}");
@@ -242,7 +242,7 @@ fn extrapolated(method: &Method, setup: &Setup, tau: f64) -> Vec<(f64, f64)> {
         assert_eq!(outcome, Outcome::Reached);
         fluid(&*simulation)
     };
-    let mut order = if method.theory == Integrator::PredictorCorrector { 2 } else { 1 };
+    let mut order = if method.properties.theory == Integrator::PredictorCorrector { 2 } else { 1 };
     let mut runs = [1.0, 2.0, 4.0, 8.0].map(run).to_vec();
     while runs.len() > 1 {
         let finer = |(a, b): (&(f64, f64), &(f64, f64))| {
@@ -259,7 +259,8 @@ fn extrapolated(method: &Method, setup: &Setup, tau: f64) -> Vec<(f64, f64)> {
 fn check_exponential(method: &Method, wall_curvature: bool) {
     for (flow, tau) in FLOWS.into_iter().flat_map(|flow| [(flow, 0.03), (flow, 0.1)]) {
         let setup = setup(method, 20, wall_curvature, flow);
-        let model = reduced(method.kernel, &setup, rule(&setup, method.walls));
+        let model =
+            reduced(method.properties.kernel, &setup, rule(&setup, method.properties.walls));
         let exact = model.at(setup.time(tau)).expect("regular");
         let apart = apart(&setup, &extrapolated(method, &setup, tau), &model, &exact);
         let Properties { kernel, walls, integrator, .. } = &method.properties;

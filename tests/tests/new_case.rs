@@ -50,7 +50,7 @@ fn a_new_case_has_order_cost_budget_and_step_limit() {
     assert_eq!(ids, expected);
     for run in &results.runs.all {
         let record = &run.record;
-        assert!(!record.metrics.is_empty(), "{:?}: {:?}", record.settings, record.status);
+        assert!(!record.metrics.is_empty(), "{:?}: {:?}", record.run.settings, record.status);
     }
     // Every run of the ladder was timed alone, and the error falls by more than half from level to level.
     let ladder = &DECAY.declaration(Tier::Quick).accuracy[0].ladders[1];

@@ -454,7 +454,7 @@ fn collision(method: &Method<Symmetric>, xi: f64, turn: Rotation2<f64>) -> Vec<S
         xsph: 0.5,
         xi,
         exponent: N,
-        ..method.medium(Tait::new(1.0, 1.0), [1.0, 1.5])
+        ..method.properties.medium(Tait::new(1.0, 1.0), [1.0, 1.5])
     };
     let parts = Parts::new(medium, Domain::open(), particles);
     let mut simulation = (method.build)(parts).unwrap();

@@ -244,13 +244,17 @@ fn a_run_prints_its_record_or_its_metrics() {
 fn verdicts_are_results_and_how_they_came_about_is_not() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("empty")).unwrap();
-    let output = touchstone_in(folder.path(), &["judge", "couette", "--store", "empty"]);
+    let output =
+        touchstone_in(folder.path(), &["verify", "--no-runs", "couette", "--store", "empty"]);
     let (text, words) = (stdout(&output), stderr(&output));
     assert_eq!(output.status.code(), Some(1), "{text}{words}");
     assert!(text.starts_with("case ") && text.contains("\ncouette "), "{text}");
     assert!(text.contains(" more gates fail: ") && text.lines().count() < 110, "{text}");
     assert!(words.contains("; the store lacks ") && words.contains(" runs in "), "{words}");
-    let all = touchstone_in(folder.path(), &["judge", "couette", "--store", "empty", "--all"]);
+    let all = touchstone_in(
+        folder.path(),
+        &["verify", "--no-runs", "couette", "--store", "empty", "--all"],
+    );
     let gates = stdout(&all).lines().filter(|line| line.starts_with("FAIL ")).count();
     assert!(gates > 20 && stdout(&all).ends_with(&text), "{gates} gates, then the same");
 }
@@ -271,7 +275,7 @@ fn a_run_writes_its_files_whole() {
     ];
     assert_eq!(files(&out), expected);
     let record = Record::from_json(&fs::read_to_string(out.join("record.json")).unwrap()).unwrap();
-    assert_eq!(record.variant, "seed");
+    assert_eq!(record.run.variant, "seed");
     let profile = fs::read_to_string(out.join("profile.csv")).unwrap();
     let mut lines = profile.lines();
     assert_eq!(lines.next(), Some("t[s],y[m],u[m/s],u_exact[m/s]"));
@@ -533,7 +537,7 @@ fn a_folder_with_the_record_of_another_case_is_not_mixed_with() {
     assert_eq!(into("poiseuille", &["--overwrite"]).status.code(), Some(0));
     assert_eq!(files(&folder.path().join("here")), ["profile.csv", "record.json"], "of this run");
     let text = fs::read_to_string(folder.path().join("here/record.json")).unwrap();
-    assert_eq!(Record::from_json(&text).unwrap().case, "poiseuille");
+    assert_eq!(Record::from_json(&text).unwrap().run.case, "poiseuille");
 }
 
 /// The folder was found writable before the run, and then its disk was full.
@@ -857,7 +861,10 @@ fn a_reader_that_goes_away_is_no_bug_and_a_full_disk_is_told() {
 fn a_store_without_records_lacks_them_all() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("empty")).unwrap();
-    let output = touchstone_in(folder.path(), &["judge", "taylor_couette", "--store", "empty"]);
+    let output = touchstone_in(
+        folder.path(),
+        &["verify", "--no-runs", "taylor_couette", "--store", "empty"],
+    );
     let message = stderr(&output);
     assert_eq!(output.status.code(), Some(1), "{message}");
     let words = message.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -1137,7 +1144,7 @@ fn no_settings_make_a_run_panic() {
             Err(error) => prop_assert!(error.to_string().len() > 10),
             Ok(record) => {
                 begun[index].fetch_add(1, Ordering::Relaxed);
-                prop_assert_eq!(&record.settings, &case.settings(variant, &set).unwrap());
+                prop_assert_eq!(&record.run.settings, &case.settings(variant, &set).unwrap());
                 let text = record.to_json();
                 prop_assert!(text.is_ok(), "{:?}", text);
             }
@@ -1157,4 +1164,23 @@ proptest! {
     fn no_text_makes_settings_panic(set in prop::collection::vec(".{0,40}", 0..4)) {
         let _ = cases::CASES[0].settings("seed", &set);
     }
+}
+
+/// Seventeen commands were listed, of which five were modes of others.
+#[test]
+fn twelve_commands_are_listed_and_earlier_names_say_the_new_one() {
+    let help = stdout(&touchstone(&["--help"]));
+    let listed = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let names = listed.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    let names: Vec<&str> = names.filter(|name| !["", "help"].contains(name)).collect();
+    assert!(names.len() <= 12, "{names:?}");
+    let folder = tempfile::tempdir().unwrap();
+    let store = folder.path().to_str().unwrap();
+    let [old, new] = [&["judge"][..], &["verify", "--no-runs"]].map(|command| {
+        let output = touchstone(&[command, &["extremes", "--store", store, "--json"]].concat());
+        (output.status.code(), stdout(&output), stderr(&output))
+    });
+    assert!(old.0 == new.0 && old.1 == new.1 && old.0 == Some(1), "{old:?} {new:?}");
+    assert!(old.2.contains("`judge` is `verify --no-runs` now"), "{}", old.2);
+    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none(), "a run was made");
 }

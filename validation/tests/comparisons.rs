@@ -37,7 +37,7 @@ fn comparisons_are_among_the_verdicts_with_their_numbers() {
     assert!((11..30).contains(&lines.len()), "{} runs", lines.len());
     std::fs::write(at.join("ladders.jsonl"), lines.join("\n") + "\n").unwrap();
     assert!(touchstone(at, "run --specs ladders.jsonl --store store").status.success());
-    let verdicts = touchstone(at, "judge couette dam_break --store store --json").stdout;
+    let verdicts = touchstone(at, "verify --no-runs couette dam_break --store store --json").stdout;
     let verdicts: Value = serde_json::from_slice(&verdicts).unwrap();
     let all = verdicts["comparisons"].as_array().unwrap();
     let of = |metric: &str, what: &str| {

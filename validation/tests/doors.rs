@@ -222,7 +222,7 @@ fn a_report_of_older_records_fails_its_gates_and_is_no_bug() {
     fs::write(&path, head.replace("\"schema\": 3", "\"schema\": 2") + "\n}\n").unwrap();
     submit_as(folder.path(), "[a](javascript:alert%281%29) *b* `c` <i>");
     for (line, exit) in [
-        ("judge couette --store store", 1),
+        ("verify --no-runs couette --store store", 1),
         ("report --store store --out report", 1),
         ("compare store store", 2),
     ] {
@@ -431,7 +431,7 @@ fn control_characters_are_shown_and_not_sent_to_the_terminal() {
         format!("run --{escape}"),
         format!("run couette --vtk {escape}"),
         format!("plan couette --set re={escape}"),
-        format!("judge --store {escape}"),
+        format!("verify --no-runs --store {escape}"),
         format!("explain {escape} --reports ."),
         format!("compare {escape} {escape}"),
     ] {

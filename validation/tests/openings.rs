@@ -82,7 +82,7 @@ fn what_is_too_large_for_a_run_is_too_large_for_every_command() {
         "symmetry taylor_green --set n=2000",
         "submit couette one --check",
         "submit couette one --store o",
-        "relate couette same other",
+        "symmetry couette --results same other",
     ] {
         let output = shell(at, &format!("ulimit -v 2000000 -t 60; touchstone {line}"));
         let message = said(&output);
@@ -115,7 +115,7 @@ fn an_export_neither_mixes_problems_nor_replaces_what_is_not_its_own() {
     refused(at, &format!("{first} --solve --out o"), "holds another method.json");
     refused(
         at,
-        "challenge taylor_green --seed 1 --method o/method.json --out o",
+        "export taylor_green --sealed 1 --method o/method.json --out o",
         "no submission can have this method",
     );
     made(at, &format!("{line} --overwrite"));
@@ -138,7 +138,7 @@ fn a_challenge_takes_a_method_that_a_submission_can_have() {
     let at = folder.path();
     made(at, "export couette --set rows=8 --set end=0.001 --solve --out own");
     fs::copy(at.join("own/method.json"), at.join("m")).unwrap();
-    let line = "challenge couette --seed 1 --method m --out o";
+    let line = "export couette --sealed 1 --method m --out o";
     made(at, line);
     fs::remove_dir_all(at.join("o")).unwrap();
     let whole = fs::read_to_string(at.join("m")).unwrap();
@@ -178,7 +178,7 @@ fn observers_are_not_compared_where_round_off_would_hide_every_error() {
             ),
         );
     }
-    let line = "relate taylor_green same other";
+    let line = "symmetry taylor_green --results same other";
     made(at, line);
     for side in ["same", "other"] {
         let file = at.join(side).join("results.csv");
@@ -231,9 +231,9 @@ fn pipes_are_written_into_and_links_followed() {
     assert_eq!(fs::read_to_string(at.join("target")).unwrap(), got);
     refused(at, "plan couette --set re=1 --estimates pipe", "a pipe that nobody reads");
     assert!(at.join("pipe").symlink_metadata().unwrap().file_type().is_fifo());
-    refused(at, "judge elastic_bar --store . --junit pipe", "a pipe that nobody reads");
+    refused(at, "verify --no-runs elastic_bar --store . --junit pipe", "a pipe that nobody reads");
     symlink("nowhere", at.join("lost")).unwrap();
-    refused(at, "judge elastic_bar --store . --junit lost", "a link that leads nowhere");
+    refused(at, "verify --no-runs elastic_bar --store . --junit lost", "a link that leads nowhere");
     symlink("../precious", at.join("o")).unwrap();
     fs::create_dir(at.join("run")).unwrap();
     symlink("../target", at.join("run/record.json")).unwrap();

@@ -168,7 +168,7 @@ fn results_of_one_run_have_the_same_metrics_in_every_format() {
     // Equal results are told by their digest, which has the times too.
     let digest = |files: &[(String, String)]| {
         let record = submitted(folder.path(), files).unwrap_or_else(|error| panic!("{error}"));
-        record.submission.as_ref().and_then(|of| of.results.clone()).expect("a digest")
+        record.run.submission.as_ref().and_then(|of| of.results.clone()).expect("a digest")
     };
     let later = |row: &Row| {
         let mut row = *row;
@@ -195,7 +195,7 @@ fn another_version_or_truth_value_draws_another_sealed_problem() {
              \"settings\": {{{settings}}}, \"changed\": \"nothing\"}}"
         );
         fs::write(folder.path().join("method.json"), method).unwrap();
-        let line = "challenge taylor_green --seed 3 --method method.json --overwrite --out out";
+        let line = "export taylor_green --sealed 3 --method method.json --overwrite --out out";
         let made = touchstone(folder.path(), line);
         assert!(made.status.success(), "{}", said(&made));
         let problem = fs::read_to_string(folder.path().join("out/problem.json")).unwrap();

@@ -246,13 +246,13 @@ fn documents() -> Vec<(&'static str, Value)> {
     of("export dam_break --relation turned --out fluid");
     of("export elastic_bar --out solid");
     of("export periodic_hill --set n=6 --out driven");
-    of("challenge couette --seed 1 --method method.json --out sealed");
+    of("export couette --sealed 1 --method method.json --out sealed");
     let problem =
         |name: &str| parsed(&fs::read_to_string(at.join(name).join("problem.json")).unwrap());
     let problems = ["fluid", "solid", "driven", "sealed"].map(problem);
 
     fs::create_dir(at.join("empty")).unwrap();
-    let mut verdicts = parsed(&of("judge couette hydrostatic --store empty --json"));
+    let mut verdicts = parsed(&of("verify --no-runs couette hydrostatic --store empty --json"));
     assert!(verdicts["counts"]["fail"].as_u64() > Some(0));
     // The smaller document is as good, and is validated often.
     verdicts["runs"].as_array_mut().unwrap().dedup_by_key(|run| run["variant"].clone());

@@ -100,7 +100,7 @@ fn submissions_are_judged_where_our_own_runs_are() {
         let junit = fs::read_to_string(at.join("junit.xml")).unwrap();
         (verdicts, junit, output.status.code().unwrap())
     };
-    let (words, _, code) = judged("judge couette --store st");
+    let (words, _, code) = judged("verify --no-runs couette --store st");
     assert_eq!(code, 0, "our own runs are absent and do not fail: {words}");
     assert!(
         !words.contains("gates fail") && words.contains("\nRuns of other codes: 1 "),
@@ -110,16 +110,16 @@ fn submissions_are_judged_where_our_own_runs_are() {
         words.trim_start().starts_with("runs of other codes ") && !words.contains("ur own runs"),
         "{words}"
     );
-    let (words, _) = of(at, "judge couette --store st");
+    let (words, _) = of(at, "verify --no-runs couette --store st");
     assert!(words.contains("\n1 run of another code in "), "{words}");
     assert_eq!(of(at, "submit couette bad --store st").1, 1);
-    let (words, junit, code) = judged("judge couette --store st");
+    let (words, junit, code) = judged("verify --no-runs couette --store st");
     assert_eq!(code, 1, "{words}");
     let line = words.lines().find(|line| line.contains("bad code")).expect("a line");
     assert!(line.contains(GATE), "{words}");
     assert!(junit.contains("couette modern by bad code 1, s") && junit.contains("<failure"));
     assert!(!junit.contains("PySPH"), "records of the program are none of the store's");
-    let (json, _, code) = judged("judge couette --store st --json");
+    let (json, _, code) = judged("verify --no-runs couette --store st --json");
     assert_eq!(code, 1);
     let verdicts: Value = serde_json::from_str(&json).unwrap();
     let all = verdicts["submissions"].as_array().unwrap();
@@ -263,7 +263,7 @@ fn results_have_a_digest_and_machines_are_not_mixed() {
         let text = fs::read_to_string(&records(&at.join("st"))[k]).unwrap();
         Record::from_json(&text).unwrap()
     });
-    let results = |of: &Record| of.submission.clone().unwrap().results.unwrap();
+    let results = |of: &Record| of.run.submission.clone().unwrap().results.unwrap();
     assert_eq!((results(&a), results(&a).len()), (results(&b), sha256(b"").len()));
     let system = fs::read_to_string(at.join("a/system.json")).unwrap();
     let system: Value = serde_json::from_str(&system).unwrap();

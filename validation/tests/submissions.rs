@@ -86,8 +86,8 @@ fn our_own_results_are_measured_as_the_run_was() {
             compared += 1;
         }
         assert!(compared >= 3, "{line}: only {compared} metrics were compared");
-        let of = found.submission.as_ref().expect("the record says who made the run");
-        assert_eq!((&*of.code, &*of.scheme), ("touchstone", &*own.variant), "{line}");
+        let of = found.run.submission.as_ref().expect("the record says who made the run");
+        assert_eq!((&*of.code, &*of.scheme), ("touchstone", &*own.run.variant), "{line}");
         assert_eq!(found.cost.steps, own.cost.steps, "steps of {line} as system.json states them");
     }
 }
@@ -178,7 +178,7 @@ fn a_path_of_a_fine_bar_is_measured_in_a_coarse_scene() {
     let file = fs::read_dir(folder.path().join("store")).ok().and_then(|mut all| all.next());
     let file = file.unwrap_or_else(|| panic!("{}", said(&submitted))).unwrap();
     let record = Record::from_json(&read(&file.path())).unwrap();
-    assert_eq!((&record.settings["n"], record.cost.particles), (&33.into(), 33 * 578));
+    assert_eq!((&record.run.settings["n"], record.cost.particles), (&33.into(), 33 * 578));
     let frequency = record.metrics["frequency"].value;
     assert!((frequency - 6.0 / std::f64::consts::TAU).abs() < 1e-3, "{frequency}");
     fs::write(own.join("curve.csv"), format!("t[s],x[m],y[m]\n{rows}4.0,0,0\n")).unwrap();
@@ -930,7 +930,7 @@ fn a_copied_record_does_not_count() {
     let store = folder.path().join("store");
     let file = fs::read_dir(&store).unwrap().flatten().next().expect(&words).path();
     fs::copy(file, store.join("submitted-couette-seed-0123456789abcdef.json")).unwrap();
-    let words = said(&touchstone(folder.path(), "judge couette --store store"));
+    let words = said(&touchstone(folder.path(), "verify --no-runs couette --store store"));
     let told = words.lines().find(|line| line.contains("0123456789abcdef"));
     assert!(told.is_some_and(|line| line.contains("does not count")), "{words}");
 }
@@ -976,7 +976,7 @@ fn each_quantity_is_compared(folder: &tempfile::TempDir, last: usize, row: &[&st
         for by in [1e-9, -1e-9] {
             let changed = row[column].parse::<f64>().unwrap() * (1.0 + by);
             set(&other, last, column, &changed.to_string());
-            let related = touchstone(folder.path(), "relate elliptic_drop same other");
+            let related = touchstone(folder.path(), "symmetry elliptic_drop --results same other");
             let told = String::from_utf8_lossy(&related.stdout);
             let is_found = related.status.code() == Some(1) && told.contains(quantity);
             assert!(is_found, "{quantity} {by}: {told}");
@@ -999,7 +999,7 @@ fn round_off_is_that_of_the_larger_numbers() {
     let x: f64 = results.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap();
     let codes = [3e-13, 1e-11].map(|by| {
         set(&other, results.lines().count(), 2, &(x + by).to_string());
-        touchstone(folder.path(), "relate elliptic_drop same shifted").status.code()
+        touchstone(folder.path(), "symmetry elliptic_drop --results same shifted").status.code()
     });
     assert_eq!(codes, [Some(0), Some(1)]);
 }
@@ -1015,7 +1015,7 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
         let made = of(&format!("{small} --relation {by} --out {out}"));
         assert!(made.status.success(), "{}", said(&made));
     }
-    let related = of("relate elliptic_drop same other");
+    let related = of("symmetry elliptic_drop --results same other");
     let told = String::from_utf8_lossy(&related.stdout);
     assert!(related.status.success() && told.contains("round-off  "), "{told}");
     let other = folder.path().join("other");
@@ -1031,7 +1031,7 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
         let mut changed: serde_json::Value = serde_json::from_str(&stated).unwrap();
         changed["steps"] = steps.into();
         fs::write(&system, changed.to_string()).unwrap();
-        of("relate elliptic_drop same other").status.code()
+        of("symmetry elliptic_drop --results same other").status.code()
     };
     assert_eq!([1000, 1].map(of_steps), [Some(0), Some(1)]);
     // Fewer steps were made until the first time than until the last: there it is an error.
@@ -1046,7 +1046,7 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     fs::write(&system, &stated).unwrap();
     each_quantity_is_compared(&folder, last, &row);
     set(&other, last, 2, &(x + 1e-9).to_string());
-    let related = of("relate elliptic_drop same other");
+    let related = of("symmetry elliptic_drop --results same other");
     let told = String::from_utf8_lossy(&related.stdout);
     assert!(related.status.code() == Some(1) && told.contains("not the same"), "{told}");
     assert!(
@@ -1059,18 +1059,18 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     };
     let exact = read(&other.join("results.csv"));
     round(&other, 8);
-    refused("relate elliptic_drop same other", "all digits of x, which");
+    refused("symmetry elliptic_drop --results same other", "all digits of x, which");
     fs::write(other.join("results.csv"), exact).unwrap();
-    refused("relate elliptic_drop other same", "the first of relation same");
-    refused("relate elliptic_drop same missing", "cannot be read");
-    refused("submit elliptic_drop other --check", "`touchstone relate`");
+    refused("symmetry elliptic_drop --results other same", "the first of relation same");
+    refused("symmetry elliptic_drop --results same missing", "cannot be read");
+    refused("submit elliptic_drop other --check", "`touchstone symmetry --results`");
     refused("export couette --relation turned --out x", "cannot be turned out of its axes");
     refused("export couette --relation upside-down --out x", "is none of same, turned");
     drop_lines(&other, last, last + 1);
-    refused("relate elliptic_drop same other", "1 of");
+    refused("symmetry elliptic_drop --results same other", "1 of");
     edit(&other, "problem.json", "\"turned\"", "\"tilted\"");
-    refused("relate elliptic_drop same other", "\"tilted\" is none of");
+    refused("symmetry elliptic_drop --results same other", "\"tilted\" is none of");
     edit(&other, "problem.json", "\"relation\": \"tilted\"", "\"later\": 1");
-    refused("relate elliptic_drop same other", "`export --relation` wrote");
+    refused("symmetry elliptic_drop --results same other", "`export --relation` wrote");
     assert!(!folder.path().join("x").exists(), "a problem that is refused leaves no folder");
 }

@@ -17,7 +17,6 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::ops::Deref;
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -467,14 +466,6 @@ impl Profile {
     }
 }
 
-/// What a record says of its run is found in it directly.
-impl Deref for Record {
-    type Target = RunSpec;
-    fn deref(&self) -> &RunSpec {
-        &self.run
-    }
-}
-
 impl Record {
     /// A record of a run that was refused before its first step, for this reason.
     pub fn refused(spec: &RunSpec, reason: String) -> Self {
@@ -495,7 +486,7 @@ impl Record {
     /// Its settings with their types; the defaults of the case if they are of another case, which a caller
     /// that asked for a run of its own case does not meet.
     pub fn settings_as<T: Settings>(&self) -> T {
-        settings::of_json(&self.settings).unwrap_or_default()
+        settings::of_json(&self.run.settings).unwrap_or_default()
     }
 
     /// A record of one simulation of this process that is yet to be filled: completed, nothing measured.
@@ -808,9 +799,9 @@ mod tests {
     fn the_key_names_what_was_run_and_not_how_fast() {
         let run = record();
         let slower = Record { cost: Cost::default(), ..run.clone() };
-        assert_eq!(run.key(), slower.key());
-        let key = |other: RunSpec| Record { run: other, ..run.clone() }.key();
-        assert_ne!(run.key(), key(run.spec().with_setting("re", 0.6)));
-        assert_ne!(run.key(), key(RunSpec { variant: "modern".into(), ..run.spec() }));
+        assert_eq!(run.run.key(), slower.run.key());
+        let key = |other: RunSpec| Record { run: other, ..run.clone() }.run.key();
+        assert_ne!(run.run.key(), key(run.spec().with_setting("re", 0.6)));
+        assert_ne!(run.run.key(), key(RunSpec { variant: "modern".into(), ..run.spec() }));
     }
 }

@@ -233,7 +233,7 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
                    threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
     Columns::<Record>::default()
-        .code("variant", |record| record.variant.clone())
+        .code("variant", |record| record.run.variant.clone())
         .text("set", |record| what(case, &record.spec()))
         .text("ended", |record| record.status.to_string())
         .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))

@@ -21,7 +21,7 @@ pub fn records() -> impl Iterator<Item = Record> {
 
 /// Adds those of the cases of the plans, except where the store has a run of the same code and method.
 pub fn add(made: &mut Made, plans: &Plans) {
-    let is_planned = |of: &Record| plans.iter().any(|(case, _)| case.name() == of.case);
+    let is_planned = |of: &Record| plans.iter().any(|(case, _)| case.name() == of.run.case);
     // Its results may be new.
     let key = |of: &Record| {
         let mut spec = of.spec();

@@ -15,7 +15,7 @@ type Profiled<'a> = (&'a Record, &'a Breakdown);
 fn largest(results: &CaseResults) -> Option<Profiled<'_>> {
     let (_, recommended) = results.recommended()?;
     let profiled =
-        results.runs.simulations().filter(|record| record.variant == recommended.variant);
+        results.runs.simulations().filter(|record| record.run.variant == recommended.run.variant);
     profiled
         .filter_map(|record| Some((record, record.cost.breakdown.as_ref()?)))
         .max_by_key(|(record, _)| record.cost.pair_interactions)
@@ -29,7 +29,7 @@ pub fn section(suite: &Suite) -> Section {
         Cell::num(1e9 * seconds / (cost.particles as f64 * cost.steps as f64), 3)
     };
     let table = Columns::<Profiled>::default()
-        .code("run", |(record, _)| format!("{} {}", record.case, record.variant))
+        .code("run", |(record, _)| format!("{} {}", record.run.case, record.run.variant))
         .num(["particles", "1"], |(record, _)| Cell::count(record.cost.particles as u64))
         .num(["stepping", "ns"], move |(record, b)| each(record, b.totals()[0]))
         .num(["force sweep", ""], share(&[FORCES, BOTH]))

@@ -549,7 +549,8 @@ impl Problem {
         let then = match self.relation.map(Relation::name) {
             None => format!("`touchstone submit {case} DIR --store STORE` measures and judges it."),
             Some(by) => format!(
-                "All is seen by an observer ({by}), and `touchstone relate {case} SAME DIR` compares it."
+                "All is seen by an observer ({by}), and `touchstone symmetry {case} --results SAME DIR` \
+                 compares it."
             ),
         };
         let times: Vec<String> = self.times().iter().map(f64::to_string).collect();

@@ -109,7 +109,7 @@ impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
         method: Method<X, D>,
         adjust: fn(&mut T),
     ) -> Self {
-        let lacks = Knob::others(&method.uses, T::FIELDS);
+        let lacks = Knob::others(&method.properties.uses, T::FIELDS);
         self.lacking([name, about], method, lacks, adjust)
     }
 }

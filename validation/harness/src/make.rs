@@ -401,9 +401,9 @@ impl Batch<'_> {
         let written = self.making.store.map(|store| store.write(&record));
         let mut made = lock(&self.made);
         if let Some(Err(error)) = written {
-            entry(&mut made.not_kept, record.key(), || error);
+            entry(&mut made.not_kept, record.run.key(), || error);
         }
-        made.records.insert(record.key(), record);
+        made.records.insert(record.run.key(), record);
     }
 
     /// Makes a run unless it is to stop, keeps its record, and tells that it is there, and if it was the last
@@ -417,7 +417,7 @@ impl Batch<'_> {
             if job.planned.timed {
                 record.cost.alone_s = vec![record.cost.cpu_s];
             }
-            let name = format!("{} {}", job.case.name(), record.variant);
+            let name = format!("{} {}", job.case.name(), record.run.variant);
             self.keep(record);
             let took = of_batch(job, self.making, start.elapsed().as_secs_f64());
             self.tell(|tally| tally.finish(&key, name, took));

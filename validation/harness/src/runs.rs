@@ -201,7 +201,7 @@ impl Runs {
 
     /// The records of all simulations, in the order of the plan.
     pub fn simulations(&self) -> impl Iterator<Item = &Record> {
-        self.all.iter().map(|run| &run.record).filter(|record| record.task == Task::Simulate)
+        self.all.iter().map(|run| &run.record).filter(|record| record.run.task == Task::Simulate)
     }
 
     /// The record of a run that reached its end.

@@ -152,7 +152,7 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
         .map(|(case, plan)| {
             let mut runs = Runs::new(plan.into_iter().map(&mut judged).collect());
             let of_case = |records: &[Record]| {
-                let of_case = records.iter().filter(|record| record.case == case.name());
+                let of_case = records.iter().filter(|record| record.run.case == case.name());
                 of_case.map(|record| submitted(case, record.clone())).collect()
             };
             // Ours, made in turn with others, are those that the program contains.

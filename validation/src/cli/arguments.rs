@@ -35,19 +35,23 @@ pub enum Command {
     Plan(Plan),
     /// Make the runs whose records the store lacks, and judge every gate
     Verify(Verify),
-    /// Judge the records of a store without making any run
+    /// Earlier name of `verify --no-runs`
+    #[command(hide = true)]
     Judge(Judge),
     /// Do what `verify` does and write the report; with --store, write it without making any run
     Report(Report),
     /// Write a problem into a folder for another code: particles, walls, material, times
     Export(Export),
-    /// Write a problem whose settings are drawn from a seed and from the description of a method
+    /// Earlier name of `export --sealed`
+    #[command(hide = true)]
     Challenge(Challenge),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
-    /// Compare what observers who are turned, mirrored, in motion and so on have of our own runs
+    /// Compare what observers who are turned, mirrored, in motion and so on have of our own runs, or what
+    /// another code wrote for two of them
     Symmetry(Symmetry),
-    /// Compare what another code wrote for two observers of one problem
+    /// Earlier name of `symmetry --results`
+    #[command(hide = true)]
     Relate(Relate),
     /// Show the differences between two reports or stores
     Compare(Compare),
@@ -58,8 +62,10 @@ pub enum Command {
     /// Show what this program was built from, and check that it works on this machine
     Doctor(Doctor),
     /// Print a completion script for a shell
+    #[command(hide = true)]
     Completions(Completions),
     /// Print the manual page, or write the pages of all commands into a folder
+    #[command(hide = true)]
     Man(Man),
 }
 
@@ -262,10 +268,19 @@ pub struct Export {
     /// Also make the run and write its results as a submission of this program
     #[arg(long)]
     pub solve: bool,
-    /// Write what another observer sees at a few early times, for `relate`: same, turned, mirrored, boosted,
-    /// binary-units, other-units, renumbered, shifted
+    /// Write what another observer sees at a few early times, for `symmetry --results`: same, turned,
+    /// mirrored, boosted, binary-units, other-units, renumbered, shifted
     #[arg(long, value_name = "NAME", value_parser = Relation::named)]
     pub relation: Option<Relation>,
+    /// Draw the settings from this number and from the method of --method. The number is public, and known
+    /// only after the method was published, such as the first digits of a lottery or of a random beacon at a
+    /// stated time
+    #[arg(long, value_name = "N", requires = "method", conflicts_with_all = ["set", "solve", "relation"])]
+    pub sealed: Option<u64>,
+    /// The method.json that the submission of a sealed problem will have; if its code, version, scheme,
+    /// division or settings are changed afterwards, the submission is refused
+    #[arg(long, value_name = "FILE", requires = "sealed")]
+    pub method: Option<PathBuf>,
     /// Do it even if it is estimated to take more than 4 GB of memory or, with --solve, 24 hours on one core
     #[arg(long)]
     pub allow_long: bool,
@@ -278,6 +293,14 @@ pub struct Symmetry {
     /// Change a setting (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
+    /// Compare in place of our own runs the results of another code for the problems of one case that
+    /// `export --relation same` and `export` with another relation wrote
+    #[arg(long, num_args = 2, value_names = ["SAME", "OTHER"], requires = "cases", conflicts_with = "set")]
+    pub results: Option<Vec<PathBuf>>,
+    /// Names of columns in these results, as in `--map x=pos_x,y=pos_y`
+    #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
+    #[arg(requires = "results")]
+    pub map: Vec<(String, String)>,
     /// Do it even if it is estimated to take more than 24 hours on one core or 4 GB of memory
     #[arg(long)]
     pub allow_long: bool,
@@ -392,6 +415,9 @@ pub struct Verify {
     /// Folder for the records; a run whose record is there already is not made again
     #[arg(long, value_name = "DIR", default_value = "reports/records")]
     pub store: PathBuf,
+    /// Make no run: judge what the store has
+    #[arg(long, conflicts_with_all = ["fresh", "threads"])]
+    pub no_runs: bool,
     #[command(flatten)]
     pub making: Making,
 }

@@ -57,10 +57,10 @@ impl Side {
             let words = format!("{} is neither a report nor a store", path.display());
             return Err(Failure::usage(words));
         }
-        let name = |r: Record| (format!("{} {} {}", r.case, r.variant, r.key()), r);
+        let name = |r: Record| (format!("{} {} {}", r.run.case, r.run.variant, r.run.key()), r);
         let records = records.map(|records| {
             let (others, ours): (Vec<Record>, Vec<Record>) =
-                records.into_iter().partition(|record| record.submission.is_some());
+                records.into_iter().partition(|record| record.run.submission.is_some());
             others.into_iter().for_each(|record| add(&mut submissions, record, world));
             ours.into_iter().map(name).collect()
         });
@@ -80,12 +80,12 @@ struct Submitted {
 
 /// Adds a record to the verdicts on it, or judges it where there are none.
 fn add(all: &mut Vec<Submitted>, record: Record, world: &World) {
-    let key = record.key().to_string();
+    let key = record.run.key().to_string();
     if let Some(known) = all.iter_mut().find(|known| known.of.key == key) {
         known.record = Some(record);
         return;
     }
-    let case = world.cases.iter().find(|case| case.name() == record.case);
+    let case = world.cases.iter().find(|case| case.name() == record.run.case);
     let judged = case.and_then(|case| {
         let run = suite::submitted(*case, record.clone());
         SubmissionVerdicts::of(*case, &run, false)
@@ -203,7 +203,8 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
         (Some(old), Some(new)) => changes.extend(paired(old, new, |_, was, is| of_gate(was, is))),
         (None, None) => {}
         _ => {
-            let words = "one has verdicts, the other only records; touchstone judge makes verdicts";
+            let words =
+                "one has verdicts, the other only records; touchstone verify --no-runs makes them";
             output::say(&format!("note: no gates are compared: {words}"));
         }
     }
@@ -228,7 +229,7 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
 type Bounds = BTreeMap<(String, String), Bound>;
 
 fn bounds(world: &World, records: &BTreeMap<String, Record>) -> Bounds {
-    let is_asked = |case: &&&'static dyn Case| records.values().any(|r| r.case == case.name());
+    let is_asked = |case: &&&'static dyn Case| records.values().any(|r| r.run.case == case.name());
     let plans = world.cases.iter().filter(is_asked).flat_map(|case| {
         [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(*case, tier))
     });

@@ -1,4 +1,4 @@
-//! `export`, `challenge` and `submit`: problems for other codes, and what these made of them.
+//! `export` and `submit`: problems for other codes, and what these made of them.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -34,6 +34,9 @@ use super::{Exit, Failure, Outcome, World, arguments, output, submitted};
 
 pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
     let of = &arguments.of;
+    if let (Some(seed), Some(method)) = (arguments.sealed, &arguments.method) {
+        return sealed(of, seed, method, world);
+    }
     let case = cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
@@ -198,17 +201,22 @@ fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
     Some(series)
 }
 
-pub fn challenge(arguments: &arguments::Challenge, world: &World) -> Result<(), Failure> {
-    let of = &arguments.of;
+/// Writes a problem whose settings are drawn from a seed and a method.
+pub fn sealed(
+    of: &arguments::Written,
+    seed: u64,
+    method: &Path,
+    world: &World,
+) -> Result<(), Failure> {
     let case = cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     case.settings(variant, &[])?;
-    let (method, text) = submission::method(&arguments.method).map_err(|flaws| {
+    let (method, text) = submission::method(method).map_err(|flaws| {
         let flaws: Vec<String> = flaws.iter().map(Flaw::to_string).collect();
         Failure::usage(format!("no submission can have this method:\n  {}", flaws.join("\n  ")))
     })?;
-    let set = challenge::draw(case, variant, arguments.seed, &method).map_err(Failure::usage)?;
-    let sealed = Sealed { seed: arguments.seed, method: method.digest() };
+    let set = challenge::draw(case, variant, seed, &method).map_err(Failure::usage)?;
+    let sealed = Sealed { seed, method: method.digest() };
     let digest = sealed.method.clone();
     let problem = Problem::of(case, case::spec(case, variant, &set)?)?.sealed(case, sealed);
     let mut files = write::files(&problem, of.format)?;
@@ -329,16 +337,23 @@ fn spec_of(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
     Ok(case::resolved(case, plain)?)
 }
 
-pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
-    let case = cases::find_in(world.cases, &arguments.case)?;
+/// Compares what another code wrote for two observers of a problem, the first of relation `same`.
+pub fn relate(
+    case: &str,
+    [base, turned]: [&Path; 2],
+    map: &[(String, String)],
+    allow_long: bool,
+    world: &World,
+) -> Outcome {
+    let case = cases::find_in(world.cases, case)?;
     let observed = |folder: &Path| -> Result<_, Failure> {
-        let entry = read(folder, &arguments.map)?;
+        let entry = read(folder, map)?;
         let usage = |what: &str| Failure::usage(format!("{}: {what}", folder.display()));
         let none = || usage("expected a problem.json that `export --relation` wrote");
         let asked = entry.asked.as_ref().ok_or_else(none)?;
         let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
         let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
-        let problem = Problem::seen(case, spec_of(case, asked)?, Some(by), arguments.allow_long)?;
+        let problem = Problem::seen(case, spec_of(case, asked)?, Some(by), allow_long)?;
         asked.agrees(&problem).map_err(|flaw| refused(vec![flaw]))?;
         entry
             .results
@@ -359,8 +374,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
         }
         Ok((entry, problem, by))
     };
-    let ((ours, same, first), (theirs, other, by)) =
-        (observed(&arguments.same)?, observed(&arguments.other)?);
+    let ((ours, same, first), (theirs, other, by)) = (observed(base)?, observed(turned)?);
     if first != Relation::Same || same.spec.key() != other.spec.key() {
         return Err(Failure::usage(format!(
             "expected two problems of the same variant and settings, the first of relation same; the first \
@@ -373,9 +387,7 @@ pub fn relate(arguments: &arguments::Relate, world: &World) -> Outcome {
     }
     let most = symmetry::most_steps(&same.outline, &other.outline);
     let mut steps: f64 = 1.0;
-    for (entry, problem, folder) in
-        [(&ours, &same, &arguments.same), (&theirs, &other, &arguments.other)]
-    {
+    for (entry, problem, folder) in [(&ours, &same, base), (&theirs, &other, turned)] {
         let end = problem.outline.times.last().copied().unwrap_or_default();
         steps = steps.max(entry.system.steps.unwrap_or(end / problem.outline.dt));
         if steps > most {
@@ -406,8 +418,8 @@ fn problem(
             return Err(Failure::usage(words));
         }
         Some(asked) if asked.relation.is_some() => {
-            let words = "problem.json asks for a few steps that an observer sees; `touchstone relate` \
-                         compares them";
+            let words = "problem.json asks for a few steps that an observer sees; `touchstone symmetry \
+                         --results` compares them";
             return Err(Failure::usage(words));
         }
         Some(asked) => spec_of(case, asked)?,

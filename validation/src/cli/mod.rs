@@ -322,13 +322,29 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Run(arguments) => run::run(arguments, world),
         Command::Plan(arguments) => plan::plan(arguments, world).map(done),
         Command::Verify(arguments) => verify::verify(arguments, world),
-        Command::Judge(arguments) => verify::judge(arguments, world),
+        Command::Judge(arguments) => {
+            renamed("judge", "verify --no-runs");
+            verify::judge(arguments, world)
+        }
         Command::Report(arguments) => report::report(arguments, world),
         Command::Export(arguments) => exchange::export(arguments, world).map(done),
-        Command::Challenge(arguments) => exchange::challenge(arguments, world).map(done),
+        Command::Challenge(arguments::Challenge { of, seed, method }) => {
+            renamed("challenge", "export --sealed");
+            exchange::sealed(of, *seed, method, world).map(done)
+        }
         Command::Submit(arguments) => exchange::submit(arguments, world),
-        Command::Symmetry(arguments) => symmetry::symmetry(arguments, world),
-        Command::Relate(arguments) => exchange::relate(arguments, world),
+        Command::Symmetry(of) => match of.results.as_deref() {
+            Some([same, other]) => match &of.cases[..] {
+                [case] => exchange::relate(case, [same, other], &of.map, of.allow_long, world),
+                _ => Err(Failure::usage("--results are those of one case; name one")),
+            },
+            _ => symmetry::symmetry(of, world),
+        },
+        Command::Relate(arguments) => {
+            renamed("relate", "symmetry --results");
+            let arguments::Relate { case, same, other, allow_long, map } = arguments;
+            exchange::relate(case, [same, other], map, *allow_long, world)
+        }
         Command::Compare(arguments) => compare::compare(arguments, world),
         Command::Stability(arguments) => stability::stability(arguments, world),
         Command::Explain(arguments) => explain::explain(arguments, world).map(done),
@@ -336,6 +352,11 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
         Command::Completions(arguments) => completions(arguments).map(done),
         Command::Man(arguments) => man::man(arguments).map(done),
     }
+}
+
+/// Says that a command has another name.
+fn renamed(old: &str, new: &str) {
+    output::say(&format!("note: `{old}` is `{new}` now, and will be removed"));
 }
 
 /// The script of a shell, on standard output.

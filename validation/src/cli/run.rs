@@ -357,7 +357,7 @@ fn write(
 
 /// The velocity across a channel at all times of the record, whose profiles are `u@TAU` with TAU = νt/L².
 fn velocities(record: &Record) -> Option<Profile> {
-    let setting = |name: &str| record.settings[name].as_f64();
+    let setting = |name: &str| record.run.settings[name].as_f64();
     let (width, nu) = (setting("width")?, setting("nu")?);
     let mut profiles: Vec<(f64, &Profile)> = Vec::new();
     for (name, profile) in &record.profiles {

@@ -67,7 +67,7 @@ fn row(results: &CaseResults) -> Vec<String> {
     row.extend(match results.recommended() {
         Some((card, record)) => [
             headline(card, record).unwrap_or_else(|_| "none".into()),
-            record.variant.clone(),
+            record.run.variant.clone(),
             report::seconds(record.cost.alone_median().unwrap_or(record.cost.cpu_s)),
         ],
         None => Default::default(),
@@ -150,7 +150,7 @@ pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
             format!("{} was not measured: {reason}", metric.name)
         }
         (Some(card), Some(found)) => {
-            let stated = (card.stated)(&record.settings);
+            let stated = (card.stated)(&record.run.settings);
             format!("{}, {}", stated.number(found.value), stated.in_words())
         }
         (None, Some(found)) => in_words(&metric.name, found),
@@ -163,7 +163,7 @@ fn broken(declared: &Declaration, record: &Record) -> Option<String> {
     let breaks = &declared.card.as_ref()?.breaks;
     let Breaks { setting, words: [before, after], has_broken, sign } = breaks;
     has_broken(record).filter(|broken| *broken)?;
-    let value = report::exact(record.settings[*setting].as_f64()?);
+    let value = report::exact(record.run.settings[*setting].as_f64()?);
     Some(format!("at {before}{value}{after}: {sign}"))
 }
 

@@ -231,7 +231,10 @@ fn a_report_is_whole_and_explain_reads_it() {
     assert_eq!((verdicts.runs.len(), verdicts.counts[&Verdict::Fail]), (3, 1));
     for run in &verdicts.runs {
         let name = format!("records/{}-{}-{}.json", run.case, run.variant, run.key);
-        assert_eq!(Record::from_json(&read(&name)).expect("a record").key().to_string(), run.key);
+        assert_eq!(
+            Record::from_json(&read(&name)).expect("a record").run.key().to_string(),
+            run.key
+        );
     }
     for (gate, expected) in [
         ("staged.right.right.error", Exit::Pass),
@@ -379,7 +382,7 @@ fn records_are_reused_judged_rendered_and_compared() {
     };
     static GOOD: [&dyn Case; 1] = [&RIGHT];
     let good = |line: &str| on(&GOOD, line);
-    assert_eq!(good("touchstone judge --store OUT/none"), Exit::Usage);
+    assert_eq!(good("touchstone verify --no-runs --store OUT/none"), Exit::Usage);
     assert_eq!(good("touchstone report --out OUT/a"), Exit::Pass);
     let record = std::fs::read_dir(folder.path().join("a/records")).expect("a store").next();
     let path = record.expect("a record").expect("a file").path();
@@ -392,7 +395,7 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert!(afresh > made, "it was not made afresh");
     assert_eq!(good("touchstone report --out OUT/a --fresh"), Exit::Pass);
     assert!(time() > afresh, "it was not made afresh");
-    let line = "touchstone judge --store OUT/a/records --junit OUT/junit.xml";
+    let line = "touchstone verify --no-runs --store OUT/a/records --junit OUT/junit.xml";
     assert_eq!(good(line), Exit::Pass);
     let read = |name: &str| std::fs::read_to_string(folder.path().join(name)).expect(name);
     assert!(
@@ -407,7 +410,7 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert_eq!(good("touchstone compare OUT/c OUT/a"), Exit::GateFailed);
     assert_eq!(good("touchstone compare OUT/c/records OUT/a/records"), Exit::GateFailed);
     // A store that lacks a run fails its gates rather than passing over them, unless that is asked for.
-    assert_eq!(on(&SOUND, "touchstone judge --store OUT/a/records"), Exit::GateFailed);
+    assert_eq!(on(&SOUND, "touchstone verify --no-runs --store OUT/a/records"), Exit::GateFailed);
     assert_eq!(on(&SOUND, "touchstone report --store OUT/a/records --out OUT/d"), Exit::GateFailed);
     let partial = "touchstone report --store OUT/a/records --out OUT/d --partial";
     assert_eq!(on(&SOUND, partial), Exit::Pass);

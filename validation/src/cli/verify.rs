@@ -1,4 +1,4 @@
-//! `verify` and `judge`: plans of cases, judged.
+//! `verify`: plans of cases, judged.
 
 use base::gate::Verdict;
 use std::path::Path;
@@ -20,8 +20,11 @@ use super::{
 };
 
 pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
-    let arguments::Verify { of, store, making } = arguments;
+    let arguments::Verify { of, store, no_runs, making } = arguments;
     show(of, world, |cases| {
+        if *no_runs {
+            return of_store(cases, of.tier, store, making.any_build, world);
+        }
         let plans = plans(cases, of.tier, world)?;
         run(plans, of.tier, &Store::open(store)?, *making, None, world)
     })

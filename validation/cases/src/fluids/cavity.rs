@@ -95,7 +95,8 @@ struct Closed {
 
 impl Closed {
     fn new(method: &Method, s: &Cavity) -> Result<Self, RunError> {
-        let flow = s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: None });
+        let flow =
+            s.flow(&method.properties, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: None });
         let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
         Ok(Self { settings: s.clone(), method: method.clone(), flow, places })
     }
@@ -104,7 +105,7 @@ impl Closed {
 /// Fluid at rest on a lattice, and walls on the same lattice. All that is above the lid moves with it: it is
 /// a plate that slides along on the side walls.
 fn particles(method: &Method, flow: &UnitFlow) -> Vec<Particle> {
-    let (dx, first) = (flow.medium.dx, method.first_row.depth());
+    let (dx, first) = (flow.medium.dx, method.properties.first_row.depth());
     let behind = (flow.support / dx - first - 1e-9).floor() + first;
     let count = ((1.0 / dx).round() + 2.0 * behind) as usize + 1;
     let particle = |x: Vector2<f64>| {
@@ -239,7 +240,7 @@ impl Problem for Closed {
             let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
             record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
         }
-        if Asked::of(record).particles {
+        if Asked::of(&record.run).particles {
             let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
             pictures::keep(record, pictures::END, "L", ("speed", "U"), speeds);
         }

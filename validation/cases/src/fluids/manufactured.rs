@@ -96,7 +96,7 @@ const MOST: [f64; 2] = [7.0, 80.0];
 fn flow(s: &ManufacturedSettings, m: &Method) -> UnitFlow {
     let nu = 1.0 / s.re;
     let force = MOST[0] + MOST[1] * nu;
-    let mut flow = s.flow(m, Scales { speed: 1.0, force, area: 1.0, dt: None });
+    let mut flow = s.flow(&m.properties, Scales { speed: 1.0, force, area: 1.0, dt: None });
     flow.medium.acceleration = Vector2::new(1.0, nu);
     flow
 }
@@ -112,7 +112,8 @@ fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
         };
         solver::lattice(Vector2::new(0.5 * dx, y), dx, count, 1).map(of)
     };
-    let (first, behind) = (m.first_row.fluid(), m.first_row != FirstRow::Nowhere);
+    let (first, behind) =
+        (m.properties.first_row.fluid(), m.properties.first_row != FirstRow::Nowhere);
     let rows = count + 1 - (2.0 * first) as usize;
     let fluid = (0..rows).flat_map(|k| row((first + k as f64) * dx, Role::Fluid));
     let last = if behind { (flow.support / dx - 1e-9).floor() as usize + 1 } else { 0 };

@@ -72,16 +72,16 @@ impl Cylinders {
         let inner = s.gap / (s.ratio - 1.0);
         // Mach 0.1, and not below what is as stiff as viscosity.
         let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
-        let medium = method.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
+        let medium = method.properties.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
         let medium = Medium { nu: s.nu, ..medium };
         let step = Step::courant(s.courant, h, [sound_speed, speed]).viscous(s.viscous, h, s.nu);
-        let waves = medium.waves(&method.uses);
-        let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let waves = medium.waves(&method.properties.uses);
+        let limits = method.properties.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
         let (limits, end) = (limits.moving(h, speed, 0.0), s.end * s.gap * s.gap / s.nu);
         let rules = Rules { step, limits, sound_speed, end };
         let flow = TaylorCouette { inner, outer: inner + s.gap, speed };
         // Rows out to the support must fit into the inner cylinder.
-        let share = method.support * h / inner;
+        let share = method.properties.support * h / inner;
         if share >= 1.0 {
             let (what, setting) = ("the support over the inner radius", "ratio or layers");
             return Err(RunError::TooMuch { what, value: share, most: 1.0, setting });
@@ -95,10 +95,10 @@ impl Cylinders {
         let (Self { flow, settings: s, .. }, &Medium { dx, h, .. }) = (self, &self.medium);
         let inner = Curve::circle(Vector2::zeros(), flow.inner, true, dx);
         let outer = Curve::circle(Vector2::zeros(), flow.outer, false, dx);
-        let first = method.first_row.depth();
+        let first = method.properties.first_row.depth();
         let (nearest, layers) = if first == 0.0 { (1.0, s.layers - 1) } else { (first, s.layers) };
         let fluid = (0..layers).map(|k| (inner.row(-(nearest + k as f64) * dx, dx), 0.0));
-        let behind = |curve: &Curve| curve.rows_behind(dx, first, method.support * h);
+        let behind = |curve: &Curve| curve.rows_behind(dx, first, method.properties.support * h);
         let inside = behind(&inner).into_iter().map(|row| (row, flow.speed));
         let outside = behind(&outer).into_iter().map(|row| (row, 0.0));
         let particles = |(row, speed): (Particles, f64)| {

@@ -137,7 +137,7 @@ fn stiffness(s: &BoxSettings) -> f64 {
 fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
     let medium = time_step::Medium { c0: 1.0, h: 1.0, nu, alpha, delta };
-    time_step::modes(&method.square([s.h_over_dx, ETA2]), s.n, &medium)
+    time_step::modes(&method.properties.square([s.h_over_dx, ETA2]), s.n, &medium)
 }
 
 /// A run of the case.
@@ -150,11 +150,11 @@ struct Resting {
 impl Resting {
     /// What the settings say, and theory.
     fn new(method: &Method, s: &BoxSettings) -> Result<Self, RunError> {
-        if s.delta > 0.0 && !method.uses.contains(&Knob::Diffusion) {
+        if s.delta > 0.0 && !method.properties.uses.contains(&Knob::Diffusion) {
             let variant = "without density diffusion".into();
             return Err(RunError::Unused { key: "delta".into(), variant });
         }
-        let limits = limits::Limits::of(&modes(method, s), method.theory).times(h(s));
+        let limits = limits::Limits::of(&modes(method, s), method.properties.theory).times(h(s));
         let step = Step::courant(s.courant, h(s), [1.0, 0.0]);
         let rules = Rules { step, limits, sound_speed: 1.0, end: s.steps as f64 * step.dt };
         Ok(Self { method: method.clone(), settings: s.clone(), rules })
@@ -167,7 +167,7 @@ fn medium(method: &Method, s: &BoxSettings) -> Medium {
         eta2_over_h2: ETA2,
         alpha: s.alpha,
         diffusion: s.delta,
-        ..method.medium(Tait::new(1.0, 1.0), [1.0 / s.n as f64, h(s)])
+        ..method.properties.medium(Tait::new(1.0, 1.0), [1.0 / s.n as f64, h(s)])
     }
 }
 
@@ -253,8 +253,9 @@ fn at_limit(variant: &str) -> impl Fn(&mut BoxSettings, [f64; 3]) {
         s.stiffness = stiffness.is_finite().then_some(stiffness);
         (s.alpha, s.delta) = (alpha, delta);
         let modes = modes(&method, s);
-        s.courant = time_step::time_step_limit(&modes, method.theory);
-        let growth = time_step::growth_per_step(&modes, method.theory, SEEN_FROM * s.courant);
+        s.courant = time_step::time_step_limit(&modes, method.properties.theory);
+        let growth =
+            time_step::growth_per_step(&modes, method.properties.theory, SEEN_FROM * s.courant);
         s.steps = (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize;
     }
 }

@@ -594,7 +594,7 @@ mod tests {
         }
         let method = schemes::solid::bare();
         let mut watch = Motion::new(&s, &particles, 0.0);
-        let parts = Parts::new(solid::medium(&s, &method), s.scales().domain, particles);
+        let parts = Parts::new(solid::medium(&s, &method.properties), s.scales().domain, particles);
         let simulation = (method.build)(parts).expect("a scene");
         watch.after_step(&*simulation);
         let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));

@@ -87,7 +87,7 @@ impl WaveSettings {
             let velocity = self.direction() * (AMPLITUDE * cos(phase(k)));
             Particle::fluid(x, velocity, RUBBER.density, DX * DX)
         });
-        let medium = RUBBER.medium(method, [DX, self.h_over_dx * DX]);
+        let medium = RUBBER.medium(&method.properties, [DX, self.h_over_dx * DX]);
         Parts::new(medium, Domain::torus(1.0, 1.0), wave.collect())
     }
 
@@ -99,7 +99,7 @@ impl WaveSettings {
     /// ω of the wave, from the gradient symbol.
     fn frequency(&self, method: &Method<Symmetric>) -> f64 {
         let h = self.h_over_dx / N as f64;
-        let lattice = method.square([self.h_over_dx, 0.0]);
+        let lattice = method.properties.square([self.h_over_dx, 0.0]);
         let g = lattice.gradient(Vector2::new(TAU / N as f64, 0.0)).norm() / h;
         let Material { bulk, shear, .. } = RUBBER;
         let modulus = if self.transverse { shear } else { bulk + 4.0 / 3.0 * shear };
@@ -110,8 +110,8 @@ impl WaveSettings {
     fn rules(&self, method: &Method<Symmetric>) -> Rules {
         let dt = 0.02 / self.frequency(method) * TAU;
         let step = Step { dt, number: 0.02, by: "period" };
-        let medium = RUBBER.medium(method, [DX, self.h_over_dx / N as f64]);
-        let limits = limits(method, &RUBBER, &medium, self.h_over_dx, 0.0);
+        let medium = RUBBER.medium(&method.properties, [DX, self.h_over_dx / N as f64]);
+        let limits = limits(&method.properties, &RUBBER, &medium, self.h_over_dx, 0.0);
         let end = dt * STEPS as f64;
         Rules { step, limits, sound_speed: RUBBER.sound_speed(), end }
     }
@@ -140,7 +140,7 @@ impl Problem for Wave {
     fn brief(&self) -> Brief {
         let rules = self.settings.rules(&self.method);
         let h_over_dx = self.settings.h_over_dx;
-        let medium = RUBBER.medium(&self.method, [DX, h_over_dx * DX]);
+        let medium = RUBBER.medium(&self.method.properties, [DX, h_over_dx * DX]);
         Brief::new(medium, rules, (N * N) as f64, "h_over_dx")
             .numbers(&[("h/dx", h_over_dx), (PLANNED_DT, rules.dt())])
     }

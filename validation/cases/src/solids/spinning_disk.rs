@@ -357,7 +357,7 @@ mod tests {
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
         let method = schemes::solid::bare();
-        let parts = Parts::new(solid::medium(&s, &method), Domain::open(), particles);
+        let parts = Parts::new(solid::medium(&s, &method.properties), Domain::open(), particles);
         let simulation = (method.build)(parts).expect("a scene");
         let [inside, rim] = mistaken(&*simulation, 0.03);
         assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");

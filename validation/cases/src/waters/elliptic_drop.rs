@@ -264,7 +264,7 @@ impl Problem for Drop {
     ) {
         history.measure(record);
         ledger.measure(kinetic, "initial kinetic energy", record);
-        if Asked::of(record).particles {
+        if Asked::of(&record.run).particles {
             let (s, particles) = (&self.settings, end.particles());
             let centre = shape(&particles).centre;
             let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();

@@ -156,16 +156,16 @@ impl Column {
         let medium = Medium {
             acceleration: down,
             wall_acceleration: down * s.wall_gravity,
-            ..m.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, [dx, h]).set_by(s)
+            ..m.properties.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, [dx, h]).set_by(s)
         };
         let exact = water::at_rest(&medium);
         let fastest = exact.sound_speed(s.depth);
-        let limits = water::limits(m, &medium, [s.h_over_dx, fastest], LIMIT_BOX);
+        let limits = water::limits(&m.properties, &medium, [s.h_over_dx, fastest], LIMIT_BOX);
         let limits = limits.moving(h, 0.0, s.g);
         let (step, period) = (Step::courant(s.courant, h, [fastest, 0.0]), 4.0 * s.depth / c0);
         let rules = Rules { step, limits, sound_speed: c0, end: s.end * period };
         let tank = geometry::Tank { columns: s.columns, rows: s.rows + FREEBOARD, dx };
-        let first = m.first_row.fluid();
+        let first = m.properties.first_row.fluid();
         let level = (s.rows as f64 + 0.5 - first) * dx;
         let (settings, method, first) = (s.clone(), m.clone(), first * dx);
         Self { settings, method, exact, medium, rules, tank, first, level, period }
@@ -202,9 +202,13 @@ impl Column {
     /// surface a compressed column would sink into the bottom.
     fn parts(&self) -> Result<Parts, RunError> {
         let m = &self.method;
-        let walls = water::wall_particles(m.first_row, &self.tank, m.support * self.medium.h);
+        let walls = water::wall_particles(
+            m.properties.first_row,
+            &self.tank,
+            m.properties.support * self.medium.h,
+        );
         let walls = walls.into_iter().map(|(place, role)| self.at_rest(place).with_role(role));
-        let particles: Vec<Particle> = self.water(m.first_row).chain(walls).collect();
+        let particles: Vec<Particle> = self.water(m.properties.first_row).chain(walls).collect();
         water::check_above(&particles, self.level, |above| {
             let HydrostaticSettings { compressibility, gamma, depth, .. } = self.settings;
             let most = depth / ((gamma as f64 - 1.0) * above);
@@ -496,7 +500,7 @@ mod tests {
         let method = schemes::water::modern();
         let column = Column::new(&method, &settings);
         let (dx, g) = (column.medium.dx, settings.g);
-        let water = || -> Vec<Particle> { column.water(method.first_row).collect() };
+        let water = || -> Vec<Particle> { column.water(method.properties.first_row).collect() };
         let simulation = |particles: Vec<Particle>| {
             let parts = Parts { particles, ..column.parts().expect("a scene") };
             let mut simulation = (method.build)(parts).expect("a scene");

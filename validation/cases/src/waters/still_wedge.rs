@@ -132,7 +132,8 @@ fn row(s: &Wedge, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
 /// Water in columns that fill the tank up to y = H, with the exact density of their places, and its walls.
 fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Particle>, RunError> {
     let (dx, exact) = (medium.dx, water::at_rest(medium));
-    let (first, behind) = (method.first_row.fluid(), method.first_row.depth());
+    let (first, behind) =
+        (method.properties.first_row.fluid(), method.properties.first_row.depth());
     let at_rest = |place: Vector2<f64>, volume: f64| {
         Particle::fluid(place, Vector2::zeros(), exact.density(1.0 - place.y), volume)
     };
@@ -147,7 +148,7 @@ fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Par
         let y = |k: usize| 1.0 - height + (k as f64 + first) * spacing;
         particles.extend((0..count as usize).map(|k| at_rest(Vector2::new(x, y(k)), dx * spacing)));
     }
-    let rows = (method.support * medium.h / dx - behind - 1e-9).floor() as usize;
+    let rows = (method.properties.support * medium.h / dx - behind - 1e-9).floor() as usize;
     for k in 0..=rows {
         let depth = (behind + k as f64) * dx;
         let role = if depth > 0.0 { Role::Wall } else { Role::Interface };
@@ -220,7 +221,7 @@ impl Moments {
         let water = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.position);
         let is_outside = |x: &Vector2<f64>| (x.x - HALF).abs() > HALF || x.y < floor(s, x.x);
         record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
-        if Asked::of(record).particles {
+        if Asked::of(&record.run).particles {
             let errors = water.zip(errors);
             pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
         }

@@ -10,8 +10,6 @@ mod terms;
 #[cfg(test)]
 mod tests;
 
-use std::ops::Deref;
-
 use base::mutation::{Constant, Disorder, Mutation};
 use nalgebra::Vector2;
 use solver::{
@@ -96,7 +94,7 @@ fn setting<X: Numbers>(mut parts: Parts<X>) -> (Medium, Vec<PlaneWall>, Setting<
     (medium, mirrors, Setting { feet, skin, skin_share, limits, parallel_from, ..usual })
 }
 
-/// A scheme without its type: its properties, to which it dereferences, and how it is built. `D` is what a
+/// A scheme without its type: its properties, and how it is built. `D` is what a
 /// case needs of a simulation beyond [`Stepper`].
 pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
     /// What is known of it.
@@ -109,14 +107,6 @@ pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
 impl<X, D: ?Sized> Clone for Method<X, D> {
     fn clone(&self) -> Self {
         Self { properties: self.properties.clone(), build: self.build }
-    }
-}
-
-impl<X, D: ?Sized> Deref for Method<X, D> {
-    type Target = Properties;
-
-    fn deref(&self) -> &Properties {
-        &self.properties
     }
 }
 

@@ -29,7 +29,7 @@ pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) 
     }
     for record in card.runs.iter().filter_map(|spec| runs.record(spec)) {
         let words = card.beside.and_then(|beside| beside(record));
-        facts.extend(words.map(|words| (format!("`{}`:", record.variant), words)));
+        facts.extend(words.map(|words| (format!("`{}`:", record.run.variant), words)));
     }
     let stable = stable(declared, &card.runs, runs);
     facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
@@ -61,7 +61,7 @@ fn result(card: &declare::Card, declared: &Declaration, spec: &RunSpec, runs: &R
     };
     let compared = declared.comparisons.iter().find(is_this);
     let uncertainty = compared.map(|of| Found::of(of, runs).uncertainty());
-    let number = |value| format!(" ± {}", (card.stated)(&record.settings).number(value));
+    let number = |value| format!(" ± {}", (card.stated)(&record.run.settings).number(value));
     let uncertainty = uncertainty.filter(|u| u.is_finite()).map(number).unwrap_or_default();
     format!("**{error}**{uncertainty} in {}", cost(record))
 }
@@ -72,7 +72,7 @@ fn result(card: &declare::Card, declared: &Declaration, spec: &RunSpec, runs: &R
 /// How the run ended, if the error was not measured.
 pub fn headline(card: &declare::Card, record: &Record) -> Result<String, String> {
     let value = record.value(card.metric.clone());
-    let stated = (card.stated)(&record.settings);
+    let stated = (card.stated)(&record.run.settings);
     value.map(|value| stated.number(value)).ok_or_else(|| record.status.to_string())
 }
 
@@ -105,13 +105,15 @@ fn breaks(card: &declare::Card, runs: &Runs) -> Option<String> {
     let Breaks { setting, words: [before, after], has_broken, sign } = card.breaks;
     let of = |spec: &RunSpec| {
         let own = runs.simulations().filter(|record| {
-            record.variant == spec.variant && record.mutation.is_none() && record.disorder.is_none()
+            record.run.variant == spec.variant
+                && record.run.mutation.is_none()
+                && record.run.disorder.is_none()
         });
         let answers = own.filter_map(|record| {
             let is_refused = matches!(record.status, Status::Refused { .. });
             let has_broken = has_broken(record).filter(|_| !is_refused)?;
             let broken = has_broken || record.status != Status::Completed;
-            Some((record.settings[setting].as_f64()?, broken))
+            Some((record.run.settings[setting].as_f64()?, broken))
         });
         let answers: Vec<(f64, bool)> = answers.collect();
         let broken = answers.iter().filter(|(_, broken)| *broken).map(|(value, _)| *value);
@@ -244,7 +246,7 @@ mod tests {
     fn an_error_is_stated_with_the_settings_of_its_run() {
         let judged = run(spec("good", 3), |r| r.put(ERROR, -0.0576));
         assert_eq!(headline(&made_up(), &judged.record), Ok("−0.058\u{a0}a".into()));
-        let stated = (made_up().stated)(&judged.record.settings).in_words();
+        let stated = (made_up().stated)(&judged.record.run.settings).in_words();
         assert_eq!(stated, "distance at n = 3, against nothing (± 0.50\u{a0}a)");
     }
 }

@@ -45,10 +45,10 @@ fn session(record: &Record) -> Option<&str> {
 /// for one that goes on for longer has no other error.
 fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     let of = |run: &'a JudgedRun| {
-        let (record, of) = (&run.record, run.record.submission.as_ref()?);
+        let (record, of) = (&run.record, run.record.run.submission.as_ref()?);
         let name = match of.code.as_str() {
-            OURS if session(record).is_some() => format!("ours, {}", record.variant),
-            code => format!("{code}, {} ({})", of.scheme, record.variant),
+            OURS if session(record).is_some() => format!("ours, {}", record.run.variant),
+            code => format!("{code}, {} ({})", of.scheme, record.run.variant),
         };
         Some(Mark {
             of,
@@ -187,8 +187,8 @@ fn provenance(runs: &Runs) -> Option<String> {
         words += " Seconds with 60 to 120 particles measure the overhead of a step, not the speed of a code.";
     }
     let is_ours = |of: &Submission| of.code == OURS;
-    let ours = records().filter(|record| record.submission.as_deref().is_some_and(is_ours));
-    if ours.into_iter().any(|record| record.variant == "curved") {
+    let ours = records().filter(|record| record.run.submission.as_deref().is_some_and(is_ours));
+    if ours.into_iter().any(|record| record.run.variant == "curved") {
         words += " Our `curved` was added after the first results of the others, of which two were better \
                   than ours; a reader who compares first attempts leaves it out.";
     }
@@ -201,7 +201,7 @@ const MOST_EQUAL: usize = 10;
 /// Results that several codes handed in.
 fn equal(runs: &Runs) -> Option<String> {
     let mut found = Vec::new();
-    let of = |run: &JudgedRun| run.record.submission.as_deref().cloned();
+    let of = |run: &JudgedRun| run.record.run.submission.as_deref().cloned();
     let all: Vec<Submission> = runs.of_others().filter_map(of).collect();
     for (k, one) in all.iter().enumerate().filter(|(_, one)| one.results.is_some()) {
         let is_borrowed = |other: &&Submission| {
@@ -219,7 +219,7 @@ fn equal(runs: &Runs) -> Option<String> {
             |own: &&JudgedRun| own.record.state.is_some() && own.record.state == run.record.state;
         let ours = of(run).filter(|of| of.code != OURS).zip(runs.all.iter().find(is_same));
         found.extend(ours.map(|(of, own)| {
-            format!("{} and our own `{}`", plain(&of.to_string()), own.record.variant)
+            format!("{} and our own `{}`", plain(&of.to_string()), own.record.run.variant)
         }));
     }
     let more = found.len().saturating_sub(MOST_EQUAL);
@@ -261,7 +261,7 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
         let mut all = declared.accuracy.iter();
         let found = all.find_map(|of| Some((error_of(&of.error, &run.record)?, &*of.label)));
         let (error, of) = found.unwrap_or((f64::NAN, ""));
-        Some((run.record.submission.as_deref()?, run, error, of))
+        Some((run.record.run.submission.as_deref()?, run, error, of))
     });
     let mut rows: Vec<Row> = rows.collect();
     rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
@@ -274,7 +274,7 @@ fn table(declared: &Declaration, runs: &Runs) -> report::Table {
     columns
         .text("division", |(of, ..)| of.division.to_string())
         .text("code", |(of, ..)| of.to_string())
-        .code("variant of the problem", |(_, run, ..)| &run.record.variant)
+        .code("variant of the problem", |(_, run, ..)| &run.record.run.variant)
         .num(["particles", "1"], |(_, run, ..)| match run.record.cost.particles {
             0 => Cell::text("–"),
             particles => Cell::count(particles as u64),

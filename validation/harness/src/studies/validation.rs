@@ -277,7 +277,7 @@ type Row<'a> = (&'a Comparison, Found);
 
 fn columns<'a>() -> Columns<'a, Row<'a>> {
     Columns::default()
-        .text("comparison", |(of, _): &Row| of.what.clone())
+        .marked("comparison", |(of, _): &Row| of.what.clone())
         .text("with", |(of, _)| of.against)
         .of(["E", "-"], |(_, found)| found.error, show)
 }

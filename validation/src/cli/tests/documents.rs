@@ -195,6 +195,12 @@ fn problems_in_documents_can_be_exported() {
         let Command::Export(mut export) = arguments.command else { continue };
         count += 1;
         export.of.out = folder.path().join(count.to_string());
+        if let Some(path) = &mut export.method {
+            *path = folder.path().join("method.json");
+            let method = r#"{"code": "c", "version": "1", "scheme": "s", "division": "closed",
+                "settings": {}, "changed": "nothing"}"#;
+            fs::write(path, method).expect("a file");
+        }
         assert!(super::super::exchange::export(&export, &world).is_ok(), "{line}");
     }
     assert!(count >= 5, "{count} exports");

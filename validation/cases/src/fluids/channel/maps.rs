@@ -58,7 +58,7 @@ pub fn declared(table: &ChannelTable) -> Vec<Map> {
         let rows = table.of(For::Cures).filter(|row| is_of(&row.settings, row.variant));
         rows.map(|row| row.run.spec.clone()).collect()
     });
-    let (sound, cures) = ("sound speed c0/V [-], of `seed`", "what is changed of `seed`");
+    let (sound, cures) = ("sound speed c0/V [-], of seed", "what is changed of seed");
     let title = "Outcomes over Reynolds number and sound speed";
     let over_sound = map("poiseuille-map", title, sound, over_sound);
     let over_cures = map("poiseuille-cures", "What cures the instability", cures, over_cures);
@@ -149,7 +149,7 @@ fn failed(ends: &[f64]) -> usize {
 
 /// Whether a run at the resolution of the map failed.
 pub fn has_broken(record: &Record) -> Option<bool> {
-    let is_coarse = record.settings["rows"].as_u64().is_some_and(|rows| rows < 20);
+    let is_coarse = record.run.settings["rows"].as_u64().is_some_and(|rows| rows < 20);
     (!is_coarse).then(|| failed(&ends(&[record])) > 0)
 }
 

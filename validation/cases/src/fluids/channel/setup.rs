@@ -165,7 +165,7 @@ impl Setup {
         let dx = s.width / s.rows as f64;
         let h = s.h_over_dx * dx;
         // A period of at least two supports.
-        let fewest = (2.0 * method.support * s.h_over_dx - 1e-9).floor() as usize + 1;
+        let fewest = (2.0 * method.properties.support * s.h_over_dx - 1e-9).floor() as usize + 1;
         let columns = if s.columns == 0 { fewest } else { s.columns };
         if columns < fewest {
             let allowed = format!("a narrower kernel; with this one it is 0 or {fewest} to 100000");
@@ -184,10 +184,10 @@ impl Setup {
             nu: s.nu,
             acceleration: along,
             wall_acceleration: along,
-            ..method.medium(eos, [dx, h]).set_by(s)
+            ..method.properties.medium(eos, [dx, h]).set_by(s)
         };
-        let waves = medium.waves(&method.uses);
-        let limits = method.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let waves = medium.waves(&method.properties.uses);
+        let limits = method.properties.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
         let both = || Step::courant(s.courant, h, [sound_speed, v]).viscous(s.viscous, h, s.nu);
         let stable = s.limit_share.map_or_else(both, |share| Step::share(share, &limits));
         let step = stable.forced(0.25, h, force).or_given(s.dt);
@@ -211,7 +211,7 @@ impl Setup {
         }
         let length = self.columns as f64 * dx;
         // Half a period at most; one that is shorter than two supports is refused by the scene itself.
-        let skin = (s.skin * h).min(length - method.support * h).max(0.0);
+        let skin = (s.skin * h).min(length - method.properties.support * h).max(0.0);
         // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
         let speed = 2.0 * (eos.sound_speed + self.v);
         Parts {
@@ -227,12 +227,12 @@ impl Setup {
     /// out to the support, all with the velocity of the plate.
     fn particles(&self, method: &Method) -> Vec<Particle> {
         let (dx, rows, width) = (self.medium.dx, self.settings.rows, self.settings.width);
-        let (mut particles, first) = match method.first_row {
+        let (mut particles, first) = match method.properties.first_row {
             FirstRow::Nowhere => return self.rows(0.5 * dx, rows),
             FirstRow::OnSurface => (self.rows(dx, rows - 1), 0.0),
             FirstRow::Behind => (self.rows(0.5 * dx, rows), 0.5),
         };
-        let last = (method.support * self.medium.h / dx - first - 1e-9).floor() as usize;
+        let last = (method.properties.support * self.medium.h / dx - first - 1e-9).floor() as usize;
         for (y, outwards, speed) in [(0.0, -1.0, 0.0), (width, 1.0, self.plate_speed())] {
             for behind in (0..=last).map(|k| first + k as f64) {
                 let role = if behind == 0.0 { Role::Interface } else { Role::Wall };

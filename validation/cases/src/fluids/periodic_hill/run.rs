@@ -164,7 +164,7 @@ impl Problem for Setup {
     ) {
         if record.status == Status::Completed {
             measure(self, &window, area, record);
-            particles(self, end, Asked::of(record).particles, record);
+            particles(self, end, Asked::of(&record.run).particles, record);
         }
         let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
         let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];

@@ -36,7 +36,7 @@ impl Setup {
     pub fn new(method: &HillMethod, s: &HillSettings) -> Result<Self, RunError> {
         // The largest speed, over the crest, is below 1.6 U_b.
         let scales = Scales { speed: 1.6, force: s.force, area: 27.0, dt: None };
-        let flow = s.flow(method, scales);
+        let flow = s.flow(&method.properties, scales);
         let hill = Hill::new(1.0).map_err(|e| RunError::Reference(e.to_string()))?;
         let reference = Reference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;
         if s.from_reference && reference.is_none() {
@@ -47,7 +47,7 @@ impl Setup {
             });
         }
         let (settings, method) = (s.clone(), method.clone());
-        let first = method.first_row.depth();
+        let first = method.properties.first_row.depth();
         Ok(Self { settings, method, hill, flow, first, reference })
     }
 
@@ -56,7 +56,7 @@ impl Setup {
     pub fn parts(&self) -> Parts {
         let domain = Domain::channel(self.hill.period());
         let parts = self.flow.parts(domain, self.particles());
-        if !self.method.has_feet {
+        if !self.method.properties.has_feet {
             return parts;
         }
         let curves = self.curves();

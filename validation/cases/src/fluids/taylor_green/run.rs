@@ -38,7 +38,8 @@ base::metrics! {
 impl Setup {
     /// Follows the rules for a method.
     pub fn new(method: &Method, s: &VortexSettings) -> Self {
-        let flow = s.flow(method, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt });
+        let flow =
+            s.flow(&method.properties, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt });
         let exact = TaylorGreen { nu: flow.medium.nu };
         Self { settings: s.clone(), method: method.clone(), exact, flow }
     }
@@ -141,7 +142,7 @@ impl Problem for Setup {
         let end = simulation.particles();
         if record.status == Status::Completed {
             measure(self, [&start, &end], &errors, record);
-            if Asked::of(record).particles {
+            if Asked::of(&record.run).particles {
                 let time = simulation.time();
                 let scale = self.exact.decay(time);
                 let all = end.iter().map(|p| {

@@ -61,7 +61,7 @@ pub(super) fn guard() -> Fact {
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {
     let dx = 1.0 / s.n as f64;
-    let medium = method.medium(Tait::new(1.0, 1.0), [dx, s.h_over_dx * dx]);
+    let medium = method.properties.medium(Tait::new(1.0, 1.0), [dx, s.h_over_dx * dx]);
     // Viscosity as fast as sound.
     Medium { nu: medium.h * medium.eos.sound_speed, eta2_over_h2: ETA2, ..medium }
 }
@@ -112,11 +112,14 @@ impl Subject {
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
         let phase = K * dx;
-        let corrected =
-            if self.is_corrected { method.square([ratio, 0.0]).gradient_factor() } else { 1.0 };
+        let corrected = if self.is_corrected {
+            method.properties.square([ratio, 0.0]).gradient_factor()
+        } else {
+            1.0
+        };
         match self.operator {
             Operator::Density => {
-                let reach = (method.support * ratio).ceil() as i32;
+                let reach = (method.properties.support * ratio).ceil() as i32;
                 let all = (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| [i, j]));
                 all.map(|k| k.map(f64::from))
                     .map(|[i, j]| weight((i * i + j * j) * dx * dx) * cos(phase * (i + j)))
@@ -125,12 +128,13 @@ impl Subject {
             Operator::Laplacian => {
                 let eta2 = if self.is_corrected { 0.0 } else { ETA2 };
                 let unit = time_step::Medium { c0: 1.0, h: 1.0, nu: 1.0, alpha: 0.0, delta: 0.0 };
-                let lattice = method.square([ratio, eta2]);
+                let lattice = method.properties.square([ratio, eta2]);
                 let mode = Mode::new(&lattice, Vector2::repeat(phase), &unit);
                 mode.viscous / (2.0 * (phase * ratio).powi(2)) / corrected
             }
             Operator::Gradient | Operator::Divergence => {
-                let symbol = method.square([ratio, 0.0]).gradient(Vector2::repeat(phase)).x;
+                let symbol =
+                    method.properties.square([ratio, 0.0]).gradient(Vector2::repeat(phase)).x;
                 symbol / (phase * ratio) / corrected
             }
         }
@@ -213,7 +217,11 @@ pub(super) struct Sampled {
 impl Sampled {
     pub fn new(of: &'static Subject, method: &Method, s: &OperatorSettings) -> Self {
         let medium = medium(method, s);
-        let limits = method.limits([s.h_over_dx, ETA2], 32, &medium.waves(&method.uses));
+        let limits = method.properties.limits(
+            [s.h_over_dx, ETA2],
+            32,
+            &medium.waves(&method.properties.uses),
+        );
         let step = Step::given(summing_step(&medium));
         let rules = Rules { step, limits, sound_speed: 1.0, end: step.dt * s.steps as f64 };
         Self { of, method: method.clone(), settings: s.clone(), medium, rules }
@@ -274,7 +282,7 @@ impl Problem for Sampled {
         measure(of, &start, end, medium, record);
         let weight: &dyn Fn(f64) -> f64 = &|r2| end.weight(r2);
         if !of.is_corrected {
-            let reach = method.support * medium.h;
+            let reach = method.properties.support * medium.h;
             let sums = Sums { operator: of.operator, medium, reach, weight };
             let error = sums.error(&start, &end.particles(), end.time());
             record.put_or(SUM_ERROR, error, "the support reaches half of the period");

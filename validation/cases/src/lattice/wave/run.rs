@@ -71,15 +71,19 @@ impl Wave {
         let (dx, h) = (s.length / s.n as f64, s.h_over_dx * s.length / s.n as f64);
         let turn = std::f64::consts::TAU / s.n as f64;
         let theta = Vector2::new(s.kx as f64, s.ky as f64) * turn;
-        let lattice = method.square([s.h_over_dx, s.eta2_over_h2]);
+        let lattice = method.properties.square([s.h_over_dx, s.eta2_over_h2]);
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
         // A background pressure takes p to 0 at this density: a displacement then meets a pressure of its own
         // order, as the theory of the lattice has it.
         let eos = Tait::new(s.rho, s.c0);
         let eos = Tait { background: -eos.pressure(density), ..eos };
-        let medium =
-            Medium { density, sound_speed, nu: s.nu, ..method.medium(eos, [dx, h]).set_by(s) };
+        let medium = Medium {
+            density,
+            sound_speed,
+            nu: s.nu,
+            ..method.properties.medium(eos, [dx, h]).set_by(s)
+        };
         let waves =
             time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = Mode::new(&lattice, theta, &waves);
@@ -224,7 +228,7 @@ impl Problem for Wave {
         record: &mut Record,
     ) {
         let (s, Medium { density, sound_speed, .. }) = (&self.settings, self.medium);
-        compare(self, self.method.theory, &series, record);
+        compare(self, self.method.properties.theory, &series, record);
         let scale = density * s.length * s.length * s.amplitude * sound_speed;
         let [first, last] = momentum.unwrap_or([[f64::NAN; 2]; 2]).map(Vector2::from);
         record.put(MOMENTUM_ERROR, (last - first).norm() / scale);

@@ -85,7 +85,7 @@ impl Watch for End {
         for (metric, value) in path::measure(&path) {
             record.put_or(metric, value, "the run is too short for it");
         }
-        let (s, exact) = (&self.settings, elements(&record.variant, &self.settings));
+        let (s, exact) = (&self.settings, elements(&record.run.variant, &self.settings));
         // All but the first swing was measured over 4 s.
         let is_whole = s.end == CantileverSettings::default().end;
         let (whole, first) = COMPARED.split_at(if is_whole { 0 } else { COMPARED.len() - 1 });
@@ -102,7 +102,7 @@ impl Watch for End {
 /// stiffness that the method has by theory.
 fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
     let [frequency, sag] = [FREQUENCY_ERROR, AVERAGE_Y_ERROR].map(|error| record.value(error));
-    let is_known = record.variant != "seed";
+    let is_known = record.run.variant != "seed";
     let Some((frequency, sag)) = frequency.zip(sag).filter(|_| is_known) else {
         let lacks = if is_known { "no distance from finite elements" } else { "no theory" };
         OF_METHODS.iter().for_each(|of| record.leave_out(*of, format!("there is {lacks}")));
@@ -143,7 +143,7 @@ mod tests {
     fn the_end_is_half_a_spacing_beyond_the_last_column() {
         let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
         let method = schemes::total::hencky();
-        let (medium, domain) = (solid::medium(&s, &method), Domain::open());
+        let (medium, domain) = (solid::medium(&s, &method.properties), Domain::open());
         let parts = Parts::new(medium, domain, s.particles());
         let mut simulation =
             (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");

@@ -199,12 +199,12 @@ impl Watch for Tip {
         record.put(ENERGY_CHANGE, after / self.energy - 1.0);
         let (s, path) = (&self.settings, Path(std::mem::take(&mut self.series)));
         let errors = [(PERIOD, PERIOD_ERROR), (AMPLITUDE_RATIO, AMPLITUDE_ERROR)];
-        let exact = elements(&record.variant, s);
+        let exact = elements(&record.run.variant, s);
         let lacks = "the run is too short, or finite elements have no such plate: they have 0.2 m and 0.02 \
                      m, 2 MPa, Poisson's ratio 0.3975, 1000 kg/m^3, 0.01 c0, and 5, 10 and 20 layers";
         let of_path = (PATH_RMS, "extreme_1");
         solid::compare(exact.as_ref(), &errors, of_path, (&path, lacks), record);
-        let error = record.value(PERIOD_ERROR).filter(|_| record.variant == LAGRANGIAN);
+        let error = record.value(PERIOD_ERROR).filter(|_| record.run.variant == LAGRANGIAN);
         let stiffness = || solid::lagrangian::bending(s.n, s.poisson);
         let bent = error.map(|error| (1.0 + error) * stiffness().sqrt() - 1.0);
         record.put_or(BENDING_PERIOD_ERROR, bent, "no error, or no theory of its layers");
@@ -275,7 +275,7 @@ mod tests {
         }
         let method = schemes::solid::clamped_bare();
         let mut tip = Tip::new(&s, &particles);
-        let parts = Parts::new(solid::medium(&s, &method), Domain::open(), particles);
+        let parts = Parts::new(solid::medium(&s, &method.properties), Domain::open(), particles);
         let simulation = (method.build)(parts).expect("a scene");
         tip.after_step(&*simulation);
         assert!(tip.series[1][1].abs() < 1e-15);

@@ -351,7 +351,8 @@ fn fate(record: &Record) -> Fate {
 
 /// Whether rings that should be whole are not. Without artificial stress a run of `seed` is a control.
 fn has_broken(record: &Record) -> Option<bool> {
-    let is_control = record.settings["xi"].as_f64() == Some(0.0) && record.variant == "seed";
+    let is_control =
+        record.run.settings["xi"].as_f64() == Some(0.0) && record.run.variant == "seed";
     // A run that measures the headline alone does not count pieces.
     let is_counted = record.value(PIECES_MOST).is_some() || record.status != Status::Completed;
     (is_counted && !is_control).then(|| fate(record) != Fate::Whole)

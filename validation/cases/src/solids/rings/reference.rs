@@ -49,7 +49,7 @@ type Histories = [Vec<(f64, f64)>; 4];
 /// Adds the distances from finite elements to the metrics of a run that has been measured, or says why there
 /// are none.
 pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &mut Record) {
-    let Some(exact) = Reference::of(&record.variant, s) else {
+    let Some(exact) = Reference::of(&record.run.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
         for metric in errors.into_iter().chain(OF_HISTORIES) {
             record.leave_out(

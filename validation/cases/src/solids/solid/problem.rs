@@ -182,7 +182,8 @@ impl Solid {
         if value > most {
             return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
         }
-        let (medium, rules) = (medium(&*body, method), rules(method, &*body));
+        let (medium, rules) =
+            (medium(&*body, &method.properties), rules(&method.properties, &*body));
         Ok(Self { method: method.clone(), body, scales, medium, rules })
     }
 }
@@ -215,7 +216,7 @@ impl Problem for Solid {
                 ("mu [Pa]", material.shear),
                 ("c_p [m/s]", material.p_wave_speed()),
             ]);
-        let unstable = self.body.unstable(&self.method);
+        let unstable = self.body.unstable(&self.method.properties);
         Brief { unstable, samples: rules.end / rules.dt(), ..brief }
     }
 

@@ -94,7 +94,7 @@ fn scene(settings: &Value) -> Option<Scene> {
 
 /// The distance of the front from that of the experiment whose tank the settings are.
 fn against_the_experiment(record: &Record) -> Option<String> {
-    let (experiment, spread, unit) = match scene(&record.settings)? {
+    let (experiment, spread, unit) = match scene(&record.run.settings)? {
         Scene::MartinMoyce => ("Martin & Moyce", FRONT_SPREAD, "a"),
         Scene::Lobovsky => ("Lobovsky et al.", TANK_FRONT_SPREAD, "H"),
     };

@@ -74,7 +74,7 @@ impl Problem for Dam {
     }
 
     fn watch(&self, _: &[Particle], simulation: &dyn Metered<()>) -> Watch {
-        let support = self.method.support * self.medium.h;
+        let support = self.method.properties.support * self.medium.h;
         Watch {
             gauge: Gauge::new(self, support, &|r2| simulation.weight(r2)),
             samples: Samples::new(),

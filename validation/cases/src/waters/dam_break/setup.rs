@@ -43,7 +43,7 @@ impl Dam {
         let counts = [s.width, s.height].map(|side| (side / dx).round().max(1.0) as usize);
         let spacings = |length: f64| (length / dx).round() as usize;
         let tank = Tank { columns: spacings(s.tank), rows: spacings(s.rim * s.height), dx };
-        let is_endless = method.first_row == FirstRow::Nowhere;
+        let is_endless = method.properties.first_row == FirstRow::Nowhere;
         let rim = if is_endless { f64::INFINITY } else { tank.rows as f64 * dx };
         let fall = (s.gravity * s.height).sqrt();
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
@@ -58,13 +58,15 @@ impl Dam {
     pub fn brief(&self) -> Brief {
         let Self { counts: [columns, rows], tank, medium, .. } = self;
         let all = (columns * rows + 8 * (tank.columns + 2 * tank.rows)) as f64;
-        let unstable = (self.method.walls == Ghosts::NAME).then(|| RunError::Combination {
+        let unstable = (self.method.properties.walls == Ghosts::NAME).then(|| {
+            RunError::Combination {
             key: "variant",
             value: Ghosts::NAME.into(),
             allowed:
                 "--allow-unstable: particles of a stretched layer sink through mirrors to which \
                       water sticks; ghosts-slip puts them back"
                     .into(),
+        }
         });
         let brief = Brief::new(*medium, self.rules, all, DECISIVE)
             .numbers(&self.rules.numbers([self.settings.h_over_dx, medium.dx]));
@@ -108,8 +110,12 @@ impl Dam {
     pub fn parts(&self) -> Parts {
         let Self { method, medium, tank, speed, .. } = self;
         let (rho, c0, dx) = (self.settings.rho, medium.eos.sound_speed, medium.dx);
-        let mut particles = self.water(method.first_row);
-        let walls = water::wall_particles(method.first_row, tank, method.support * medium.h);
+        let mut particles = self.water(method.properties.first_row);
+        let walls = water::wall_particles(
+            method.properties.first_row,
+            tank,
+            method.properties.support * medium.h,
+        );
         particles.extend(walls.into_iter().map(|(place, role)| {
             Particle::fluid(place, Vector2::zeros(), rho, dx * dx).with_role(role)
         }));

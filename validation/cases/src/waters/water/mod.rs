@@ -112,10 +112,12 @@ macro_rules! water_settings {
                 let medium = harness::method::Medium {
                     acceleration: down,
                     wall_acceleration: down,
-                    ..method.medium(eos, [dx, h]).set_by(self)
+                    ..method.properties.medium(eos, [dx, h]).set_by(self)
                 };
                 let step = harness::case::Step::courant(self.courant, h, [c0, speed]);
-                let limits = $crate::waters::water::limits(method, &medium, [self.h_over_dx, c0], 24);
+                let lattice = [self.h_over_dx, c0];
+                let limits =
+                    $crate::waters::water::limits(&method.properties, &medium, lattice, 24);
                 let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
                 (medium, harness::case::Rules { step, limits, sound_speed: c0, end })
             }
