@@ -16,7 +16,7 @@ pub struct Outline {
     pub mirrors: Vec<PlaneWall>,
     /// The body of each particle; empty if there is one.
     pub bodies: Vec<u32>,
-    /// All particles at the start, in the order of the scene: the columns of [`frames::columns`].
+    /// All particles at the start, in the order of the scene: the columns of [`crate::frames::columns`].
     pub particles: Profile,
     /// The times at which it is measured \[s\].
     pub times: Vec<f64>,
