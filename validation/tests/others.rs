@@ -689,3 +689,12 @@ fn no_absurd_number_evades_its_verdict() {
         println!("{problem}: {counts:?}");
     }
 }
+
+/// The series of a flow over hills stated a force of 0, the one that our own run starts with.
+#[test]
+fn a_force_that_another_code_does_not_state_is_in_no_series() {
+    let own = Entry::own("periodic_hill --set n=4 --set end=0.5");
+    let record = own.submit(&own.head, &own.rows).record.expect("a record");
+    assert!(record.column("series", "flux").len() > 1);
+    assert!(record.column("series", "force").is_empty());
+}

@@ -75,9 +75,13 @@ pub struct Monitor {
     stretch: f64,
     /// Mean velocity along x at the last look \[m/s\].
     mean: f64,
+    /// Has the controller acted? The force of another code is not known.
+    has_acted: bool,
 }
 
-harness::observed! { Monitor: changes(controller, window, series, mean), stays(area, stretch) }
+harness::observed! {
+    Monitor: changes(controller, window, series, mean, has_acted), stays(area, stretch)
+}
 
 impl Monitor {
     /// After a stretch: the flow is sampled if it is time.
@@ -140,7 +144,7 @@ impl Problem for Setup {
         let controller = Controller { wanted, response: s.response, force: s.force, last: mean };
         let series = vec![[0.0, s.force, mean * area / period, kinetic_energy(simulation)]];
         let (window, stretch) = (Window::default(), s.end / self.stretches());
-        Monitor { controller, window, series, area, stretch, mean }
+        Monitor { controller, window, series, area, stretch, mean, has_acted: false }
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
@@ -149,6 +153,7 @@ impl Problem for Setup {
             .control(
                 "controller",
                 |_, monitor, simulation, _, _| {
+                    monitor.has_acted = true;
                     monitor.controller.look(monitor.mean, monitor.stretch);
                     simulation.drive(monitor.controller.force);
                 },
@@ -158,7 +163,7 @@ impl Problem for Setup {
 
     fn measure(
         &self,
-        Monitor { window, series, area, .. }: Monitor,
+        Monitor { window, series, area, has_acted, .. }: Monitor,
         end: &dyn Driving,
         record: &mut Record,
     ) {
@@ -168,7 +173,9 @@ impl Problem for Setup {
         }
         let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
         let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
-        record.profiles.insert("series".into(), Profile::of_rows(&columns, &series));
+        let mut series = Profile::of_rows(&columns, &series);
+        series.columns.retain(|column| has_acted || column.name != force.0);
+        record.profiles.insert("series".into(), series);
     }
 }
 
