@@ -121,3 +121,27 @@ fn a_better_method_passes_and_one_that_states_ours_must_have_our_error() {
         }
     }
 }
+
+/// Tells the last particle of each frame twice.
+struct Twice;
+
+impl Solver for Twice {
+    fn method(&self) -> Method {
+        FiniteDifferences { cells: 8 }.method()
+    }
+
+    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System {
+        FiniteDifferences { cells: 8 }.solve(problem, &mut |time, mut placed| {
+            placed.extend(placed.last().copied());
+            tell(time, placed);
+        })
+    }
+}
+
+#[test]
+fn what_a_solver_of_another_library_tells_is_checked() {
+    let case: &dyn Case = cases::find("couette").unwrap();
+    let of = spec(case, "seed", &[]).unwrap();
+    let error = exchange::library::record(case, &of, &Twice).expect_err("no record");
+    assert!(error.to_string().contains("is there twice at t = "), "{error}");
+}

@@ -2,17 +2,19 @@
 
 use std::collections::BTreeSet;
 
-use base::gate::{Cause, Gate};
-use base::spec::RunSpec;
+use base::functions::powf;
+use base::gate::{Bound, Cause, Evidence, Gate};
+use base::random::Random;
+use base::spec::{RunSpec, Task};
 use cases::CASES;
 use harness::{
     case::{self, Case, Planned, RunError, Tier},
-    declare::Change,
+    declare::{Change, Drawn, Draws},
     deep::{FINER, STARTS},
     make::Made,
     plan,
     runs::Runs,
-    studies, suite,
+    sealed, studies, suite,
 };
 
 /// A run that sets what its variant does not read is refused, and a study of it would have nothing to say.
@@ -38,6 +40,108 @@ fn every_planned_run_is_written_as_it_is_read() {
             let resolved = case::resolved(*case, read).expect("a run that is possible");
             assert_eq!(resolved.canonical(), spec.canonical());
         }
+    }
+}
+
+/// The plain runs of a variant that differ from its defaults in nothing but what sealed problems draw, with
+/// their gates on a metric.
+fn judged_of(case: &dyn Case, variant: &str, draws: &Draws, metric: &str) -> Vec<(RunSpec, Gate)> {
+    let set: Vec<String> = draws.set.iter().map(ToString::to_string).collect();
+    let base = case::spec(case, variant, &set).unwrap().settings;
+    let drawn = draws.others.iter().filter(|(_, how)| !matches!(how, Drawn::Any(..)));
+    let names: Vec<&str> = drawn.map(|(name, _)| *name).chain(draws.free.iter().copied()).collect();
+    let is_alike = |spec: &RunSpec| {
+        let base = base.as_object().unwrap().iter();
+        spec.variant == variant
+            && (spec.task == Task::Simulate && spec.mutation.is_none() && spec.disorder.is_none())
+            && base.into_iter().all(|(name, value)| {
+                *name == draws.resolution.0
+                    || names.contains(&&**name)
+                    || spec.settings[name] == *value
+            })
+    };
+    let tiers = [Tier::Quick, Tier::Full];
+    let planned = tiers.into_iter().flat_map(|tier| plan::of_case(case, tier));
+    let gates = planned.filter(|planned| is_alike(&planned.spec)).flat_map(
+        |Planned { spec, gates, .. }| gates.into_iter().map(move |gate| (spec.clone(), gate)),
+    );
+    gates.filter(|(_, gate)| gate.metric == metric).collect()
+}
+
+/// The largest magnitude that a gate allows.
+fn most(gate: &Gate) -> Option<f64> {
+    match gate.bound {
+        Bound::Below(most) => Some(most),
+        Bound::Within(low, high) if low < 0.0 && high > 0.0 => Some(high.max(-low)),
+        _ => None,
+    }
+}
+
+/// The bounds of judged runs on a metric, but for windows on the theory of our own methods.
+fn bounds_of(all: &[(RunSpec, Gate)]) -> Vec<(&RunSpec, f64)> {
+    let is_of_ours =
+        |gate: &Gate| matches!(gate.bound, Bound::Within(..)) && gate.evidence == Evidence::Theory;
+    let bounds = all.iter().filter(|(_, gate)| !is_of_ours(gate));
+    bounds.filter_map(|(spec, gate)| Some((spec, most(gate).filter(|most| *most > 0.0)?))).collect()
+}
+
+/// At the settings of a judged run a sealed problem is judged as the worst such run is; of twice the coarsest
+/// spacing the bound is 2 to the power of the order higher. Of values of judged runs each one is drawn.
+#[test]
+fn sealed_problems_are_judged_as_judged_runs_are() {
+    for (name, variant) in [
+        ("couette", "modern"),
+        ("operators", "quintic-gradient"),
+        ("periodic_hill", "carried"),
+        ("rubber_rings", "lagrangian"),
+    ] {
+        let case = *CASES.iter().find(|case| case.name() == name).expect(name);
+        let draws = case.declaration(Tier::Quick).sealed.expect(name);
+        let kept = draws.others.iter().filter(|(_, how)| matches!(how, Drawn::Judged));
+        let kept: Vec<&str> = kept.map(|(name, _)| *name).collect();
+        let number = |spec: &RunSpec, name: &str| spec.settings[name].as_f64().unwrap();
+        let values = |spec: &RunSpec| kept.iter().map(|of| number(spec, of)).collect::<Vec<_>>();
+        let fine = |spec: &RunSpec| number(spec, draws.resolution.0);
+        let mut of = draws.metrics.iter().map(|of| (*of, judged_of(case, variant, &draws, of)));
+        let (metric, all) = of.find(|(_, all)| !bounds_of(all).is_empty()).expect(name);
+        let bounds = bounds_of(&all);
+        let near = |spec: &RunSpec, expected: f64| {
+            let gates = sealed::gates(case, spec);
+            let found = gates.iter().find(|gate| gate.metric == metric).and_then(most);
+            let found = found.unwrap_or(f64::NAN);
+            let what = format!("{name} {metric} at {}: {found}, not {expected}", spec.settings);
+            assert!((found / expected - 1.0).abs() < 1e-9, "{what}");
+        };
+        let (mut texts, mut seen) = (BTreeSet::new(), Vec::new());
+        for (spec, _) in &bounds {
+            let same = || bounds.iter().filter(|of| values(of.0) == values(spec));
+            let at = |value: f64| {
+                same().filter(|of| fine(of.0) == value).map(|of| of.1).fold(0.0, f64::max)
+            };
+            if !seen.contains(&(values(spec), fine(spec))) {
+                near(spec, at(fine(spec)));
+                seen.push((values(spec), fine(spec)));
+            }
+            if !seen.contains(&(values(spec), 0.0)) {
+                seen.push((values(spec), 0.0));
+                let is_count = spec.settings[draws.resolution.0].is_u64();
+                let end = if is_count { f64::min } else { f64::max };
+                let coarsest = same().map(|of| fine(of.0)).fold(f64::NAN, end);
+                let mut coarser = (*spec).clone();
+                let (next, ratio) = match is_count {
+                    true => ((coarsest / 2.0).floor(), coarsest / (coarsest / 2.0).floor()),
+                    false => (2.0 * coarsest, 2.0),
+                };
+                coarser.settings[draws.resolution.0] =
+                    if is_count { (next as u64).into() } else { next.into() };
+                near(&coarser, at(coarsest) * powf(ratio, draws.order));
+            }
+            texts.extend(kept.iter().map(|of| format!("{of}={}", number(spec, of))));
+        }
+        assert!(seen.len() > 1, "{name}");
+        let drawn = (0..24).flat_map(|seed| sealed::draw(case, variant, &mut Random::new(seed)));
+        let drawn: BTreeSet<String> = drawn.flatten().filter(|one| texts.contains(one)).collect();
+        assert_eq!(drawn, texts, "{name}");
     }
 }
 

@@ -108,6 +108,8 @@ const ABSOLUTE: char = 'm';
 const DRAG: char = 'v';
 /// Adds to the density of one particle.
 const FIRST: char = '1';
+/// Adds to the density of one particle, by less than round-off.
+const BIT: char = '2';
 /// Adds to densities far from the origin.
 const ORIGIN: char = 'o';
 /// A periodic box that is too long.
@@ -163,6 +165,7 @@ fn flawed<const KIND: char>() -> Method {
                 DRAG => p.velocity *= 0.999_999,
                 ORIGIN => p.density *= 1.0 + 1e-7 * p.position.norm() / h,
                 FIRST if k == 0 => p.density *= 1.000_001,
+                BIT if k == 0 => p.density *= 1.0 + 2.0 * f64::EPSILON,
                 _ => {}
             }
         }
@@ -190,13 +193,14 @@ const FLAWED: Composed<Decay> = Composed {
     recommended: Recommended { variant: "sound", because: "the others are wrong", papers: None },
     about: "A patch of fluid in disorder.",
     variants: || {
-        let all: [(&str, Method); 10] = [
+        let all: [(&str, Method); 11] = [
             ("sound", flawed::<SOUND>()),
             ("anisotropic", flawed::<ANISOTROPIC>()),
             ("chiral", flawed::<CHIRAL>()),
             ("absolute", flawed::<ABSOLUTE>()),
             ("drag", flawed::<DRAG>()),
             ("first", flawed::<FIRST>()),
+            ("bit", flawed::<BIT>()),
             ("origin", flawed::<ORIGIN>()),
             ("border", flawed::<BORDER>()),
             ("far", flawed::<FAR>()),
@@ -212,6 +216,19 @@ const FLAWED: Composed<Decay> = Composed {
     plan: |_| Vec::new(),
 };
 
+/// All relations are asked of each run, one run after the other, and the particles of all runs are kept.
+#[test]
+fn a_battery_takes_what_all_relations_of_all_runs_take() {
+    let of = |count: usize| {
+        let one = (&FLAWED as &dyn Case, FLAWED.spec("sound", |_| {}));
+        symmetry::size(&vec![one; count])
+    };
+    let (one, three) = (of(1), of(3));
+    assert_eq!([one.steps, one.particles, one.samples], [8.0 * 16.0, 144.0, 3.0 * 144.0]);
+    assert_eq!([three.steps, three.particles], [one.steps, 3.0 * one.particles]);
+    assert_eq!(three.samples, 3.0 * one.samples);
+}
+
 #[test]
 fn each_relation_finds_the_error_that_it_is_about_and_no_other() {
     for (variant, expected) in [
@@ -221,6 +238,8 @@ fn each_relation_finds_the_error_that_it_is_about_and_no_other() {
         ("drag", &[Boosted]),
         ("absolute", &[BinaryUnits, OtherUnits]),
         ("first", &[Renumbered]),
+        // Where nothing may be rounded every bit counts.
+        ("bit", &[Renumbered]),
         ("origin", &[Shifted]),
         // Particles that move all together cross the border too.
         ("border", &[Boosted, Shifted]),

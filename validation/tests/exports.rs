@@ -404,6 +404,46 @@ fn numbers_of_a_problem_are_those_of_the_run() {
     close(number(&vortices, "material/kinematic_viscosity/value"), 1.0 / 50.0, "ν = U L/Re");
 }
 
+/// What a page or a list repeats of a problem: its end, forces, artificial viscosity, rows of a curve, times
+/// of a path, units of an observer, particles.
+#[test]
+fn pages_and_lists_have_the_numbers_of_their_problem() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dam, page) =
+        exported(folder.path(), "dam_break --variant seed --set n=8 --set alpha=0.25");
+    assert!(page.contains("| acceleration g | 0, -9.81 | m/s^2 |"), "{page}");
+    assert!(page.contains(&format!("| end | {} | s |", number(&dam, "end/value"))), "{page}");
+    assert_eq!(number(&dam, "material/artificial_viscosity_alpha/value"), 0.25);
+    let (_, page) = exported(folder.path(), "couette --variant seed --set rows=12");
+    assert!(page.contains("`t[s],y[m],u[m/s]`, 12 lines a time"), "{page}");
+    let (bar, _) = exported(folder.path(), "cantilever --variant lagrangian --set n=4");
+    let times = at(&bar, "times/value").as_array().unwrap();
+    assert_eq!(times.len() as f64, number(&bar, "curve/least_times"));
+    for (k, time) in times.iter().enumerate() {
+        let expected = number(&bar, "end/value") * (k + 1) as f64 / times.len() as f64;
+        assert!((time.as_f64().unwrap() / expected - 1.0).abs() < 1e-12, "{time}: {expected}");
+    }
+    let line = "couette --variant interface-wall --set rows=8";
+    let (_, page) = exported(folder.path(), &format!("{line} --relation other-units"));
+    assert!(page.contains("read 0.3048 m, 60 s or 1.488163943569554 kg/m"), "{page}");
+    // Particles on a wall are among the particles, and do not move.
+    done(folder.path(), &format!("export {line} --set end=0.01 --solve --out own"));
+    let own = folder.path().join("own");
+    let role = Table::read(&own.join("particles.csv")).column("role");
+    let problem: Value = serde_json::from_str(&read(&own.join("problem.json"))).unwrap();
+    assert_eq!(number(&problem, "particles/count"), role.len() as f64);
+    assert!(role.contains(&2.0), "there are particles on the walls");
+    let checked = touchstone(folder.path(), "submit couette own --check");
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+    // Results have whatever particles a code likes, but those that move.
+    let mut moved = Table::read(&own.join("results.csv"));
+    let id = moved.columns["id"];
+    moved.rows.retain(|row| role[row[id] as usize] == 0.0);
+    moved.write(&own.join("results.csv"));
+    let checked = touchstone(folder.path(), "submit couette own --check");
+    assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
+}
+
 /// The words after a keyword in a file of LAMMPS.
 fn words<'a>(text: &'a str, starts: &str) -> Vec<&'a str> {
     let line = text.lines().find(|line| line.starts_with(starts));
@@ -415,6 +455,20 @@ fn section(text: &str, title: &str) -> Vec<Vec<f64>> {
     let start = text.find(title).unwrap_or_else(|| panic!("no section {title}"));
     let rows = text[start..].lines().skip(2).take_while(|line| !line.is_empty());
     rows.map(|row| row.split_whitespace().map(|word| word.parse().unwrap()).collect()).collect()
+}
+
+/// A wall that is a plane is no wall of particles.
+#[test]
+fn planes_are_not_written_for_codes_without_them() {
+    let folder = tempfile::tempdir().unwrap();
+    for format in ["lammps", "pysph"] {
+        let line =
+            format!("export couette --variant seed --set rows=8 --format {format} --out out");
+        let output = touchstone(folder.path(), &line);
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(2) && told.contains("planes that mirror"), "{told}");
+        assert!(!folder.path().join("out").exists());
+    }
 }
 
 /// LAMMPS takes the dynamic viscosity, and a box where the domain is.
@@ -552,7 +606,8 @@ fn is_of_times(line: &str, script: &str, problem: &Value, mass: f64) {
             ["run", steps] => {
                 time += step * steps.parse::<f64>().unwrap();
                 times.push(time);
-                assert!(step * c0 < h, "{line}: a step of {step} s");
+                let dx = number(problem, "particles/spacing/value");
+                assert!(step * c0 <= 0.15 * dx * (1.0 + 1e-12), "{line}: a step of {step} s");
                 let of_viscosity = nu.map_or(f64::INFINITY, |nu| 0.125 * h * h / nu);
                 assert!(
                     step < of_viscosity,
@@ -674,4 +729,20 @@ fn particles_of_each_kind_are_renumbered_among_themselves() {
         }
         assert_eq!(a, b, "moves: {moves}");
     }
+}
+
+/// One relation of one variant that does not hold fails the whole battery, whatever holds after it.
+#[test]
+fn a_symmetry_that_is_broken_fails_whatever_comes_after_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "symmetry rubber_rings --set centre=4.05 --set spacing=0.25";
+    let output = touchstone(folder.path(), line);
+    let told = String::from_utf8_lossy(&output.stdout);
+    let verdicts: Vec<bool> = told
+        .lines()
+        .filter(|line| line.contains("rubber_rings"))
+        .map(|line| line.contains("not the same"))
+        .collect();
+    assert!(verdicts.contains(&true) && verdicts.last() == Some(&false), "{told}");
+    assert_eq!(output.status.code(), Some(1), "{told}");
 }

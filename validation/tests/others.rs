@@ -164,6 +164,78 @@ fn a_density_has_the_bounds_of_its_material() {
     }
 }
 
+/// Twice the sum of sound speed, largest speed at the start and that of a fall is the speed of a run that
+/// diverged, a million times the size of the scene is the place of a particle that is lost.
+#[test]
+fn speeds_and_places_have_the_bounds_of_their_scene() {
+    for (problem, fall) in [
+        ("couette --variant seed --set rows=8 --set end=0.1", 0.0),
+        ("dam_break --variant seed --set n=6 --set end=0.5", 9.81),
+    ] {
+        let own = Entry::own(problem);
+        let text = fs::read_to_string(own.folder.join("problem.json")).unwrap();
+        let stated: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let number = |of: &serde_json::Value| of["value"].as_f64().unwrap();
+        let most =
+            2.0 * (number(&stated["material"]["sound_speed"]) + fall * number(&stated["end"]));
+        let particles = fs::read_to_string(own.folder.join("particles.csv")).unwrap();
+        let heads: Vec<&str> = particles.lines().next().unwrap().split(',').collect();
+        let mut size = number(&stated["our_method"]["support_radius"]);
+        for name in ["x[m]", "y[m]"] {
+            let k = heads.iter().position(|head| *head == name).unwrap();
+            let cells = particles.lines().skip(1).map(|line| line.split(',').nth(k).unwrap());
+            size = cells.fold(size, |size, cell| size.max(cell.parse::<f64>().unwrap().abs()));
+        }
+        let last = *own.of(Some(3)).last().unwrap();
+        let field = |column: &str, value: f64| {
+            let said = own.edited(&[(last, own.column(column))], |_, _| value);
+            match said.record.unwrap_or_else(|| panic!("{problem}: {}", said.text)).status {
+                Status::Diverged { field, .. } => field,
+                _ => String::new(),
+            }
+        };
+        if fall == 0.0 {
+            assert_eq!(field("u", 0.99 * most), "", "{problem}");
+        }
+        let found = [field("v", -1.01 * most), field("u", 1.01 * most), field("y", 1.01e6 * size)];
+        assert_eq!(found, ["velocity", "velocity", "position"], "{problem}");
+        // Water in an eighth of its height is several times as dense, whatever densities it states.
+        let y = own.column("y");
+        let all: Vec<_> = own.of(None).into_iter().map(|row| (row, y)).collect();
+        let status = own.edited(&all, |_, y| y / 8.0).record.map(|record| record.status);
+        let is_crowded = matches!(&status, Some(Status::Diverged { field, .. })
+            if field == "density of the places");
+        assert!(is_crowded, "{problem}: {status:?}");
+        // Of a place that is as far away only that it is not lost is stated.
+        assert_ne!(field("y", 0.99e6 * size), "position", "{problem}");
+    }
+}
+
+/// A particle of a wall that is stated as one that moves is another particle.
+#[test]
+fn a_wall_that_is_stated_to_move_contradicts_the_problem() {
+    let own = Entry::own("couette --variant interface-wall --set rows=8 --set end=0.01");
+    let particles = fs::read_to_string(own.folder.join("particles.csv")).unwrap();
+    let roles: Vec<&str> =
+        particles.lines().skip(1).map(|line| line.split(',').nth(1).unwrap()).collect();
+    let wall = roles.iter().position(|role| *role == "1").unwrap();
+    let (mut head, id) = (own.head.clone(), own.column("id"));
+    head.push("role".into());
+    let rows = |of_wall: &str| -> Vec<Vec<String>> {
+        let of = |row: &Vec<String>| {
+            let k: usize = row[id].parse().unwrap();
+            let role = if k == wall { of_wall } else { roles[k] };
+            [row.clone(), vec![role.to_string()]].concat()
+        };
+        own.rows.iter().map(of).collect()
+    };
+    let said = own.submit(&head, &rows("1"));
+    assert!(said.record.is_some(), "{}", said.text);
+    let said = own.submit(&head, &rows("0"));
+    let says = format!("column role: particle {wall} has the role 0, in the problem 1");
+    assert!(said.code == 2 && said.text.contains(&says), "expected {says} in {}", said.text);
+}
+
 /// Pressures of still water were those of our own start, and passed.
 #[test]
 fn nothing_is_judged_that_rests_on_a_density_that_was_not_handed_in() {

@@ -6,7 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use base::{record::Record, reference::sha256};
+use base::{
+    record::{Record, Status},
+    reference::sha256,
+};
 use serde_json::Value;
 
 const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
@@ -228,12 +231,21 @@ fn a_forged_record_is_refused_by_its_results() {
     let path = &records(&at.join("st"))[0];
     let record = Record::from_json(&fs::read_to_string(path).unwrap()).unwrap();
     type Forge = fn(&mut Record);
-    let forgeries: [(Forge, &str); 3] = [
+    let forgeries: [(Forge, &str); 6] = [
         (|of| of.metrics.get_mut("l2@0.1").unwrap().value = 1e-5, "l2@0.1 (1e-5 there"),
         (|of| drop(of.metrics.remove("l2@0.1")), "l2@0.1 (not measured there"),
         (
             |of| drop(of.metrics.insert("l3".into(), of.metrics["l2@0.1"].clone())),
             "there, not measured by the results",
+        ),
+        (|of| of.cost.wall_s *= 0.5, "something else: cost;"),
+        (|of| of.cost.pair_interactions += 1, "something else: cost;"),
+        (
+            |of| {
+                let (field, value_text) = ("density".into(), "NaN".into());
+                of.status = Status::Diverged { step: 0, time: 0.1, particle: 0, field, value_text }
+            },
+            "something else: how the run ended;",
         ),
     ];
     for (forge, says) in forgeries {
@@ -265,6 +277,33 @@ fn results_have_a_digest_and_machines_are_not_mixed() {
     });
     let results = |of: &Record| of.run.submission.clone().unwrap().results.unwrap();
     assert_eq!((results(&a), results(&a).len()), (results(&b), sha256(b"").len()));
+    let run = touchstone(at, "run couette --variant modern --set rows=8 --set end=0.01 --json");
+    let run = Record::from_json(&String::from_utf8_lossy(&run.stdout)).unwrap();
+    assert_eq!(a.manifest.sources, run.manifest.sources, "of this build");
+    // Rows of one time in another order are equal results; another number in any column makes others.
+    let whole = fs::read_to_string(at.join("a/results.csv")).unwrap();
+    let rows: Vec<Vec<&str>> =
+        whole.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let digest = |rows: &[Vec<&str>]| {
+        let store = tempfile::tempdir().unwrap();
+        let head = whole.lines().next().unwrap();
+        let lines: String = rows.iter().map(|row| row.join(",") + "\n").collect();
+        fs::write(at.join("a/results.csv"), format!("{head}\n{lines}")).unwrap();
+        let (words, code) = of(at, &format!("submit couette a --store {}", store.path().display()));
+        assert!(code < 2, "{words}");
+        let text = fs::read_to_string(&records(store.path())[0]).unwrap();
+        results(&Record::from_json(&text).unwrap())
+    };
+    let frames = rows.chunk_by(|one, other| one[0] == other[0]);
+    let turned: Vec<Vec<&str>> = frames.flat_map(|frame| frame.iter().rev().cloned()).collect();
+    assert_eq!(digest(&turned), results(&a));
+    for column in 2..7 {
+        let mut other = rows.clone();
+        let changed = (other[0][column].parse::<f64>().unwrap() * (1.0 + 1e-6) + 1e-12).to_string();
+        other[0][column] = &changed;
+        assert_ne!(digest(&other), results(&a), "column {column}");
+    }
+    fs::write(at.join("a/results.csv"), &whole).unwrap();
     let system = fs::read_to_string(at.join("a/system.json")).unwrap();
     let system: Value = serde_json::from_str(&system).unwrap();
     assert_eq!(a.numerics["machine"].as_str(), system["machine"].as_str());
@@ -295,13 +334,17 @@ fn words_of_a_method_draw_nothing_and_what_it_is_does() {
              \"closed\", \"settings\": {settings}, \"changed\": \"{changed}\"}}"
         )
     };
-    let settings = r#"{"h": 1.5, "note": "a", "on": true}"#;
+    let settings = r#"{"h": 1.5, "note": "a", "on": true, "times": [1, {"end": 2}]}"#;
     let of = |text: &str| drawn(folder.path(), text, "couette --seed 7").unwrap();
     let first = of(&method("1", settings, "nothing"));
     let spaced = method("1", settings, "nothing").replace(": ", " :\n ");
     let same = [
         method("1", settings, "nothing 2"),
-        method("1", r#"{"note": "b", "on": true, "h": 15e-1}"#, "nothing"),
+        method(
+            "1",
+            r#"{"times": [1.0, {"end": 2}], "note": "b", "on": true, "h": 15e-1}"#,
+            "nothing",
+        ),
         method("1 ", settings, "nothing"),
         method("1", settings, "nothing").replace("WCSPH", "wcsph!"),
         spaced,
@@ -311,8 +354,10 @@ fn words_of_a_method_draw_nothing_and_what_it_is_does() {
     }
     let others = [
         method("2", settings, "nothing"),
-        method("1", r#"{"h": 1.6, "note": "a", "on": true}"#, "nothing"),
-        method("1", r#"{"h": 1.5, "note": "a", "on": false}"#, "nothing"),
+        method("1", &settings.replace("1.5", "1.6"), "nothing"),
+        method("1", &settings.replace("true", "false"), "nothing"),
+        method("1", &settings.replace("[1,", "[3,"), "nothing"),
+        method("1", &settings.replace("\"end\": 2", "\"end\": 3"), "nothing"),
         method("1", settings, "nothing").replace("closed", "open"),
         method("1", settings, "nothing").replace("WCSPH", "ISPH"),
     ];

@@ -88,7 +88,8 @@ fn our_own_results_are_measured_as_the_run_was() {
         assert!(compared >= 3, "{line}: only {compared} metrics were compared");
         let of = found.run.submission.as_ref().expect("the record says who made the run");
         assert_eq!((&*of.code, &*of.scheme), ("touchstone", &*own.run.variant), "{line}");
-        assert_eq!(found.cost.steps, own.cost.steps, "steps of {line} as system.json states them");
+        let counts = |of: &Record| [of.cost.steps, of.cost.pair_interactions];
+        assert_eq!(counts(&found), counts(&own), "counts of {line} as system.json states them");
     }
 }
 
@@ -132,6 +133,18 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
             let (found, own) = (metric.value, own.metrics[name].value);
             let difference = (found - own).abs();
             assert!(difference <= 1e-12 * own.abs().max(1.0), "{name} of {line}: {found}, {own}");
+        }
+        for (name, column) in found
+            .profiles
+            .iter()
+            .flat_map(|(name, curve)| curve.columns.iter().map(move |column| (name, column)))
+        {
+            let own = own.column(name, &column.name);
+            let is_near =
+                |(found, own): (&f64, &f64)| (found - own).abs() <= 1e-12 * own.abs().max(1.0);
+            let is_own = own.len() == column.values.len();
+            let is_own = is_own && column.values.iter().zip(own).all(is_near);
+            assert!(is_own, "{} of {name} of {line}", column.name);
         }
         assert!(found.metrics.len() >= least, "{line}: {:?}", found.metrics.keys());
         let lacking = own.metrics.keys().filter(|name| !found.metrics.contains_key(*name));
@@ -199,6 +212,9 @@ fn a_damaged_curve_is_refused_with_file_line_and_column() {
     let swapped = ended(&[&lines[..2], &[lines[3], lines[2]], &lines[4..]].concat());
     let instead = |k: usize, row: &str| whole.replacen(lines[k], row, 1);
     let time = lines[1].split(',').next().unwrap();
+    let beyond = format!("{time},2,0,0");
+    let more = ended(&[&lines[..9], &[&*beyond], &lines[9..]].concat());
+    let later = ended(&[&lines[..1], &lines[9..17], &lines[1..9], &lines[17..]].concat());
     let place: Vec<&str> = lines[2].splitn(3, ',').collect();
     let twice = instead(3, &format!("{},{},0,0", place[0], place[1]));
     let last = lines.len() - 8;
@@ -206,6 +222,8 @@ fn a_damaged_curve_is_refused_with_file_line_and_column() {
         ("unit", whole.replacen("u[m/s]", "u[mm/s]", 1), "line 1, column u: its unit is mm/s"),
         ("column", whole.replacen("u[m/s]", "w[m/s]", 1), "line 1, column u: it is missing"),
         ("a row less", without(3), "line 2, column t: 7 rows are at t"),
+        ("a row more", more, "line 2, column t: 9 rows are at t"),
+        ("times not sorted", later, "line 10, column t: it is"),
         ("not sorted", swapped, "column y: it is"),
         ("a word", instead(4, &format!("{time},fast,0,0")), "line 5, column y: it is \"fast\""),
         ("not finite", instead(4, &format!("{time},0.1,NaN,0")), "line 5, column u: it is NaN"),
@@ -277,7 +295,7 @@ fn dump(folder: &Path, atoms: &str, rows: &str) {
 }
 
 /// What is done to a whole submission, and what the message names.
-const DAMAGES: [(&str, Damage, &[&str]); 48] = [
+const DAMAGES: [(&str, Damage, &[&str]); 52] = [
     (
         "no method",
         |f| fs::remove_file(f.join("method.json")).unwrap(),
@@ -517,6 +535,35 @@ const DAMAGES: [(&str, Damage, &[&str]); 48] = [
         &["results.csv, line 2, column mass: particle 0 has", "expected 1e-6 to 1000000 times"],
     ),
     (
+        "a document of another version",
+        |f| edit(f, "problem.json", "\"schema\": 1", "\"schema\": 2"),
+        &["problem.json: schema is 2; this program reads schema 1"],
+    ),
+    (
+        "own particles without masses",
+        |f| edit(f, "method.json", "\"closed\"", "\"open\""),
+        &["results.csv, line 2, column mass: it is missing; in the open division each particle"],
+    ),
+    (
+        "own particles that begin late",
+        |f| {
+            edit(f, "method.json", "\"closed\"", "\"open\"");
+            add(f, "mass", "1.5625e-5")
+        },
+        &["results.csv, line 2, column t: the first frame is not at t = 0"],
+    ),
+    (
+        "own particles with a gap in their numbers",
+        |f| {
+            edit(f, "method.json", "\"closed\"", "\"open\"");
+            add(f, "mass", "1.5625e-5");
+            set(f, 7, 1, "45")
+        },
+        &[
+            "line 2, column id: ids of the first frame are not 0, 1, 2 and so on, each once: 6 is in",
+        ],
+    ),
+    (
         "a document that repeats itself",
         |f| {
             fs::write(f.join("method.json"), format!("{{\"{}\": 1}}", "x".repeat(1 << 20))).unwrap()
@@ -599,6 +646,11 @@ fn unknown_costs_have_no_keys_and_columns_that_are_not_read_are_told() {
     add(&copy, "temperature", "7");
     let words = said(&touchstone(folder.path(), "submit couette copy --check"));
     assert!(words.contains("columns that are not read: temperature"), "{words}");
+    for given in ["--variant seed", "--set rows=8"] {
+        let output = touchstone(folder.path(), &format!("submit couette copy --check {given}"));
+        let words = said(&output);
+        assert!(output.status.code() == Some(2) && words.contains("leave out --variant and --set"));
+    }
     let record = submitted(folder.path(), "couette copy", "store");
     assert_eq!(record["cost"], serde_json::json!({"particles": 40}));
     // Each of the threads takes the seconds of the time loop.
@@ -624,7 +676,11 @@ fn a_problem_that_contradicts_its_own_settings_is_refused_by_field() {
         said(&touchstone(folder.path(), "submit couette copy --check"))
     };
     for (pointer, value, field) in [
-        ("/material/kinematic_viscosity/value", 2e-6.into(), "material.kinematic_viscosity.value"),
+        (
+            "/material/kinematic_viscosity/value",
+            1.000001e-6.into(),
+            "material.kinematic_viscosity.value",
+        ),
         ("/particles/spacing/value", 1e-4.into(), "particles.spacing.value"),
         ("/particles/spacing/unit", "mm".into(), "particles.spacing.unit"),
         ("/particles/count", 7.into(), "particles.count"),
@@ -703,6 +759,20 @@ fn the_order_of_own_particles_does_not_count() {
     }
     assert!(metrics[0].as_object().unwrap().len() > 5, "{}", metrics[0]);
     assert_eq!(metrics[0], metrics[1]);
+    // Curves that follow our own particles are not of others, and masses are a part of the results.
+    let first = submitted(folder.path(), "couette own", "first");
+    assert!(
+        first["profiles"].as_object().is_none_or(|all| all.is_empty()),
+        "{}",
+        first["profiles"]
+    );
+    let mass: f64 = start[0]["mass"].parse().unwrap();
+    let all = read(&own.join("results.csv"));
+    let heavier = all.replace(&format!(",{},", start[0]["mass"]), &format!(",{},", 1.01 * mass));
+    assert_ne!(all, heavier);
+    fs::write(own.join("results.csv"), heavier).unwrap();
+    let other = submitted(folder.path(), "couette own", "heavier");
+    assert_ne!(first["submission"]["results"], other["submission"]["results"]);
 }
 
 /// Writes places, velocities and densities with so many digits; with 0 as floats of 4 bytes.
@@ -772,6 +842,19 @@ fn rounding_of_a_file_is_no_flaw_of_a_method() {
         let words = told(17);
         assert!(words.contains(&format!("pass     {gate}")), "{words}");
     }
+}
+
+/// A bound of 0 is none of round-off: that no particle is outside is judged however few digits there are.
+#[test]
+fn counts_are_judged_with_few_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = "export couette --variant plain --set rows=20 --solve --out own";
+    let made = touchstone(folder.path(), line);
+    assert!(made.status.success(), "{}", said(&made));
+    round(&folder.path().join("own"), 9);
+    let output = touchstone(folder.path(), "submit couette own --all --store store");
+    let words = String::from_utf8_lossy(&output.stdout);
+    assert!(words.contains("pass     couette.plain.20.outside"), "{words}{}", said(&output));
 }
 
 /// A series is held from its last row to the end.
@@ -1063,6 +1146,10 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     fs::write(other.join("results.csv"), exact).unwrap();
     refused("symmetry elliptic_drop --results other same", "the first of relation same");
     refused("symmetry elliptic_drop --results same missing", "cannot be read");
+    let finer = of("export elliptic_drop --set n=10 --solve --relation turned --out finer");
+    assert!(finer.status.success(), "{}", said(&finer));
+    let line = "symmetry elliptic_drop --results same finer";
+    refused(line, "two problems of the same variant and settings");
     refused("submit elliptic_drop other --check", "`touchstone symmetry --results`");
     refused("export couette --relation turned --out x", "cannot be turned out of its axes");
     refused("export couette --relation upside-down --out x", "is none of same, turned");

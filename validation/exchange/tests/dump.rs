@@ -77,6 +77,21 @@ fn each_snapshot_has_its_own_time_and_number_of_atoms() {
     }
 }
 
+/// A row that was cut, or has more numbers than there are columns, is none.
+#[test]
+fn rows_are_whole() {
+    let whole = snapshot("ITEM: TIME\n0\n", 1, "id x y vx vy", "1 0 1 2 345\n");
+    assert!(read_text(&whole, &[]).is_ok());
+    for cut in 1..3 {
+        let words = read_text(&whole[..whole.len() - cut], &[]).unwrap_err();
+        assert!(words.starts_with("a.dump, line 8: the last line does not end"), "{words}");
+    }
+    for (row, count) in [("1 0 1 2 3 4", 6), ("1 0 1 2", 4)] {
+        let words = read_text(&whole.replace("1 0 1 2 345", row), &[]).unwrap_err();
+        assert!(words.contains(&format!("line 8: it has {count} values; expected 5")), "{words}");
+    }
+}
+
 /// Shares of the box are made metres by the box of their snapshot, with or without a name of the caller.
 #[test]
 fn shares_of_the_box_are_made_metres() {

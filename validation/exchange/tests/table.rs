@@ -31,6 +31,8 @@ fn usual_names_are_read_and_others_are_told() {
     assert!(words.contains("column density: its unit is g/cm^3; expected kg/m^3"), "{words}");
     let words = read_as(&format!("t,id,x,y,u,rho,Rhop\n{ROWS}"), &[]).unwrap_err();
     assert!(words.contains("rho and Rhop may be it"), "{words}");
+    let words = read_as(&format!("t,id,x,y,u,v,x\n{ROWS}"), &[]).unwrap_err();
+    assert_eq!(words, "results.csv, line 1, column x: it is there twice; expected once");
 }
 
 /// A name of the caller comes before ours, and is there.
@@ -103,8 +105,21 @@ fn a_third_component_is_not_lost() {
     assert!(words.contains("column w: it is from 5 to 10"), "{words}");
     let words = read_as("t,id,x,y,z,u,v\n0,0,1,2,3,4,5\n0,1,6,7,NaN,9,10\n", &[]).unwrap_err();
     assert!(words.contains("column z: it is from 3 to 3"), "a place that is no number: {words}");
+    // Names that differ in more than the direction are no vector.
+    let map = [("x", "x1"), ("y", "y2")];
+    assert!(read_as(&format!("t,id,x1,y2,z1,u,v\n{ROWS}"), &map).is_ok());
     let level = format!("t,id,x,y,u,v,w\n{ROWS}").replace(",5\n", ",10\n");
     assert!(read_as(&level, &[]).is_ok(), "constant");
+}
+
+/// Particles of a code that chose its own start where its first rows have them.
+#[test]
+fn own_particles_start_in_the_first_frame() {
+    let rows = "0,0,1,2,3,4,1.5\n0,1,6,7,8,9,2.5\n1,0,2,2,3,4,1.5\n1,1,7,7,8,9,2.5\n";
+    let results = read_as(&format!("t,id,x,y,u,v,mass\n{rows}"), &[]).unwrap();
+    let starts: Vec<_> = results.own.iter().map(|own| own.start).collect();
+    assert_eq!(starts, results.frames[0].particles);
+    assert_eq!(results.own.iter().map(|own| own.mass).collect::<Vec<_>>(), [1.5, 2.5]);
 }
 
 /// Mass and role are one for each particle at all times.
@@ -119,6 +134,7 @@ fn mass_and_role_do_not_change() {
     assert_eq!(stated[&1], (1.5, Some(solver::Role::Wall)));
     for (later, says) in [
         ("1.6,0", "line 4, column mass: it is 1.6, and was 1.5 before"),
+        ("1.4,0", "line 4, column mass: it is 1.4, and was 1.5 before"),
         ("1.5,1", "line 4, column role: particle 0 had another one before"),
     ] {
         let words = read_as(&of(later), &[]).unwrap_err();
@@ -131,15 +147,17 @@ fn mass_and_role_do_not_change() {
 #[test]
 fn files_have_the_same_columns() {
     let folder = tempfile::tempdir().unwrap();
-    for (k, columns, row) in
-        [(1, "id x y vx vy c_rho", "1 0 0 0 0 9"), (2, "id x y vx vy", "1 0 0 0 0")]
+    let all = [("id x y vx vy c_rho", "1 0 0 0 0 9"), ("id x y vx vy", "1 0 0 0 0")];
+    for (first, says) in [(0, "it is not here, but in 1.dump"), (1, "it is here and not in 1.dump")]
     {
-        let head =
-            format!("ITEM: TIME\n{k}\nITEM: NUMBER OF ATOMS\n1\nITEM: ATOMS {columns}\n{row}\n");
-        std::fs::write(folder.path().join(format!("{k}.dump")), head).unwrap();
+        for (k, (columns, row)) in [(1, all[first]), (2, all[1 - first])] {
+            let head = format!("ITEM: TIME\n{k}\nITEM: NUMBER OF ATOMS\n1\n");
+            let text = format!("{head}ITEM: ATOMS {columns}\n{row}\n");
+            std::fs::write(folder.path().join(format!("{k}.dump")), text).unwrap();
+        }
+        let flaws = read(folder.path(), &Renamed::new()).unwrap_err();
+        assert_eq!(flaws[0].to_string(), format!("2.dump, column density: {says}"));
     }
-    let flaws = read(folder.path(), &Renamed::new()).unwrap_err();
-    assert_eq!(flaws[0].to_string(), "2.dump, column density: it is not here, but in 1.dump");
 }
 
 /// What a file says is repeated by its beginning, three of a kind, and a count.

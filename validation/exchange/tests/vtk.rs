@@ -217,6 +217,9 @@ fn ids_under_an_unknown_name_are_asked_for() {
     let results = read_as(&file, &[]).unwrap();
     assert_eq!(particles(&results).iter().map(|p| p.0).collect::<Vec<_>>(), [0, 1, 2]);
     assert!(results.notes().join("").contains("numbered by their place"), "{:?}", results.notes());
+    // A vector of whole numbers holds no ids.
+    let text = String::from_utf8(file).unwrap().replace("Float32", "Int32");
+    assert!(read_as(text.as_bytes(), &[]).is_ok_and(|results| results.by_order));
     let both = TEXT.file(3, ("Idp", "Int32"), ("gid", "Int32", &[0.0, 1.0, 2.0]));
     let words = read_as(&both, &[]).unwrap_err();
     assert!(words.contains("Idp and gid may be it"), "{words}");

@@ -189,6 +189,14 @@ mod tests {
         assert!(median(&parted, &[1, 1, 1]).is_nan(), "no pair");
     }
 
+    /// They part when they differ by more than the tolerance, not by as much.
+    #[test]
+    fn a_difference_of_the_tolerance_is_none() {
+        let [one, other] = [0.25, -0.25].map(|by| vec![(0.0, 0.0), (1.0, by), (2.0, 2.0 * by)]);
+        let parted = [0.5, 0.49, 1.0].map(|tolerance| parting(&one, &other, tolerance));
+        assert_eq!(parted, [2.0, 1.0, f64::INFINITY]);
+    }
+
     #[test]
     fn members_that_agree_have_no_end_and_few_or_damaged_ones_no_horizon() {
         let members = diverging(20, 1);

@@ -288,3 +288,44 @@ fn without_extra<X: Numbers>(frame: &Frame, number: f64, state: &mut Checkpoint<
         particle.extra = X::default().advanced(number, X::default());
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use base::{record::Profile, spec::RunSpec};
+    use serde_json::json;
+
+    use super::*;
+
+    base::metrics! {
+        FIXED = "fixed" ["-"] "as it was made up";
+        RESTS = "rests" ["-"] "as it was made up";
+    }
+
+    /// Metrics, columns and the state that another density changes are left out, and a curve without columns.
+    #[test]
+    fn what_differs_by_a_column_that_was_not_given_is_left_out() {
+        let of = |density: f64| {
+            let mut record = Record::of(&RunSpec::new("case", "seed", json!({})), 1);
+            record.put(FIXED, 1.0);
+            record.put(RESTS, density);
+            let both = Profile::default().with("y", "m", vec![0.0, 1.0]);
+            record.profiles.insert("both".into(), both.with("p", "Pa", vec![0.0, density]));
+            let one = Profile::default().with("p", "Pa", vec![density]);
+            record.profiles.insert("one".into(), one);
+            record.state = Some(density.to_string());
+            record
+        };
+        let mut record = of(1.0);
+        leave_out(&mut record, "density", &of(1.0));
+        assert_eq!((record.metrics.len(), record.profiles.len()), (2, 2), "nothing rests on it");
+        assert!(record.state.is_some());
+        leave_out(&mut record, "density", &of(2.0));
+        assert_eq!(record.metrics.keys().collect::<Vec<_>>(), ["fixed"]);
+        assert_eq!(record.absent["rests"], Absent::NotGiven("density".into()));
+        let names = |of: &Profile| of.columns.iter().map(|of| of.name.clone()).collect::<Vec<_>>();
+        let curves: Vec<_> =
+            record.profiles.iter().map(|(name, of)| (&**name, names(of))).collect();
+        assert_eq!(curves, [("both", vec!["y".to_string()])]);
+        assert!(record.state.is_none());
+    }
+}

@@ -105,6 +105,8 @@ mod tests {
         assert_eq!(Quantile::of_sample(&[7.0], 0.25), Quantile { value: 7.0, within: None });
         let none = Quantile::of_sample(&[f64::NAN, f64::INFINITY], 0.5);
         assert!(none.value.is_nan() && none.within.is_none());
+        let finite = Quantile::of_sample(&[4.0, f64::INFINITY, 1.0, f64::NAN, 2.0], 0.5);
+        assert_eq!(finite.value, 2.0, "of 1, 2 and 4");
         // Times of which some are never: no infinity less another.
         assert_eq!(between(&[1.0, f64::INFINITY, f64::INFINITY], 0.75), f64::INFINITY);
     }

@@ -275,6 +275,14 @@ mod tests {
 
     use super::*;
 
+    /// An observer who moves with 5 m/s sees 6 m/s at most of 1 m/s, in his units.
+    #[test]
+    fn the_largest_speed_is_that_against_the_observer() {
+        let (boost, units) = (Vector2::new(3.0, -4.0), [8.0, 32.0, 0.25]);
+        let view = View { boost, units, ..View::default() };
+        assert_eq!(view.speed(1.0), 6.0 * 8.0 / 32.0);
+    }
+
     /// The force on a cut of a stressed body turns with the body and the cut: S' Q n = Q S n, with the unit
     /// of a pressure, and stays as large as it was. No scene starts with a stress.
     #[test]

@@ -257,7 +257,7 @@ mod tests {
     }
 
     /// Ladders of `seed` and `best` at n = 10, 20, 40, 80, of which the order of the second is judged; runs
-    /// with these errors, a function of variant and n, each of which took n/20 s.
+    /// with these errors, a function of variant and n, each of which took n/20 s, n/40 s and n/10 s.
     fn study_of(error: impl Fn(&str, f64) -> f64) -> Study {
         let bound = Bound::Within(2.9, 3.1);
         let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");
@@ -273,7 +273,7 @@ mod tests {
             let error = error(variant, n as f64);
             let fill = move |record: &mut Record| {
                 record.put(ERROR, error);
-                record.cost.alone_s = vec![n as f64 / 20.0];
+                record.cost.alone_s = [20.0, 40.0, 10.0].map(|share| n as f64 / share).into();
             };
             (spec(variant, n), fill)
         });
@@ -301,6 +301,10 @@ mod tests {
         assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
         let Block::Figure(figure) = &study.blocks[0] else { panic!("a figure") };
         assert!(figure.caption.ends_with(" The grey line has order 2."), "{}", figure.caption);
+        let [_, report::Layer::Series(seed), _] = &figure.panels[1].layers[..] else {
+            panic!("the front and two ladders")
+        };
+        assert_eq!(seed.x_bars, [(0.25, 1.0), (0.5, 2.0), (1.0, 4.0), (2.0, 8.0)], "over run time");
     }
 
     #[test]

@@ -302,6 +302,9 @@ mod tests {
     fn a_known_divergence_and_known_quantiles_are_shown_and_judged() {
         let (failed, study) = judged(all());
         assert_eq!(failed, [""; 0]);
+        let agree = study.judged.iter().find(|judged| judged.gate.id == "case.agree");
+        let agree = agree.and_then(|judged| judged.judgement.value).expect("a time");
+        assert!((agree - 4.03).abs() < 1e-9, "all agree until {agree}");
         // The first pair, 19 e-6 apart, parts at ln(0.06/19e-6)/2 = 4.03, and the
         // median, of 6e-6, at ln(0.06/6e-6)/2 = 4.61: each at the next sample.
         let found = row(&study, 0, &["members", "tolerance", "horizon", "first pair", "verdict"]);
@@ -329,7 +332,14 @@ mod tests {
             for (found, expected) in [low, high].into_iter().zip(ends) {
                 assert!((found / unit / expected - 1.0).abs() < 1e-9, "{found}, not {expected}");
             }
+            assert!((100..=DRAWN).contains(&points.len()), "{} of 801 points", points.len());
         }
+        let [Layer::Series(measured), Layer::Series(horizon)] = &plot.layers[3..] else {
+            panic!("two lines")
+        };
+        assert_eq!(measured.points, [(0.0, 0.0)], "the runs end at 8, before the second point");
+        let is_late = |(t, _): &(f64, f64)| (t - 4.61).abs() < 1e-9;
+        assert!(horizon.points.len() == 2 && horizon.points.iter().all(is_late), "{horizon:?}");
     }
 
     #[test]
@@ -361,5 +371,8 @@ mod tests {
         let (failed, study) = judged((1..=ALL).map(same).collect());
         assert_eq!(failed, [""; 0]);
         assert_eq!(row(&study, 0, &["horizon", "verdict"]), ["–", "all agree until 8.00"]);
+        let but_one = |n| run(spec("seed", n), |record| record.put(ERROR, 10.5 + (n / ALL) as f64));
+        let (_, study) = judged((1..=ALL).map(but_one).collect());
+        assert_eq!(row(&study, 0, &["horizon", "verdict"]), ["–", "most pairs agree until 8.00"]);
     }
 }

@@ -332,7 +332,16 @@ fn all_gates(run: &JudgedRun) -> String {
 
 #[cfg(test)]
 mod tests {
+    use base::{
+        gate::{Bound, Evidence, Gate},
+        record::Metric,
+    };
+
     use super::*;
+    use crate::{
+        runs::Planned,
+        studies::tests::{ERROR, column, run, spec, tables},
+    };
 
     fn of(code: &str) -> Submission {
         let [version, scheme, method] = ["1", "scheme", ""].map(String::from);
@@ -343,6 +352,87 @@ mod tests {
     fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {
         let (name, particles, session) = (of.code.clone(), rows, Some(session));
         Mark { of, name, particles, session, error, seconds: s }
+    }
+
+    /// A run of a code with as many particles, seconds and this error; the same error at another time and a
+    /// number of no accuracy, each with a gate that it fails.
+    fn run_of(code: &str, particles: usize, seconds: f64, error: f64) -> JudgedRun {
+        let gate = |metric: &str, most: f64| {
+            let (id, bound) = (format!("case.{metric}"), Bound::Below(most));
+            Gate::new(id, metric, bound, Evidence::Analytic, "made up")
+        };
+        let spec = spec("seed", 8);
+        let mut record = Record::of(&spec, 1);
+        for (name, value) in [("error", error), ("error@2", 1.0), ("noise", 1.0)] {
+            record.metrics.insert(name.into(), Metric::new(value, "-", "made up"));
+        }
+        record.run.submission = Some(Box::new(of(code)));
+        (record.cost.particles, record.cost.cpu_s) = (particles, seconds);
+        let gates = vec![gate("error", 10.0), gate("error@2", 0.1), gate("noise", 0.1)];
+        JudgedRun::new(Planned::new(spec).judged(gates), record)
+    }
+
+    fn of_others(submissions: Vec<JudgedRun>) -> Runs {
+        let mut runs = Runs::new(Vec::new());
+        runs.submissions = submissions;
+        runs
+    }
+
+    fn declared() -> Declaration {
+        let accuracy = vec![Accuracy::new("case", ERROR, "Error [-]")];
+        Declaration { accuracy, ..Declaration::default() }
+    }
+
+    /// Of runs of one code with as many particles the fastest is shown; of curves, which have none, each.
+    #[test]
+    fn the_fastest_of_one_code_with_as_many_particles_is_shown() {
+        let of = [(10, 3.0, 0.3), (10, 1.0, 0.2), (20, 2.0, 0.1), (0, 5.0, 0.5), (0, 6.0, 0.6)];
+        let runs = of_others(of.map(|(count, s, error)| run_of("code", count, s, error)).into());
+        let accuracy = &declared().accuracy[0];
+        let shown: Vec<f64> = marks(accuracy, &runs).iter().map(|mark| mark.error).collect();
+        assert_eq!(shown, [0.2, 0.1, 0.5, 0.6]);
+    }
+
+    /// Errors at all times are of the accuracy, which one failing gate fails; the best is the first.
+    #[test]
+    fn the_table_has_the_best_first_and_the_accuracy_apart() {
+        let runs = of_others(vec![run_of("worse", 10, 1.0, 0.3), run_of("better", 10, 1.0, 0.2)]);
+        let study = study("case", &declared(), &runs).expect("there are others");
+        let table = tables(&study)[0];
+        assert_eq!(column(table, "error"), ["20 %", "30 %"]);
+        assert_eq!(
+            column(table, "accuracy"),
+            [Verdict::Fail.to_string(), Verdict::Fail.to_string()]
+        );
+        assert_eq!(column(table, "other gates that fail"), ["case.noise"; 2]);
+        assert_eq!(column(table, "all gates"), ["1 pass, 2 fail, 0 not applicable"; 2]);
+    }
+
+    /// Equal results are told of two codes, and of one that handed in ours, but not of one code or of ours.
+    #[test]
+    fn equal_results_are_told_of_different_codes() {
+        let with = |code: &str, results: &str| {
+            let mut run = run_of(code, 10, 1.0, 0.1);
+            run.record.state = Some("state".into());
+            run.record.run.submission.as_mut().expect("a submission").results =
+                Some(results.into());
+            run
+        };
+        let told = |all: &[(&str, &str)]| {
+            equal(&of_others(all.iter().map(|of| with(of.0, of.1)).collect()))
+        };
+        assert!(told(&[("one", "a"), ("one", "a")]).is_none(), "one code twice");
+        assert!(told(&[("one", "a"), ("two", "b")]).is_none(), "other results");
+        assert!(told(&[("one", "a"), ("two", "a")]).is_some_and(|words| words.contains("two")));
+        let of = |code| {
+            let mut own = run(spec("seed", 8), |_| ());
+            own.record.state = Some("state".into());
+            let mut runs = Runs::new(vec![own]);
+            runs.submissions = vec![with(code, "a")];
+            equal(&runs)
+        };
+        assert!(of("one").is_some_and(|words| words.contains("our own")));
+        assert!(of(OURS).is_none());
     }
 
     /// A page of a thousand submissions took 2 GB, for a legend of a thousand lines.

@@ -442,6 +442,13 @@ mod tests {
                 "{words}"
             );
         }
+        // Local orders 2.2, 2.1 and 1.75 are one order: the error is larger than its index, 0.96 of it, and
+        // does not stop.
+        let uneven = [(1, 0.0), (2, 2.2), (4, 4.3), (8, 6.05)];
+        let errors = uneven.map(|(n, bits)| (spec("best", n), powf(2.0, -bits)));
+        let found = Found::of(&comparison("best", &[1, 2, 4, 8]), &runs(errors));
+        assert!(found.error > found.numerical.expanded, "{found:?}");
+        assert_eq!(found.said(), Said::Converges);
         let expected = (Said::Stops, "stops at 1.0 %".to_string());
         assert_eq!(verdict(&|n| 0.01 + 1.0 / (n * n)), expected);
         assert_eq!(verdict(&|n| -0.01 - 1.0 / (n * n)), expected);
