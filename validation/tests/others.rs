@@ -420,6 +420,28 @@ fn a_window_of_our_own_step_judges_only_what_states_it() {
     }
 }
 
+/// Another kernel, a smaller support or a shorter step is not ours.
+#[test]
+fn a_window_of_our_own_needs_our_kernel_support_and_step() {
+    let own = Entry::own("couette --variant plain --set rows=20");
+    let path = own.folder.join("method.json");
+    let method: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    let has_window = |method: &serde_json::Value| {
+        fs::write(&path, method.to_string()).unwrap();
+        let text = own.submit(&own.head, &own.rows).text;
+        let line = text.lines().find(|line| line.contains("couette.plain.20.l2@0.1"));
+        line.unwrap_or_else(|| panic!("{text}")).contains(" to ")
+    };
+    assert!(has_window(&method));
+    for name in ["kernel", "support", "dt"] {
+        let mut other = method.clone();
+        let stated = &mut other["settings"][name];
+        *stated = stated.as_f64().map_or("another".into(), |value| (0.99 * value).into());
+        assert!(!has_window(&other), "{name}");
+    }
+}
+
 /// A run that states our step has made as many steps as that takes, and no more than one further for each of
 /// the times that it had to reach.
 #[test]
