@@ -6,6 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use serde_json::Value;
+
 use base::{
     absent::Absent,
     functions::{cos, exp, sin},
@@ -791,4 +793,37 @@ fn a_force_that_another_code_does_not_state_is_in_no_series() {
     let record = own.submit(&own.head, &own.rows).record.expect("a record");
     assert!(record.column("series", "flux").len() > 1);
     assert!(record.column("series", "force").is_empty());
+}
+
+/// The particles of a code that chose its own ones are those that are measured: twice as many a side.
+#[test]
+fn particles_that_a_code_chose_itself_are_the_ones_that_are_measured() {
+    let own = Entry::own("hydrostatic");
+    let problem: Value =
+        serde_json::from_str(&fs::read_to_string(own.folder.join("problem.json")).unwrap())
+            .unwrap();
+    let set = |name: &str| problem["spec"]["settings"][name].as_f64().unwrap();
+    let (depth, rows) = (set("depth"), 2.0 * set("rows"));
+    let (dx, columns) = (depth / rows, 2.0 * set("columns"));
+    let head = cells("t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3],mass[kg/m],role");
+    let times = problem["times"]["value"].as_array().or(problem["times"].as_array()).unwrap();
+    let times = times.iter().map(|time| time.as_f64().unwrap()).filter(|time| *time > 0.0);
+    let mut lines = Vec::new();
+    for time in [0.0].into_iter().chain(times) {
+        for id in 0..(rows * columns) as usize {
+            let place = |k: usize| (k as f64 + 0.5) * dx;
+            let (x, y) = (place(id % columns as usize), place(id / columns as usize));
+            let exponent = set("gamma") - 1.0;
+            let deep = 1.0 + exponent * set("compressibility") * (depth - y) / depth;
+            let density = set("rho") * exp(base::functions::ln(deep) / exponent);
+            lines
+                .push(cells(&format!("{time},{id},{x},{y},0,0,{density},{},0", density * dx * dx)));
+        }
+    }
+    let method = fs::read_to_string(own.folder.join("method.json")).unwrap();
+    fs::write(own.folder.join("method.json"), method.replace("\"closed\"", "\"open\"")).unwrap();
+    let said = own.submit(&head, &lines);
+    let record = said.record.unwrap_or_else(|| panic!("{}", said.text));
+    assert_eq!(record.cost.particles, (rows * columns) as usize, "{}", said.text);
+    assert!(record.metric("p_l2").is_some_and(|error| error < 1e-9), "{:?}", record.metric("p_l2"));
 }
