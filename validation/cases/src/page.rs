@@ -271,9 +271,13 @@ fn references_section() -> Section {
                 let names: Vec<&str> = package.licenses.iter().map(|l| l.name.as_str()).collect();
                 (cell, [package.title.clone(), reference.graded(), names.join(", ")])
             }
-            Err(error) => (cell.with(Verdict::Fail), [error.to_string(), "–".into(), "–".into()]),
+            Err(error) => {
+                let failed = cell.with(Verdict::Fail);
+                (failed, [plain(&error.to_string()), "–".into(), "–".into()])
+            }
         };
-        [vec![cell], texts.map(Cell::text).into()].concat()
+        let [title, grade, licence] = texts;
+        vec![cell, Cell::marked(title), Cell::text(grade), Cell::text(licence)]
     };
     let caption = "Reference data, embedded with its provenance and checked by hash.";
     let columns = ["reference", "what", "grade", "licence"].map(Column::text);

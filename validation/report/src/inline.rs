@@ -15,7 +15,7 @@ pub fn plain(text: &str) -> String {
 
 /// A text as a name in a command, whatever marks it has.
 pub fn code(text: &str) -> String {
-    format!("`{}`", text.replace('`', "'"))
+    if text.is_empty() { String::new() } else { format!("`{}`", text.replace('`', "'")) }
 }
 
 /// The text as HTML. Marks without a partner are plain text.
@@ -89,6 +89,7 @@ mod tests {
         assert_eq!(of("a *b* **c** `d<e`"), "a <em>b</em> <strong>c</strong> <code>d&lt;e</code>");
         assert_eq!(of("see [Fig *x*](#fig-x)."), "see <a href=\"#fig-x\">Fig <em>x</em></a>.");
         assert_eq!(of("ρ & co"), "ρ &amp; co");
+        assert_eq!(of(&code("")), "", "no name, no marks");
     }
 
     /// A code called `[our paper](javascript:…)` was a live link on the page.
