@@ -1,6 +1,6 @@
 //! What breaks a run ends as a value, and what cannot start is refused with its numbers.
 
-use harness::simulate::momentum;
+use maths::metrics::momentum::momentum;
 use nalgebra::Vector2;
 use solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, Leapfrog, Limits, Open,

@@ -82,9 +82,9 @@ impl Solver for Other {
     fn method(&self) -> Method {
         let mut method = FiniteDifferences { cells: 64 }.method();
         let problem = self.problem();
-        let support = problem.method.support * problem.outline.medium.h;
+        let support = problem.outline.method.support * problem.outline.medium.h;
         let ours = json!({
-            "kernel": problem.method.kernel, "support": support, "dt": problem.outline.dt
+            "kernel": problem.outline.method.kernel, "support": support, "dt": problem.outline.dt
         });
         if self.states {
             method.settings = ours.as_object().unwrap().clone();

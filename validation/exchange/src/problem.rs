@@ -42,8 +42,6 @@ pub struct Problem {
     pub about: &'static str,
     /// What scene and drive are made of.
     pub outline: Outline,
-    /// What our own method is.
-    pub method: Properties,
     /// What a run of another code with these settings can be judged by.
     pub gates: Vec<Gate>,
     /// The settings that the variant reads.
@@ -212,7 +210,6 @@ impl Problem {
         allow_long: bool,
     ) -> Result<Self, RunError> {
         let outline = case.pose(&spec)?.outline(&spec, relation, allow_long)?;
-        let method = outline.method.clone();
         let Declaration { posed, curve, stepwise, of_methods, costly, .. } =
             case.declaration(Tier::Quick);
         let ours = [stepwise, of_methods, costly].concat();
@@ -238,7 +235,6 @@ impl Problem {
             spec,
             about,
             outline,
-            method,
             gates,
             fields,
             nearest,
@@ -282,8 +278,7 @@ impl Problem {
 
     /// The document.
     pub fn to_json(&self) -> Value {
-        let Self { outline, method, .. } = self;
-        let Outline { medium: m, domain, mirrors, dt, .. } = outline;
+        let Outline { medium: m, domain, mirrors, dt, method, .. } = &self.outline;
         let times = self.times();
         let plane = |wall: &solver::PlaneWall| {
             json!({
@@ -387,7 +382,7 @@ impl Problem {
     /// The equations in words.
     pub fn equations(&self) -> Vec<(&'static str, &'static str)> {
         let continuity = ("continuity", "dρ/dt = -ρ ∇·v");
-        if let Some(energy) = self.method.law {
+        if let Some(energy) = self.outline.method.law {
             let momentum = "ρ0 dv/dt = ∇·P + ρ0 g, P = ∂w/∂F, in the configuration without stress; F = \
                             ∂x/∂X, J = det F";
             let mut all =
@@ -449,7 +444,7 @@ impl Problem {
             ),
             "## Our method".into(),
             self.ours(),
-            list(self.method.terms.iter().map(|term| (*term).into())),
+            list(self.outline.method.terms.iter().map(|term| (*term).into())),
             format!("## What to hand in\n\n{HAND_IN}{}", self.of_curve()),
             self.then(),
             titled("## What is measured", measured, self.metrics.iter().map(metric)),
@@ -467,7 +462,7 @@ impl Problem {
             let unit = value["unit"].as_str().unwrap_or_default();
             [name.replace('_', " "), value["value"].to_string(), unit.into()]
         };
-        let material = material(m, &self.method);
+        let material = material(m, &self.outline.method);
         let [gx, gy] = [m.acceleration.x, m.acceleration.y];
         let end = self.outline.times.last().copied().unwrap_or_default();
         let more = [
@@ -481,7 +476,7 @@ impl Problem {
 
     /// Our method, of which the closed division takes the support radius.
     fn ours(&self) -> String {
-        let Self { method, outline: Outline { medium: m, dt, .. }, .. } = self;
+        let Outline { method, medium: m, dt, .. } = &self.outline;
         format!(
             "The closed division takes particles, spacing and support radius; nothing else of this is asked \
              for. Kernel: {}, smoothing length h = {} m, support radius {} m. Integrator: {}, time step \

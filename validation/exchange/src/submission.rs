@@ -255,7 +255,7 @@ fn hole(record: &Record) -> Option<String> {
 fn reach(problem: &Problem) -> f64 {
     let Outline { particles, medium, .. } = &problem.outline;
     let places = ["x", "y"].into_iter().flat_map(|axis| particles.column(axis));
-    FAR * places.fold(problem.method.support * medium.h, |most, x| most.max(x.abs()))
+    FAR * places.fold(problem.outline.method.support * medium.h, |most, x| most.max(x.abs()))
 }
 
 /// Bounds beyond which a run of the problem has diverged: 30 % of the density of a fluid, a half of that of a
@@ -409,7 +409,7 @@ impl Entry {
             Division::Closed => problem.outline.particles.column("id").len(),
             Division::Open => expected.len(),
         };
-        let support = problem.method.support * problem.outline.medium.h;
+        let support = problem.outline.method.support * problem.outline.medium.h;
         let (domain, reach) = (&problem.outline.domain, reach(problem));
         for (frame, (file, line)) in frames.iter().zip(places) {
             if flaws.len() >= MOST_FLAWS {
@@ -637,8 +637,8 @@ impl Entry {
         let as_many =
             self.system.steps.is_none_or(|made| made <= expected && made >= (end / dt).floor());
         self.particles() == Division::Closed
-            && kernel == Some(problem.method.kernel)
-            && is("support", problem.method.support * medium.h)
+            && kernel == Some(problem.outline.method.kernel)
+            && is("support", problem.outline.method.support * medium.h)
             && is("dt", *dt)
             && as_many
     }

@@ -39,7 +39,6 @@ pub mod rules;
 pub mod runner;
 pub mod runs;
 pub mod sealed;
-pub mod simulate;
 pub mod size;
 pub mod store;
 pub mod studies;

@@ -9,7 +9,7 @@ use base::{
     spec::{Keep, Measure, RunSpec},
 };
 use serde_json::Value;
-use solver::{Domain, Flow, Numbers, Outcome, Particle, PlaneWall, Role, Stepper};
+use solver::{Flow, Numbers, Outcome, Particle, Role, Stepper};
 
 use crate::{
     context::Context,
@@ -32,7 +32,7 @@ pub const INTEGRATOR: &str = "integrator";
 /// Name of the walls.
 pub const WALLS: &str = "walls";
 
-/// What is asked of a run beside its headline.
+/// Optional output of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked {
     /// Every metric, whatever it costs.
@@ -42,14 +42,14 @@ pub struct Asked {
 }
 
 impl Asked {
-    /// What the spec of a run asks for.
+    /// Optional output that the spec of a run asks for.
     pub fn of(spec: &RunSpec) -> Self {
         let Keep { particles, .. } = spec.keep;
         Self { all: spec.measure == Measure::All, particles }
     }
 }
 
-/// What is known of a run before its particles are made.
+/// Facts of a run that are known before its particles are made.
 #[derive(Debug)]
 pub struct Brief {
     /// The parameters of the material.
@@ -62,7 +62,7 @@ pub struct Brief {
     pub limit_of: Option<&'static str>,
     /// Why only a run that may be unstable is made, if so.
     pub unstable: Option<RunError>,
-    /// What its record states of it, by name.
+    /// Numbers that its record states, by name.
     pub numbers: Vec<(&'static str, Value)>,
     /// About how many particles there are.
     pub particles: f64,
@@ -104,7 +104,7 @@ impl Brief {
 
 /// A run of a case: the scene, what is measured, and the metrics.
 pub trait Problem: Sized {
-    /// What particles have beside position, velocity and density.
+    /// Fields of a particle beside position, velocity and density.
     type Extra: Numbers;
     /// A simulation as the case sees it.
     type Simulation: Stepper<Self::Extra> + ?Sized;
@@ -116,7 +116,7 @@ pub trait Problem: Sized {
     /// The method.
     fn method(&self) -> &Method<Self::Extra, Self::Simulation>;
 
-    /// What is known before the particles are made.
+    /// Facts that are known before the particles are made.
     fn brief(&self) -> Brief;
 
     /// Why no file can state the scene for other codes, if so.
@@ -164,7 +164,7 @@ pub struct Calls<P: Problem> {
     control: Option<(&'static str, At<P>, Resumed<P>)>,
 }
 
-/// What a function at a time of interest reads.
+/// Data that a function at a time of interest reads.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Reads {
     All,
@@ -225,7 +225,7 @@ const COMPARED: [usize; 3] = [4, 8, 16];
 pub enum Steps {
     /// All.
     All,
-    /// Those at which observers are compared.
+    /// The first steps, after which observers are compared.
     Early,
     /// None.
     None,
@@ -246,7 +246,7 @@ pub type AtTime<'a> = &'a mut dyn FnMut(f64, Profile);
 
 /// A run of a case, whatever its types: what a command does with it.
 pub trait Posed {
-    /// What is known of it before its particles are made.
+    /// Facts that are known before its particles are made.
     fn brief(&self) -> Brief;
     /// The size of as many steps, of a run that is not refused.
     ///
@@ -304,9 +304,7 @@ impl<P: Problem> Posed for P {
         relation: Option<Relation>,
         allow_long: bool,
     ) -> Result<Outline, RunError> {
-        self.checked(spec, Steps::None, allow_long)?;
-        let Built { simulation, outline, .. } = self.built(spec, 1, relation, None)?;
-        self.stated(&*simulation, outline, relation, Steps::None)
+        Ok(self.stated(spec, relation, Steps::None, allow_long)?.1)
     }
 
     fn seen_by(
@@ -315,11 +313,9 @@ impl<P: Problem> Posed for P {
         context: &Context,
         at_time: AtTime,
     ) -> Result<Outline, RunError> {
-        let spec = &context.spec;
-        let (brief, _) = self.checked(spec, Steps::Early, context.allow_long)?;
-        let Built { mut simulation, outline, .. } = self.built(spec, 1, Some(relation), None)?;
-        let outline = self.stated(&*simulation, outline, Some(relation), Steps::Early)?;
-        let (simulation, pressure) = (simulation.stepper(), pressure(&brief.medium));
+        let (mut simulation, outline) =
+            self.stated(&context.spec, Some(relation), Steps::Early, context.allow_long)?;
+        let (simulation, pressure) = (simulation.stepper(), pressure(&Problem::brief(self).medium));
         for until in outline.times.iter().filter(|_| !context.is_interrupted()) {
             if simulation.advance(*until, outline.dt, &mut ()) != Outcome::Reached {
                 break; // it diverged
@@ -333,22 +329,6 @@ impl<P: Problem> Posed for P {
         let context = Context { spec: spec.clone(), allow_long: true, ..Context::default() };
         self.driven(spec, Steps::None, &context, Some(playback))
     }
-}
-
-/// A simulation before its first step.
-struct Built<P: Problem> {
-    simulation: Box<P::Simulation>,
-    start: Vec<Particle<P::Extra>>,
-    outline: Scene,
-}
-
-/// What the outline of a run takes from its scene, as an observer sees it.
-struct Scene {
-    medium: Medium,
-    domain: Domain,
-    mirrors: Vec<PlaneWall>,
-    bodies: Vec<u32>,
-    view: View,
 }
 
 fn pressure(medium: &Medium) -> impl Fn(f64) -> f64 + use<> {
@@ -383,70 +363,76 @@ trait Parted: Problem {
         Ok((brief, size))
     }
 
-    /// The simulation of a run, of another code's with its particles.
-    fn built(
-        &self,
-        spec: &RunSpec,
-        threads: usize,
-        relation: Option<Relation>,
-        playback: Option<&Playback>,
-    ) -> Result<Built<Self>, RunError> {
-        let mut parts =
-            Parts { threads, mutation: spec.mutation, disorder: spec.disorder, ..self.scene()? };
-        if let Some(playback) = playback {
-            parts.particles = playback.particles(parts.particles);
-        }
-        let view = match relation {
-            Some(relation) => see(&mut parts, relation)
-                .map_err(|reason| RunError::NoSymmetry { relation, reason })?,
-            None => View::default(),
-        };
-        let start = if Self::READS_START { parts.particles.clone() } else { Vec::new() };
-        let (mirrors, bodies) = (parts.mirrors.clone(), parts.bodies.clone());
-        let outline = Scene { medium: parts.medium, domain: parts.domain, mirrors, bodies, view };
-        let mut simulation = (self.method().build)(parts)?;
-        self.prepare(&mut simulation, &view);
-        Ok(Built { simulation, start, outline })
+    /// The scene with what a spec changes of it.
+    fn parts(&self, spec: &RunSpec, threads: usize) -> Result<Parts<Self::Extra>, RunError> {
+        let RunSpec { mutation, disorder, .. } = *spec;
+        Ok(Parts { threads, mutation, disorder, ..self.scene()? })
     }
 
-    /// The outline of a run that was built.
+    /// The simulation of a scene as an observer sees it.
+    fn built(
+        &self,
+        parts: Parts<Self::Extra>,
+        view: &View,
+    ) -> Result<Box<Self::Simulation>, RunError> {
+        let mut simulation = (self.method().build)(parts)?;
+        self.prepare(&mut simulation, view);
+        Ok(simulation)
+    }
+
+    /// Makes the parts those that an observer sees.
+    fn view(
+        &self,
+        parts: &mut Parts<Self::Extra>,
+        relation: Relation,
+        steps: Steps,
+    ) -> Result<View, RunError> {
+        let refused = |reason| RunError::NoSymmetry { relation, reason };
+        let view = see(parts, relation).map_err(refused)?;
+        let shifts = self.method().properties.uses.contains(&Knob::Shift);
+        let shifts = shifts && parts.medium.shift > 0.0;
+        if relation == Relation::Boosted && steps == Steps::Early && shifts {
+            return Err(refused("its shifting takes the largest speed of the scene"));
+        }
+        Ok(view)
+    }
+
+    /// The simulation as an observer sees it, and its outline.
     fn stated(
         &self,
-        simulation: &Self::Simulation,
-        Scene { medium, domain, mut mirrors, bodies, view }: Scene,
+        spec: &RunSpec,
         relation: Option<Relation>,
         steps: Steps,
-    ) -> Result<Outline, RunError> {
+        allow_long: bool,
+    ) -> Result<(Box<Self::Simulation>, Outline), RunError> {
+        let (brief, _) = self.checked(spec, steps, allow_long)?;
         if let Some(reason) = self.not_exported() {
             return Err(RunError::NoScene(reason));
         }
-        let method = self.method().properties.clone();
-        let mut dt = Problem::brief(self).rules.dt();
-        let mut times = Vec::new();
-        match relation {
-            None => times = self.times(),
-            Some(Relation::Boosted)
-                if steps == Steps::Early
-                    && method.uses.contains(&Knob::Shift)
-                    && medium.shift > 0.0 =>
-            {
-                let reason = "its shifting takes the largest speed of the scene";
-                return Err(RunError::NoSymmetry { relation: Relation::Boosted, reason });
-            }
-            Some(_) => {
-                dt *= view.scale(TIME);
-                times.extend(COMPARED.map(|steps| steps as f64 * dt));
-            }
-        }
-        let own = pressure(&Problem::brief(self).medium);
-        let pressure = |density| view.pressure_of(&own, density);
+        let mut parts = self.parts(spec, 1)?;
+        let view = match relation {
+            Some(relation) => self.view(&mut parts, relation, steps)?,
+            None => View::default(),
+        };
+        let Parts { medium, domain, .. } = parts;
+        let (mut mirrors, bodies) = (parts.mirrors.clone(), parts.bodies.clone());
+        let simulation = self.built(parts, &view)?;
+        let dt = brief.rules.dt() * if relation.is_some() { view.scale(TIME) } else { 1.0 };
+        let times = match relation {
+            Some(_) => COMPARED.map(|steps| steps as f64 * dt).to_vec(),
+            None => self.times(),
+        };
+        let own = pressure(&brief.medium);
         let particles = simulation.particles();
         // Walls of particles need no planes.
         if particles.iter().any(|p| p.role != Role::Fluid) {
             mirrors.clear();
         }
-        let particles = frames::columns(&particles, &pressure);
-        Ok(Outline { medium, domain, mirrors, bodies, particles, times, dt, view, method })
+        let particles = frames::columns(&particles, &|density| view.pressure_of(&own, density));
+        let method = self.method().properties.clone();
+        let outline =
+            Outline { medium, domain, mirrors, bodies, particles, times, dt, view, method };
+        Ok((simulation, outline))
     }
 
     /// A record with what the run chose.
@@ -470,19 +456,27 @@ trait Parted: Problem {
         context: &Context,
         playback: Option<&Playback>,
     ) -> Result<Record, RunError> {
-        let (brief, _) = self.checked(spec, steps, context.allow_long)?;
+        let (brief, size) = self.checked(spec, steps, context.allow_long)?;
         let threads = if brief.is_serial { 1 } else { context.threads };
-        let Built { mut simulation, start, .. } = self.built(spec, threads, None, playback)?;
+        let mut parts = self.parts(spec, threads)?;
+        if let Some(playback) = playback {
+            parts.particles = playback.particles(parts.particles);
+        }
+        let start = if Self::READS_START { parts.particles.clone() } else { Vec::new() };
+        let mut simulation = self.built(parts, &View::default())?;
         let mut record = self.begun(spec, threads, &brief);
         let (times, asked) = (self.times(), Asked::of(spec));
         let mut watch = self.watch(&start, &simulation);
         drop(start);
-        let Calls { after_step, at, control } = self.calls(Calls::default(), asked);
+        let Calls { after_step, mut at, control } = self.calls(Calls::default(), asked);
         let mut seen = (&mut watch, &mut record);
         let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
-        let sweeps = if brief.is_limited { brief.rules.sweeps() } else { 2.0 };
         let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
-            .steps(brief.least_steps, sweeps);
+            .steps(brief.least_steps, size.sweeps);
+        if let Some((name, call, resumed)) = control.filter(|_| playback.is_none()) {
+            at.push((name, Reads::All, call));
+            drive = drive.resumed(move |(watch, _), s| resumed(self, watch, s));
+        }
         for (name, call) in after_step {
             drive = drive.after_step(name, move |(watch, _), s| call(self, watch, s));
         }
@@ -496,16 +490,9 @@ trait Parted: Problem {
             };
         }
         let ended = match playback {
-            Some(playback) => drive.play(playback, context)?,
-            None => {
-                if let Some((name, call, resumed)) = control {
-                    drive = drive
-                        .at(name, move |(watch, record), s, k| call(self, watch, s, k, record))
-                        .resumed(move |(watch, _), s| resumed(self, watch, s));
-                }
-                drive.run(context)?
-            }
-        };
+            Some(playback) => drive.play(playback, context),
+            None => drive.run(context),
+        }?;
         ended.put(&mut record);
         self.measure(watch, &simulation, &mut record);
         Ok(record)

@@ -119,7 +119,7 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
 /// What a submission of this program says of its method.
 fn solved_by(problem: &Problem) -> String {
     let read = problem.settings().map(|(field, value)| (field.name.to_string(), value.clone()));
-    let (mut settings, own) = (Value::Object(read.collect()), &problem.method);
+    let (mut settings, own) = (Value::Object(read.collect()), &problem.outline.method);
     // What makes gates on the theory of our own method apply.
     settings["kernel"] = json!(own.kernel);
     settings["support"] = json!(own.support * problem.outline.medium.h);

@@ -11,10 +11,9 @@ use harness::{
     declare::Declaration,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
-    simulate::momentum,
     table::{Row, Table},
 };
-use maths::metrics::norms::largest;
+use maths::metrics::{momentum::momentum, norms::largest};
 use nalgebra::Vector2;
 use solver::{Domain, Particle, Stepper, Tait};
 

@@ -1,7 +1,7 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
 use base::{functions::*, gate::*, record::*};
-use harness::{case::*, composed::*, declare::*, simulate, table::*};
+use harness::{case::*, composed::*, declare::*, table::*};
 use maths::{exact::impact::Impact, metrics::history::passes, theory::lattice::SquareLattice};
 use nalgebra::Vector2;
 use solver::*;
@@ -281,7 +281,7 @@ impl Watch for Motion {
             }
         }
         let after = Energy::of(simulation, &self.settings.material());
-        let momentum = simulate::momentum(&simulation.particles()) - self.momentum;
+        let momentum = maths::metrics::momentum::momentum(&simulation.particles()) - self.momentum;
         record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
         record.put(ENERGY_CHANGE, after.total() / self.energy - 1.0);
         let column = |k: usize| self.series.iter().map(|row| row[k]).collect();

@@ -1,7 +1,7 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
 use base::{gate::*, record::*};
-use harness::{case::*, composed::*, declare::*, simulate, table::*};
+use harness::{case::*, composed::*, declare::*, table::*};
 use maths::metrics::history;
 use nalgebra::Vector2;
 use solver::*;
@@ -173,7 +173,7 @@ impl Watch for History {
         let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
-        let momentum = simulate::momentum(&simulation.particles()).norm();
+        let momentum = maths::metrics::momentum::momentum(&simulation.particles()).norm();
         record.put(MOMENTUM_ERROR, momentum / (self.mass * speed));
     }
 }

@@ -87,7 +87,7 @@ fn mass(outline: &Outline) -> (f64, f64) {
 fn script(problem: &Problem) -> String {
     let Outline { medium: m, times, .. } = &problem.outline;
     let borders = [0, 1].map(|axis| ends(&problem.outline, axis).1);
-    let cut = problem.method.support * m.h;
+    let cut = problem.outline.method.support * m.h;
     let (rho, c0) = (m.eos.density, m.eos.sound_speed);
     let pair = match m.nu > 0.0 {
         true => format!(

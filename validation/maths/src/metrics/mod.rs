@@ -3,4 +3,5 @@
 pub mod budget;
 pub mod energy;
 pub mod history;
+pub mod momentum;
 pub mod norms;

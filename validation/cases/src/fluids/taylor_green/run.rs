@@ -11,7 +11,7 @@ use harness::{
     method::{Method, Parts},
     pictures,
     problem::{Asked, Brief, Calls, Problem},
-    rules, simulate,
+    rules,
 };
 use maths::{exact::TaylorGreen, metrics::norms::largest};
 
@@ -169,7 +169,8 @@ fn measure(
     let is_left = |[time, _]: &&[f64; 2]| setup.exact.decay(*time) >= DECAYED;
     record.put(L2_WORST, largest(series.iter().filter(is_left).map(|s| s[1])));
     let momentum = |particles: &[Particle]| {
-        simulate::momentum(particles) / particles.iter().map(|p| p.mass).sum::<f64>()
+        maths::metrics::momentum::momentum(particles)
+            / particles.iter().map(|p| p.mass).sum::<f64>()
     };
     record.put(MOMENTUM_ADDED, (momentum(end) - momentum(start)).norm());
     record.put(NEAREST, nearest(end) / setup.flow.medium.dx);

@@ -11,7 +11,6 @@ use harness::{
     case::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
-    simulate,
 };
 use maths::metrics::norms::largest;
 use maths::theory::time_step::{self, Mode, modes};
@@ -171,7 +170,7 @@ impl Projection {
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
-        let momentum = simulate::momentum(&simulation.particles()).into();
+        let momentum = maths::metrics::momentum::momentum(&simulation.particles()).into();
         self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
         Flow::Continue
     }

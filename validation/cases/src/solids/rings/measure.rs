@@ -267,7 +267,7 @@ impl Watch for Series {
             self.put(record);
             let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
             let of_ring = 0.5 * mass * self.settings.speed().max(f64::MIN_POSITIVE);
-            let momentum = simulate::momentum(&particles);
+            let momentum = maths::metrics::momentum::momentum(&particles);
             record.put(MOMENTUM, momentum.norm() / of_ring);
         }
         record.profiles.insert("series".into(), Profile::of_rows(&NAMES, &self.rows));

@@ -15,8 +15,7 @@ mod tests;
 
 use base::{functions::*, gate::*, mutation::Constant, record::*};
 use harness::{
-    case::*, composed::*, declare::*, method::Properties, pictures, simulate, studies::causes::*,
-    table,
+    case::*, composed::*, declare::*, method::Properties, pictures, studies::causes::*, table,
 };
 use nalgebra::{Rotation2, Vector2};
 use solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};

@@ -1,4 +1,4 @@
-//! Sums over particles that several cases measure.
+//! Momentum of particles.
 
 use nalgebra::Vector2;
 use solver::{Particle, Role};
