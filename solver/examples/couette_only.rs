@@ -8,7 +8,7 @@
 use std::error::Error;
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, Domain, Ghosts, Leapfrog, Outcome, Particle, PlaneWall, Pressure,
     QuinticSpline, Scene, Stepper, Tait, Viscosity, lattice,
 };
@@ -41,7 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Outcome::Diverged(divergence) = flow.advance(end, dt, &mut ()) {
         return Err(divergence.into());
     }
-    let error = |(_, p): (f64, &solver::Evolved<()>)| p.velocity.x / speed - p.position.y / width;
+    let error = |(_, p): (f64, &touchstone_solver::Evolved<()>)| {
+        p.velocity.x / speed - p.position.y / width
+    };
     let largest = flow.data().fluid().map(error).fold(0.0, |a: f64, e| a.max(e.abs()));
     println!("{} particles, {} steps", flow.data().fluid_count(), flow.work().steps);
     println!("largest error {largest:.1e} of the speed of the plate");

@@ -8,7 +8,7 @@
 use std::{error::Error, f64::consts::TAU};
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     ArtificialViscosity, CauchyStress, Compose, Continuity, CubicSpline, Domain, JaumannRate,
     Leapfrog, Linear, Open, Outcome, Particle, PrincipalStress, Scene, Smoothing, Stepper,
     Symmetric, Xsph,

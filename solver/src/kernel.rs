@@ -8,7 +8,7 @@
 
 use std::marker::PhantomData;
 
-use lanes::Lane;
+use touchstone_lanes::Lane;
 
 /// The dimensionless shape of a kernel.
 pub trait Kernel: Copy + Default + Send + Sync + 'static {
@@ -155,7 +155,7 @@ impl<K: Kernel> Smoothing<K> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use lanes::{PerParticle, Portable, total};
+    use touchstone_lanes::{PerParticle, Portable, total};
 
     fn radii(support: f64) -> impl Iterator<Item = f64> {
         (0..200).map(move |k| (k as f64 + 0.5) / 200.0 * support)

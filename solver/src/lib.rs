@@ -53,7 +53,6 @@ pub use integrator::{
     SuperSteps,
 };
 pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
-pub use lanes as lane;
 pub use neighbours::GROUP;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
@@ -65,4 +64,5 @@ pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
 pub use terms::*;
+pub use touchstone_lanes as lane;
 pub use walls::*;

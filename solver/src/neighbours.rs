@@ -17,8 +17,8 @@
 
 use std::{mem::take, ops::Range};
 
-use lanes::{Lane, MOST, OnLanes, gather_vector, on_widest};
 use nalgebra::Vector2;
+use touchstone_lanes::{Lane, MOST, OnLanes, gather_vector, on_widest};
 
 use crate::{
     domain::Domain,
@@ -459,7 +459,7 @@ impl OnLanes for FillLists<'_> {
 
 #[cfg(test)]
 mod tests {
-    use lanes::Portable;
+    use touchstone_lanes::Portable;
 
     use super::*;
     use crate::random::random;

@@ -3,8 +3,8 @@
 //! The integrator accesses [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
 //! laid out for the pair sweep.
 
-use lanes::Lane;
 use nalgebra::Vector2;
+use touchstone_lanes::Lane;
 
 use crate::numbers::Numbers;
 

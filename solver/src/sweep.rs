@@ -10,8 +10,8 @@
 
 use std::ops::Range;
 
-use lanes::{Lane, OnLanes, on_widest};
 use nalgebra::Vector2;
+use touchstone_lanes::{Lane, OnLanes, on_widest};
 
 use crate::{
     kernel::{Kernel, Smoothing},
@@ -224,7 +224,7 @@ where
 
 #[cfg(test)]
 mod tests {
-    use lanes::Portable;
+    use touchstone_lanes::Portable;
 
     use super::*;
     use crate::{

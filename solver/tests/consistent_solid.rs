@@ -2,7 +2,7 @@
 //! surfaces, across a period, and before particles that are held.
 
 use nalgebra::{Matrix2, Vector2};
-use solver::{
+use touchstone_solver::{
     CauchyStress, Compose, ConjugateStress, ConsistentContinuity, ConsistentJaumannRate,
     CubicSpline, Domain, EquationOfState, Evolved, JaumannRate, Leapfrog, Linear, Open, Particle,
     ParticleData, PredictorCorrector, PrincipalStress, Rate, Role, Scene, Scheme, Simulation,
@@ -290,7 +290,7 @@ fn particles_on_a_line_and_alone_have_no_stress_that_acts() {
 /// Data that a scene does not use are not in its types.
 #[test]
 fn only_conjugate_forces_have_moments() {
-    use solver::Term;
+    use touchstone_solver::Term;
     let principal = <ConjugateStress<Linear, PrincipalStress> as Term<Symmetric>>::NORMALISES;
     let uncorrected = <(CauchyStress<Linear>, JaumannRate) as Term<Symmetric>>::NORMALISES;
     assert!(principal && !uncorrected);

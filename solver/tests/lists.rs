@@ -1,7 +1,7 @@
 //! Neighbour lists that are kept while particles move together: they lose no pair, and last longer.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Ghosts, Leapfrog, Open, Outcome, Particle, PlaneWall,
     Pressure, Scene, Stepper, Tait, Work, lattice, walls::Walls,
 };

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Integrator, InterfaceWall,
     Leapfrog, Open, Outcome, Particle, Phase, PredictorCorrector, Pressure, Role, Scene,
     Simulation, Stepper, Tait, lattice, walls::Walls,

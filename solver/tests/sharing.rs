@@ -7,7 +7,7 @@ mod symbols;
 use std::any::TypeId;
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, InterfaceWall, Leapfrog, Open,
     Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, Scheme, Stepper, Tait,
     integrator::PhysicsOf, lattice, walls::Walls,

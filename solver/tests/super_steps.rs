@@ -1,7 +1,7 @@
 //! Super-time-stepping of viscosity against what it must do exactly.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     BodyForce, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Ghosts, Leapfrog,
     NoSlip, Observer, Open, Outcome, Particle, PlaneWall, Pressure, Role, Scene, Simulation, Split,
     Stepper, SuperSteps, Tait, Viscosity, integrator::stages, lattice, walls::Walls,
@@ -47,7 +47,11 @@ fn torus() -> (Domain, Open) {
     (Domain::torus(1.0, 1.0), Open)
 }
 
-fn advance<S: solver::Scheme<Extra = ()>>(scene: Scene<S>, until: f64, dt: f64) -> Simulation<S> {
+fn advance<S: touchstone_solver::Scheme<Extra = ()>>(
+    scene: Scene<S>,
+    until: f64,
+    dt: f64,
+) -> Simulation<S> {
     let mut simulation = scene.build().expect("a scene");
     assert_eq!(simulation.advance(until, dt, &mut ()), Outcome::Reached);
     simulation

@@ -1,10 +1,10 @@
 //! A solver of another library: finite differences across a channel, which carry the particles along.
 
-use base::submission::Division;
-use exchange::{library::Solver, problem::Problem, submission::*};
-use harness::playback::Placed;
 use nalgebra::Vector2;
 use serde_json::Map;
+use touchstone_base::submission::Division;
+use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
+use touchstone_harness::playback::Placed;
 
 /// u_t = ν u_yy with central differences in space and forward Euler in time.
 pub struct FiniteDifferences {

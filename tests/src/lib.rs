@@ -8,10 +8,10 @@ pub mod row_matrix;
 
 use std::{fs, path::Path};
 
-use base::functions::{cos, sin};
 use nalgebra::Vector2;
 use serde_json::Value;
-use solver::{
+use touchstone_base::functions::{cos, sin};
+use touchstone_solver::{
     Compose, Domain, Engine, Integrator, Kernel, Open, Outcome, Particle, Physics, Rate, Scene,
     Stepper, Term, integrator::Stepped, lattice, numbers::Numbers, physics::State,
 };

@@ -1,12 +1,12 @@
 //! A case of its own in one file: the decay of a shear wave in a periodic box.
 
-use base::{functions::*, record::*};
-use harness::{case::*, composed::*, declare::*, method::*, problem::Simple, table};
 use nalgebra::Vector2;
-use solver::*;
 use std::f64::consts::TAU;
+use touchstone_base::{functions::*, record::*};
+use touchstone_harness::{case::*, composed::*, declare::*, method::*, problem::Simple, table};
+use touchstone_solver::*;
 
-base::settings! {
+touchstone_base::settings! {
     /// A velocity sin(2πy) mm/s in a box of side 1 m, c0 = 1 m/s, ν = 0.01 m²/s.
     pub struct Decay {
         /// particles along each side

@@ -1,7 +1,7 @@
 //! A term of its own in one file: a viscosity along the line of centres.
 
 use nalgebra::Vector2;
-use solver::{Kernel, Rate, Term, lane::Lane, particles::Common, terms::Pair};
+use touchstone_solver::{Kernel, Rate, Term, lane::Lane, particles::Common, terms::Pair};
 
 /// dvᵢ/dt += 8ν Σⱼ Vⱼ [vᵢⱼ·rᵢⱼ/(dᵢⱼ² + η²)] ∇ᵢWᵢⱼ \[m/s²\] (Monaghan & Gingold 1983).
 ///

@@ -1,6 +1,6 @@
 //! A wall of its own in one file: boundary particles whose density is smoothed.
 
-use solver::{Continuity, DensityDiffusion, walls::Walls};
+use touchstone_solver::{Continuity, DensityDiffusion, walls::Walls};
 
 /// Interface and wall particles as in section 4.2, whose density is smoothed as well.
 #[derive(Clone, Copy, Debug)]

@@ -11,7 +11,7 @@
 //! [`Alignment`].
 
 use nalgebra::{DMatrix, DVector};
-use solver::kernel::{Kernel, Smoothing};
+use touchstone_solver::kernel::{Kernel, Smoothing};
 
 /// What the sums see beyond a wall. `u_w` is the wall's velocity, rows behind it are numbered
 /// k = 0, 1, …; except for [`WallRule::InterfaceWall`] the wall lies midway between two rows, so

@@ -10,7 +10,7 @@ use std::{
 };
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, ExtrapolatingWall, Flow, Ghosts,
     Integrator, InterfaceWall, Leapfrog, Numbers, Observer, Open, Outcome, PlaneWall,
     PredictorCorrector, Pressure, Role, Scene, Scheme, Shifting, Smoothing, Split, Stepper,

@@ -1,9 +1,9 @@
 //! Bounds of gates that are made from the row-reduced matrix are computed again.
 
-use cases::fluids::channel::{Flow, GHOSTS, TIMES};
-use maths::exact::StartUp;
 use nalgebra::DVector;
-use solver::{Kernel, QuinticSpline};
+use touchstone_cases::fluids::channel::{Flow, GHOSTS, TIMES};
+use touchstone_maths::exact::StartUp;
+use touchstone_solver::{Kernel, QuinticSpline};
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 
 const START_UP: StartUp = StartUp { v: 1.0, l: 1.0, nu: 1.0 };

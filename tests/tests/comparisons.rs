@@ -17,13 +17,13 @@
 use std::fs;
 use std::path::PathBuf;
 
-use base::record::Record;
-use base::spec::RunSpec;
-use harness::case::Tier;
-use harness::convergence::{Level, convergence};
-use harness::declare::Comparison;
-use harness::studies::validation::{Numerical, numerical};
 use serde_json::{Value, json};
+use touchstone_base::record::Record;
+use touchstone_base::spec::RunSpec;
+use touchstone_harness::case::Tier;
+use touchstone_harness::convergence::{Level, convergence};
+use touchstone_harness::declare::Comparison;
+use touchstone_harness::studies::validation::{Numerical, numerical};
 
 /// The setting that is refined, and its value in the finer run.
 const FINER: [(&str, &str, f64); 5] = [
@@ -40,11 +40,11 @@ fn path() -> PathBuf {
 
 /// All comparisons of a tier with the names of their cases.
 fn declared(tier: Tier) -> Vec<(&'static str, Comparison)> {
-    let of = |case: &&'static dyn harness::case::Case| {
+    let of = |case: &&'static dyn touchstone_harness::case::Case| {
         let name = case.name();
         case.declaration(tier).comparisons.into_iter().map(move |of| (name, of))
     };
-    cases::CASES.iter().flat_map(of).collect()
+    touchstone_cases::CASES.iter().flat_map(of).collect()
 }
 
 /// A ladder of the file.

@@ -1,7 +1,7 @@
 //! Terms that are exact for linear fields, on particles that lie anyhow.
 
 use nalgebra::{Matrix2, Vector2};
-use solver::{
+use touchstone_solver::{
     ConsistentContinuity, ConsistentPressure, ConsistentViscosity, CubicSpline, Linear, Particle,
     QuinticSpline, Rate, Viscosity, lattice,
 };

@@ -1,7 +1,7 @@
 //! A scene pays for what it uses: memory by type, rows by motion.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
     Evolved, ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic, Integrator, Leapfrog,

@@ -3,16 +3,16 @@
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use base::record::{Profile, Record, Status};
-use base::spec::{RunSpec, Task};
-use cases::{CASES, page};
-use harness::{
+use rayon::prelude::*;
+use touchstone_base::record::{Profile, Record, Status};
+use touchstone_base::spec::{RunSpec, Task};
+use touchstone_cases::{CASES, page};
+use touchstone_harness::{
     case::{Case, Planned, Tier},
     context::Context,
     make::{self, Job, Made, Making},
     plan, suite,
 };
-use rayon::prelude::*;
 
 use crate::tidy::assert_none;
 

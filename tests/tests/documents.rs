@@ -5,14 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use base::gate::{Bound, Gate};
-use harness::{
+use serde_json::Value;
+use touchstone_base::gate::{Bound, Gate};
+use touchstone_harness::{
     case::{Case, Tier},
     convergence::{Convergence, Level, convergence},
     plan,
     studies::validation::numerical,
 };
-use serde_json::Value;
 use touchstone_tests::snapshot;
 
 use crate::tidy::{assert_none, root};
@@ -33,7 +33,7 @@ fn reasons() -> impl Iterator<Item = (String, String)> {
         let name = format!("the reason of {}", case.name());
         (name, case.recommended().because.to_string())
     };
-    cases::CASES.iter().map(of)
+    touchstone_cases::CASES.iter().map(of)
 }
 
 /// Path and text of each document, by path.
@@ -215,7 +215,7 @@ fn sourced(text: &str) -> Vec<(&str, &str)> {
 }
 
 fn all_gates() -> Vec<Gate> {
-    let of = |tier| cases::CASES.iter().flat_map(move |case| plan::of_case(*case, tier));
+    let of = |tier| touchstone_cases::CASES.iter().flat_map(move |case| plan::of_case(*case, tier));
     [Tier::Quick, Tier::Full].into_iter().flat_map(of).flat_map(|planned| planned.gates).collect()
 }
 

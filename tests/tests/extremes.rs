@@ -1,8 +1,8 @@
 //! What breaks a run ends as a value, and what cannot start is refused with its numbers.
 
-use maths::metrics::momentum::momentum;
 use nalgebra::Vector2;
-use solver::{
+use touchstone_maths::metrics::momentum::momentum;
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, Leapfrog, Limits, Open,
     Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, SceneError,
     Simulation, Stepper, Tait, Viscosity, scene::Setting,
@@ -83,10 +83,10 @@ fn without_limits_a_run_that_overflows_still_diverges() {
 /// One particle whose speed overflows in the last step while its place does not.
 #[test]
 fn a_speed_that_overflows_at_the_end_is_a_divergence() {
-    type Falling = Compose<CubicSpline, solver::BodyForce, (), Open, Leapfrog>;
+    type Falling = Compose<CubicSpline, touchstone_solver::BodyForce, (), Open, Leapfrog>;
     let fall = |force| {
         let particle = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 1.0, 1.0);
-        let force = solver::BodyForce(Vector2::new(0.0, force));
+        let force = touchstone_solver::BodyForce(Vector2::new(0.0, force));
         let scene = Scene::<Falling>::new(H, Domain::open(), vec![particle], force, (), Open);
         scene.build().unwrap().advance(1e-140, 1e-140, &mut ())
     };

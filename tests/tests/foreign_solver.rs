@@ -4,14 +4,14 @@
 use std::fs;
 use std::path::Path;
 
-use exchange::{library::Solver, problem::Problem, submission::*};
-use harness::{
+use serde_json::json;
+use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
+use touchstone_harness::{
     case::{Case, Tier, spec},
     make::Made,
     playback::Placed,
     suite,
 };
-use serde_json::json;
 use touchstone_tests::foreign_solver::FiniteDifferences;
 
 const SOLVER: &str = include_str!("../src/foreign_solver.rs");
@@ -27,11 +27,12 @@ fn the_page_shows_what_is_compiled() {
 #[test]
 fn a_solver_of_another_library_is_judged_and_has_a_section() {
     for name in ["couette", "poiseuille"] {
-        let case: &dyn Case = cases::find(name).unwrap();
+        let case: &dyn Case = touchstone_cases::find(name).unwrap();
         let of = spec(case, "seed", &[]).unwrap();
         let record = |cells| {
             let solver = FiniteDifferences { cells };
-            exchange::library::record(case, &of, &solver).unwrap_or_else(|error| panic!("{error}"))
+            touchstone_exchange::library::record(case, &of, &solver)
+                .unwrap_or_else(|error| panic!("{error}"))
         };
         let [coarse, fine] = [8, 32].map(|cells| {
             let error = record(cells).metrics["l2@0.2"].value;
@@ -61,16 +62,17 @@ struct Other {
 
 impl Other {
     fn problem(&self) -> Problem {
-        let case = cases::find(self.case).unwrap();
+        let case = touchstone_cases::find(self.case).unwrap();
         let of = spec(case, "plain", &["rows=20".into()]).unwrap();
         Problem::of(case, of).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The verdict of the gate on the error, none if it does not apply.
     fn verdict(&self, gate: &str) -> Option<(String, bool)> {
-        let case: &dyn Case = cases::find(self.case).unwrap();
+        let case: &dyn Case = touchstone_cases::find(self.case).unwrap();
         let of = spec(case, "plain", &["rows=20".into()]).unwrap();
-        let record = exchange::library::record(case, &of, self).unwrap_or_else(|e| panic!("{e}"));
+        let record =
+            touchstone_exchange::library::record(case, &of, self).unwrap_or_else(|e| panic!("{e}"));
         let run = suite::submitted(case, record);
         let (apply, _) = run.applicable();
         let judged = apply.into_iter().find(|judged| judged.gate.id == gate)?;
@@ -140,8 +142,8 @@ impl Solver for Twice {
 
 #[test]
 fn what_a_solver_of_another_library_tells_is_checked() {
-    let case: &dyn Case = cases::find("couette").unwrap();
+    let case: &dyn Case = touchstone_cases::find("couette").unwrap();
     let of = spec(case, "seed", &[]).unwrap();
-    let error = exchange::library::record(case, &of, &Twice).expect_err("no record");
+    let error = touchstone_exchange::library::record(case, &of, &Twice).expect_err("no record");
     assert!(error.to_string().contains("is there twice at t = "), "{error}");
 }

@@ -6,18 +6,18 @@
 //! At Re = 1e-9 the plate moves by 2e-8 spacings in the time L²/ν: the rows stay where they are, and
 //! the density keeps its bits.
 
-use base::record::{Record, Status};
-use cases::fluids::channel::{ChannelSettings, Flow, Setup, TIMES};
-use harness::{
+use nalgebra::DVector;
+use touchstone_base::record::{Record, Status};
+use touchstone_cases::fluids::channel::{ChannelSettings, Flow, Setup, TIMES};
+use touchstone_harness::{
     case::{self, Case},
     context::Context,
     method::{Method, Properties},
     problem::{INTEGRATOR, KERNEL, WALLS},
 };
-use maths::theory::time_step::Integrator;
-use nalgebra::DVector;
-use schemes::flow::{self, Fluid};
-use solver::{
+use touchstone_maths::theory::time_step::Integrator;
+use touchstone_schemes::flow::{self, Fluid};
+use touchstone_solver::{
     BodyForce, Compose, Continuity, CubicSpline, Euler, ExtrapolatingWall, Ghosts, InterfaceWall,
     Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline, SingleSweep, Stepper,
     Tait, WendlandC2, integrator::stages,
@@ -329,7 +329,7 @@ fn check_variant(case: &dyn Case, variant: &str, flow: Flow) {
 #[test]
 fn every_variant_is_its_matrix() {
     for (name, flow) in [("poiseuille", Flow::Poiseuille), ("couette", Flow::Couette)] {
-        let case = cases::find(name).expect("a case");
+        let case = touchstone_cases::find(name).expect("a case");
         for variant in case.variants() {
             check_variant(case, variant.name, flow);
         }

@@ -1,7 +1,7 @@
 //! Conservation laws that hold for any particles whatever, to round-off, term by term.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     ArtificialStress, ArtificialViscosity, Continuity, CubicSpline, DensityDiffusion, Particle,
     Pressure, QuinticSpline, Rate, Smoothing, Tait, Term, Viscosity, Xsph,
 };
@@ -83,7 +83,7 @@ fn work_of_the_pressure_is_what_compression_stores() {
         let rates =
             open_rates::<QuinticSpline, _, _, _>(H, &cloud, Pressure::new(water()), Continuity);
         let stored = cloud.iter().zip(&rates).map(|(p, r)| {
-            let pressure = solver::EquationOfState::pressure(&water(), p.density);
+            let pressure = touchstone_solver::EquationOfState::pressure(&water(), p.density);
             p.mass * pressure / (p.density * p.density) * r.density
         });
         let sum = relative_sum(power(&cloud, &rates).chain(stored));

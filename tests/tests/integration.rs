@@ -1,8 +1,8 @@
 //! Time: order of the integrators, reversibility, and the book-keeping of steps.
 
-use base::functions::log2;
 use nalgebra::Vector2;
-use solver::{
+use touchstone_base::functions::log2;
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Flow, Integrator, Kernel, Leapfrog, Observer,
     Open, Outcome, Particle, PredictorCorrector, Pressure, Rate, Scene, Simulation, SingleSweep,
     Stepper, Tait, Term, Viscosity, lane::Lane, particles::Common, terms::Pair,

@@ -1,7 +1,7 @@
 //! Whole short runs seen from elsewhere: moved, mirrored, turned, renumbered, in other units.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Ghosts, Integrator, Leapfrog, Open, Outcome,
     Particle, PlaneWall, PredictorCorrector, Pressure, Scene, Simulation, Stepper, Tait, Viscosity,
     lattice,

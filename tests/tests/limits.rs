@@ -2,17 +2,17 @@
 
 use std::sync::{Mutex, atomic::AtomicBool};
 
-use base::{
+use rayon::prelude::*;
+use touchstone_base::{
     mutation::{Constant, Mutation},
     spec::RunSpec,
 };
-use cases::stiffness::Row;
-use harness::{
+use touchstone_cases::stiffness::Row;
+use touchstone_harness::{
     case::{self, Case, PLANNED_DT},
     context::{Context, Progress},
     limits::{ADVISED_SHARE, Mechanism},
 };
-use rayon::prelude::*;
 
 /// What a run does before it is stopped: the step that it is driven with, the step that it plans in its
 /// record, and the first step that it makes.
@@ -59,10 +59,11 @@ fn the_step_of_the_table_is_that_of_the_run() {
     let rows = |case: &&'static dyn Case| -> Vec<(&'static dyn Case, Row)> {
         Row::of(*case).unwrap().into_iter().map(|row| (*case, row)).collect()
     };
-    let all: Vec<_> = cases::CASES.iter().flat_map(rows).collect();
+    let all: Vec<_> = touchstone_cases::CASES.iter().flat_map(rows).collect();
     all.par_iter().for_each(|(case, row)| check(*case, row));
     let lacks = |case: &&&dyn Case| !all.iter().any(|(_, row)| row.case == case.name());
-    let lacking: Vec<&str> = cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
+    let lacking: Vec<&str> =
+        touchstone_cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
     assert_eq!(lacking, ["extremes"], "experiments with steps of their own have no rule");
     assert!(all.len() > 80, "{}", all.len());
 }
@@ -70,7 +71,7 @@ fn the_step_of_the_table_is_that_of_the_run() {
 /// A run that takes a step 1 % longer than its rules say does not pass for the step of the table.
 #[test]
 fn a_run_with_another_step_is_seen() {
-    let case = cases::find("taylor_green").unwrap();
+    let case = touchstone_cases::find("taylor_green").unwrap();
     let longer = Mutation { of: Constant::TimeStep, factor: 1.01 };
     for row in Row::of(case).unwrap() {
         let (driven, planned, _) = first_step(case, row.variant, Some(longer));

@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use crate::decay::DECAY;
-use harness::case::Case;
-use harness::case::Tier;
-use harness::make::Making;
-use harness::suite;
-use solver::{Continuity, CubicSpline};
+use touchstone_harness::case::Case;
+use touchstone_harness::case::Tier;
+use touchstone_harness::make::Making;
+use touchstone_harness::suite;
+use touchstone_solver::{Continuity, CubicSpline};
 use touchstone_tests::{assert_small, new_term::CentralViscosity, open_rates, patch, relative_sum};
 
 const CASE: &str = include_str!("../src/new_case.rs");

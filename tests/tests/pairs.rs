@@ -1,9 +1,9 @@
 //! Two particles, one term, and the formula of the paper written out again in plain numbers, with
 //! ∇ᵢWᵢⱼ from differences of W: finds a wrong sign or a factor of two.
 
-use base::functions::powf;
 use nalgebra::Vector2;
-use solver::{
+use touchstone_base::functions::powf;
+use touchstone_solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Continuity, CubicSpline, DensityDiffusion,
     Particle, Pressure, Rate, Shifting, Tait, Term, Viscosity, Xsph,
 };

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeSet;
 
-use base::functions::powf;
-use base::gate::{Bound, Cause, Evidence, Gate};
-use base::random::Random;
-use base::spec::{RunSpec, Task};
-use cases::CASES;
-use harness::{
+use touchstone_base::functions::powf;
+use touchstone_base::gate::{Bound, Cause, Evidence, Gate};
+use touchstone_base::random::Random;
+use touchstone_base::spec::{RunSpec, Task};
+use touchstone_cases::CASES;
+use touchstone_harness::{
     case::{self, Case, Planned, RunError, Tier},
     declare::{Change, Drawn, Draws},
     deep::{FINER, STARTS},

@@ -7,20 +7,20 @@ use std::sync::{
 };
 use std::time::Duration;
 
-use base::{
+use nalgebra::Vector2;
+use rayon::prelude::*;
+use serde_json::Value;
+use touchstone_base::{
     record::{Cost, Metric, Profile, Record},
     spec::{RunSpec, Task},
 };
-use harness::{
+use touchstone_harness::{
     case::{Case, Planned, Tier, changed},
     checkpoint::Checkpoints,
     context::Context,
     plan,
 };
-use nalgebra::Vector2;
-use rayon::prelude::*;
-use serde_json::Value;
-use solver::{
+use touchstone_solver::{
     Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Integrator,
     Leapfrog, NoSlip, Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure,
     Role, Scene, Scheme, Shifting, Simulation, SingleSweep, Smoothing, Stepper, Tait, Viscosity,
@@ -411,16 +411,18 @@ fn every_case_goes_on_with_an_equal_record() {
         let specs = case.variants().into_iter().filter_map(|v| short(*case, &runs, v.name));
         specs.map(|spec| (*case, spec)).collect::<Vec<_>>()
     };
-    let runs: Vec<(&dyn Case, RunSpec)> = cases::CASES.iter().flat_map(of_case).collect();
+    let runs: Vec<(&dyn Case, RunSpec)> =
+        touchstone_cases::CASES.iter().flat_map(of_case).collect();
     let variants: Vec<String> =
         runs.par_iter().filter_map(|(case, spec)| gone_on(*case, spec)).collect();
     let lacks = |case: &&&dyn Case| !variants.iter().any(|name| name.starts_with(case.name()));
-    let lacking: Vec<&str> = cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
+    let lacking: Vec<&str> =
+        touchstone_cases::CASES.iter().filter(lacks).map(|case| case.name()).collect();
     assert!(lacking.is_empty(), "no run of {lacking:?} went on; of others {variants:?} did");
     // The others make no step: experiments that are refused or look at a start alone.
     let (went, all) = (variants.len(), runs.len());
     assert!(10 * went > 9 * all, "only {went} of {all} variants went on");
     for (case, _) in COARSE {
-        assert!(cases::find(case).is_ok(), "{case} has coarser settings and is no case");
+        assert!(touchstone_cases::find(case).is_ok(), "{case} has coarser settings and is no case");
     }
 }

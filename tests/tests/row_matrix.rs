@@ -3,11 +3,11 @@
 #[path = "../../validation/maths/src/theory/tests.rs"]
 mod printed;
 
-use base::functions::log2;
-use maths::exact::StartUp;
-use maths::theory::lattice::SquareLattice;
 use nalgebra::{DVector, Vector2};
-use solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
+use touchstone_base::functions::log2;
+use touchstone_maths::exact::StartUp;
+use touchstone_maths::theory::lattice::SquareLattice;
+use touchstone_solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 use touchstone_tests::row_matrix::{
     Alignment, Channel, ChannelError, RowModel, WallRule, laplacian_factor,
     sheared_laplacian_factor,

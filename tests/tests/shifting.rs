@@ -1,7 +1,7 @@
 //! Particle shifting alone: what it must not move, and what a moved particle must carry.
 
 use nalgebra::{Matrix2, Vector2};
-use solver::{
+use touchstone_solver::{
     CubicSpline, Domain, Kernel, Particle, QuinticSpline, ShiftAdvection, Shifting, Smoothing,
 };
 use touchstone_tests::{Random, assert_small, open_rates, patch, rates, relative_sum};

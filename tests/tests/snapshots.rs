@@ -11,20 +11,20 @@ use std::{
     panic::{AssertUnwindSafe, catch_unwind},
 };
 
-use base::{
+use insta::{Comparator, Settings, Snapshot};
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     record::{Record, Status},
     spec::{RunSpec, Task},
 };
-use cases::fluids::channel::{Flow, ladder};
-use harness::{
+use touchstone_cases::fluids::channel::{Flow, ladder};
+use touchstone_harness::{
     case::{self, Case, Tier},
     plan,
     runner::Context,
 };
-use insta::{Comparator, Settings, Snapshot};
-use rayon::prelude::*;
-use serde_json::{Map, Value, json};
 
 /// Metrics may differ by this much of themselves.
 const RELATIVE: f64 = 1e-6;
@@ -240,7 +240,7 @@ fn work(record: &Record) -> Value {
 fn layout(record: &Record) -> Value {
     let metrics: Map<String, Value> =
         record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.unit))).collect();
-    let columns = |profile: &base::record::Profile| -> Value {
+    let columns = |profile: &touchstone_base::record::Profile| -> Value {
         profile.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
     };
     let profiles: Map<String, Value> =
@@ -469,7 +469,7 @@ fn of_work(name: &str) -> String {
 /// Runs what is kept and compares, two snapshots for each case and variant, metrics and work. All of them are
 /// compared before the test fails, so that it tells whether one of these changed or both.
 fn check(name: &str) {
-    let case = cases::find(name).expect("a case");
+    let case = touchstone_cases::find(name).expect("a case");
     let runs = runs(case);
     let record = |run: &Run| case.run(&run.spec, &Context::default()).expect("a planned run");
     let records: Vec<Record> = runs.par_iter().map(record).collect();
@@ -585,7 +585,7 @@ fn vortices_are_as_they_were() {
 /// What `list --json` says of settings and variants.
 #[test]
 fn settings_are_as_they_were() {
-    for case in cases::CASES {
+    for case in touchstone_cases::CASES {
         let variants: Map<String, Value> = case
             .variants()
             .iter()
@@ -634,9 +634,10 @@ fn every_snapshot_has_a_physical_bound_beside_it() {
     let gates_of = |case: &&dyn Case| -> Vec<Gate> {
         plans(*case).into_iter().flat_map(|planned| planned.gates).collect()
     };
-    let channels = ["couette", "poiseuille"].map(|name| cases::find(name).expect("a case"));
+    let channels =
+        ["couette", "poiseuille"].map(|name| touchstone_cases::find(name).expect("a case"));
     let of_channels = gated(&channels.iter().flat_map(gates_of).collect::<Vec<_>>());
-    for case in cases::CASES {
+    for case in touchstone_cases::CASES {
         let name = case.name();
         let is_channel = channels.iter().any(|channel| channel.name() == name);
         let mut bounded = if is_channel { of_channels.clone() } else { gated(&gates_of(case)) };
@@ -655,7 +656,7 @@ fn every_snapshot_has_a_physical_bound_beside_it() {
 #[test]
 fn gates_have_names_of_their_own() {
     for tier in [Tier::Quick, Tier::Full] {
-        let plans = cases::CASES.iter().flat_map(|case| plan::of_case(*case, tier));
+        let plans = touchstone_cases::CASES.iter().flat_map(|case| plan::of_case(*case, tier));
         let gates: Vec<Gate> = plans.flat_map(|planned| planned.gates).collect();
         assert!(gates.len() > 80, "{}", gates.len());
         let mut names = BTreeSet::new();
@@ -686,7 +687,7 @@ fn results_and_work_are_kept_apart() {
         runs.map(|(run, _)| run.clone()).collect()
     };
     let mut count = 0;
-    for case in cases::CASES {
+    for case in touchstone_cases::CASES {
         for variant in kept(case.name()).into_iter().flat_map(|(variants, _)| variants) {
             let name = format!("{}.{variant}", case.name());
             assert_eq!(runs(&of_work(&name)), runs(&name), "the runs of `{name}` in both files");

@@ -2,18 +2,18 @@
 //! plain numbers, uniform strain, rotation, and the linear theory of its waves and of its tensile
 //! instability on a lattice.
 
-use base::functions::{cos, ln, log2, modulus, powf, rotation, sin, sinh};
-use base::reference::Reference;
 use std::f64::consts::PI;
+use touchstone_base::functions::{cos, ln, log2, modulus, powf, rotation, sin, sinh};
+use touchstone_base::reference::Reference;
 
-use harness::{
+use nalgebra::{Matrix2, Rotation2, Vector2};
+use touchstone_harness::{
     case,
     context::Context,
     method::{Medium, Method, Parts},
 };
-use maths::theory::lattice::SquareLattice;
-use nalgebra::{Matrix2, Rotation2, Vector2};
-use solver::{
+use touchstone_maths::theory::lattice::SquareLattice;
+use touchstone_solver::{
     ArtificialViscosity, CauchyStress, ComponentStress, Compose, Continuity, CubicSpline, Domain,
     EquationOfState, Euler, Evolved, Flow, Integrator, JaumannRate, Kernel, Leapfrog, Linear,
     Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, PrincipalStress,
@@ -485,9 +485,9 @@ fn frame_dependence(method: &Method<Symmetric>, xi: f64) -> f64 {
 
 #[test]
 fn a_turned_collision_is_the_collision_turned_with_principal_axes_only() {
-    let principal = frame_dependence(&schemes::solid::seed(), XI);
-    let component = frame_dependence(&schemes::solid::componentwise(), XI);
-    let none = frame_dependence(&schemes::solid::seed(), 0.0);
+    let principal = frame_dependence(&touchstone_schemes::solid::seed(), XI);
+    let component = frame_dependence(&touchstone_schemes::solid::componentwise(), XI);
+    let none = frame_dependence(&touchstone_schemes::solid::seed(), 0.0);
     println!(
         "turned by 30 degrees: principal {principal:e}, component {component:e}, none {none:e}"
     );
@@ -742,7 +742,7 @@ fn plates_of_other_poissons_ratios_swing_as_finite_elements_do() {
     let table = package.table("poisson").unwrap();
     let (ratios, periods) = (table.texts("poisson").unwrap(), table.numbers("period").unwrap());
     assert_eq!(ratios, ["0.2", "0.3", "0.45"]);
-    let case = cases::find("oscillating_plate").unwrap();
+    let case = touchstone_cases::find("oscillating_plate").unwrap();
     for (ratio, period) in ratios.into_iter().zip(periods) {
         let set = [format!("poisson={ratio}"), "n=10".to_string()];
         let spec = case::spec(case, "lagrangian", &set).unwrap();

@@ -2,8 +2,10 @@
 //! by the relation that is about it.
 
 use crate::decay::Decay;
-use base::spec::RunSpec;
-use harness::{
+use nalgebra::Vector2;
+use rayon::prelude::*;
+use touchstone_base::spec::RunSpec;
+use touchstone_harness::{
     case::{self, Case, Rules, RunError, Step},
     composed::*,
     declare::Declaration,
@@ -12,9 +14,7 @@ use harness::{
     relation::Relation::{self, *},
     symmetry,
 };
-use nalgebra::Vector2;
-use rayon::prelude::*;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, Domain, Kernel, Leapfrog, Open, Pressure, QuinticSpline, Rate, Tait, Term,
     Viscosity, lane::Lane, particles::Common, terms::Pair,
 };
@@ -56,7 +56,7 @@ fn every_variant_tells_all_observers_the_same() {
         let specs = case.variants().into_iter().map(|v| case::spec(*case, v.name, &set).unwrap());
         specs.map(|spec| (*case, spec)).collect()
     };
-    let all: Vec<_> = cases::CASES.iter().flat_map(of_case).collect();
+    let all: Vec<_> = touchstone_cases::CASES.iter().flat_map(of_case).collect();
     let found: Vec<_> = all.par_iter().map(|(case, spec)| found(*case, spec)).collect();
     let (mut untold, mut holds) = (Vec::new(), 0);
     for ((case, spec), found) in all.iter().zip(found) {

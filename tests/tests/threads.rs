@@ -4,7 +4,7 @@
 //! is the mechanism under test. 2,500 particles are five blocks, so that pools share them unevenly.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, ExtrapolatingWall, Ghosts, Integrator,
     InterfaceWall, Leapfrog, NoSlip, Open, Outcome, Particle, PlaneWall, PredictorCorrector,
     Pressure, Role, Scene, Scheme, Shifting, Smoothing, Stepper, Tait, Viscosity, lattice,

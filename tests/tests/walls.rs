@@ -1,9 +1,9 @@
 //! Wall particles that extrapolate from the fluid, against the formula in plain numbers, and the
 //! density diffusion that keeps a column at rest.
 
-use base::functions::powf;
 use nalgebra::Vector2;
-use solver::{
+use touchstone_base::functions::powf;
+use touchstone_solver::{
     Compose, Continuity, CubicSpline, DensityDiffusion, Domain, EquationOfState, ExtrapolatingWall,
     Hydrostatic, Leapfrog, Outcome, Particle, Pressure, Role, Scene, Shifting, Smoothing, Stepper,
     Tait, Viscosity,

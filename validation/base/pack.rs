@@ -1,4 +1,4 @@
-//! For build scripts: texts in one compressed file, which `base::pack` reads.
+//! For build scripts: texts in one compressed file, which `touchstone_base::pack` reads.
 
 use std::io::{self, Write};
 use std::{env, fs, path::Path, path::PathBuf};

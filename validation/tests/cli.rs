@@ -13,19 +13,19 @@ use std::sync::{
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use base::{
+use proptest::prelude::*;
+use proptest::test_runner::TestRunner;
+use rayon::prelude::*;
+use serde_json::Value;
+use touchstone_base::{
     absent::Absent,
     record::{Cost, Record, Status},
     settings::Field,
     spec::RunSpec,
 };
-use harness::case::{Case, Tier, spec};
-use harness::runner::Context;
-use harness::size::Size;
-use proptest::prelude::*;
-use proptest::test_runner::TestRunner;
-use rayon::prelude::*;
-use serde_json::Value;
+use touchstone_harness::case::{Case, Tier, spec};
+use touchstone_harness::runner::Context;
+use touchstone_harness::size::Size;
 
 fn touchstone_in(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
@@ -132,7 +132,7 @@ fn the_limits_of_every_variant_are_shown_without_a_run() {
     let number = |row: &Value, name: &str| row[name].as_f64().unwrap();
     assert!(number(stiff, "sweeps") < 0.5 * number(modern, "sweeps"));
     let table = stdout(&touchstone(&["stability", "--theory"]));
-    for case in cases::CASES.iter().filter(|case| case.name() != "extremes") {
+    for case in touchstone_cases::CASES.iter().filter(|case| case.name() != "extremes") {
         assert!(table.contains(&format!("\n{} ", case.name())), "{}", case.name());
     }
 }
@@ -341,7 +341,7 @@ const SHORT: [&str; 22] = [
 #[test]
 fn watching_does_not_change_a_run() {
     let names: Vec<&str> = SHORT.iter().filter_map(|run| run.split(' ').next()).collect();
-    let all: Vec<&str> = cases::CASES.iter().map(|case| case.name()).collect();
+    let all: Vec<&str> = touchstone_cases::CASES.iter().map(|case| case.name()).collect();
     assert!(all.iter().all(|name| names.contains(name)), "{all:?} against {names:?}");
     for run in SHORT {
         let folder = tempfile::tempdir().unwrap();
@@ -641,7 +641,8 @@ fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
     let head = String::from_utf8_lossy(head).into_owned();
     let sealed = |head: &str, numbers: &[u8]| {
         let rest = [head.as_bytes(), b"\n", numbers].concat();
-        [format!("{format} {}\n", base::reference::sha256(&rest)).as_bytes(), &rest].concat()
+        [format!("{format} {}\n", touchstone_base::reference::sha256(&rest)).as_bytes(), &rest]
+            .concat()
     };
     let with = |place: usize, number: [u8; 8]| {
         let mut numbers = numbers.to_vec();
@@ -927,7 +928,7 @@ fn a_short_run_says_what_it_did_not_reach_and_a_default_one_is_planned() {
     for (name, variant) in
         [("periodic_hill", "carried"), ("couette", "modern"), ("dam_break", "modern")]
     {
-        let case = cases::find(name).unwrap();
+        let case = touchstone_cases::find(name).unwrap();
         let of_run = spec(case, variant, &[]).unwrap().settings;
         let mut plan = case.plan(Tier::Quick).into_iter();
         assert!(plan.any(|planned| planned.spec.settings == of_run), "{name} {variant}");
@@ -942,7 +943,7 @@ const ESTIMATED: [f64; 2] = [2.5, 3.0];
 #[test]
 fn the_size_of_a_run_is_estimated_within_a_factor_of_what_it_counts() {
     let mut all = Vec::new();
-    for &case in cases::CASES {
+    for &case in touchstone_cases::CASES {
         for variant in case.variants() {
             for set in [Vec::new(), vec!["n=10".to_string()]] {
                 let Ok(spec) = spec(case, variant.name, &set) else { continue };
@@ -978,7 +979,7 @@ fn the_size_of_a_run_is_estimated_within_a_factor_of_what_it_counts() {
 
 fn assignment(case: usize) -> impl Strategy<Value = String> {
     let keys: Vec<&'static str> =
-        cases::CASES[case].fields().iter().map(|field| field.name).collect();
+        touchstone_cases::CASES[case].fields().iter().map(|field| field.name).collect();
     let key = prop_oneof![8 => prop::sample::select(keys), 1 => Just("Rows"), 1 => Just("")];
     let number = prop_oneof![
         1 => (-320i32..=310, 1.0..10.0f64).prop_map(|(power, digits)| format!("{digits}e{power}")),
@@ -1087,7 +1088,7 @@ fn a_given_step_is_taken_in_every_case() {
         let number = |name: &str| record.numerics[name].as_f64().unwrap();
         Some((case.name(), number("dt [s]") / number("dt [s] planned")))
     };
-    let found: Vec<(&str, f64)> = cases::CASES.par_iter().filter_map(of_case).collect();
+    let found: Vec<(&str, f64)> = touchstone_cases::CASES.par_iter().filter_map(of_case).collect();
     assert!(found.len() > 8, "{found:?}");
     let cut: Vec<_> = found.iter().filter(|(_, share)| *share < 0.9).collect();
     assert!(cut.is_empty(), "{cut:?}");
@@ -1106,7 +1107,8 @@ fn the_ends_of_every_range_are_refused_or_run() {
         };
         each.map(with).collect::<Vec<_>>()
     };
-    let all: Vec<(&dyn Case, &str, Vec<String>)> = cases::CASES.iter().flat_map(of_case).collect();
+    let all: Vec<(&dyn Case, &str, Vec<String>)> =
+        touchstone_cases::CASES.iter().flat_map(of_case).collect();
     let begun = all.par_iter().filter(|(case, variant, set)| is_begun(*case, variant, set)).count();
     let refusals = all.len() - begun;
     assert!(begun > 200 && refusals > 50, "{begun} runs, {refusals} refusals");
@@ -1115,7 +1117,7 @@ fn the_ends_of_every_range_are_refused_or_run() {
 /// Whatever is set is refused in words or runs; the runs are stopped after a few steps.
 #[test]
 fn no_settings_make_a_run_panic() {
-    let count = cases::CASES.len();
+    let count = touchstone_cases::CASES.len();
     let drawn = (0..count).prop_flat_map(|case| {
         let set = prop::collection::vec(assignment(case), 0..4);
         (Just(case), any::<prop::sample::Index>(), set, any::<bool>())
@@ -1125,7 +1127,7 @@ fn no_settings_make_a_run_panic() {
     let begun: Vec<AtomicUsize> = (0..count).map(|_| AtomicUsize::new(0)).collect();
     let mut runner = TestRunner::new(config);
     let result = runner.run(&drawn, |(index, variant, mut set, allow_unstable)| {
-        let case = cases::CASES[index];
+        let case = touchstone_cases::CASES[index];
         let variants = case.variants();
         let variant = variants[variant.index(variants.len())].name;
         set.extend(small(case, variant)); // whatever came before
@@ -1152,7 +1154,7 @@ fn no_settings_make_a_run_panic() {
         Ok(())
     });
     result.unwrap();
-    for (case, begun) in cases::CASES.iter().zip(&begun) {
+    for (case, begun) in touchstone_cases::CASES.iter().zip(&begun) {
         let begun = begun.load(Ordering::Relaxed);
         assert!(begun >= 3, "{}: {begun} runs got past the refusals", case.name());
     }
@@ -1162,7 +1164,7 @@ proptest! {
     /// Texts that are no assignments at all.
     #[test]
     fn no_text_makes_settings_panic(set in prop::collection::vec(".{0,40}", 0..4)) {
-        let _ = cases::CASES[0].settings("seed", &set);
+        let _ = touchstone_cases::CASES[0].settings("seed", &set);
     }
 }
 

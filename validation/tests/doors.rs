@@ -9,7 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use base::record::Record;
+use touchstone_base::record::Record;
 
 const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
 

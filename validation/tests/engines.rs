@@ -7,8 +7,8 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use base::record::{Cost, Record};
-use harness::store::Store;
+use touchstone_base::record::{Cost, Record};
+use touchstone_harness::store::Store;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_touchstone");
 

@@ -315,7 +315,7 @@ fn results_at_the_times_that_are_asked_for_are_judged_by_every_gate_that_is_list
     let path = |time: &Value| {
         let t = time.as_f64().unwrap();
         let [x, y] = [(0.0143, 2.0), (0.0649, 1.0)]
-            .map(|(size, _)| size * (base::functions::cos(6.86 * t) - 1.0));
+            .map(|(size, _)| size * (touchstone_base::functions::cos(6.86 * t) - 1.0));
         format!("{t},{x},{y}\n")
     };
     let rows: String = times.iter().map(path).collect();

@@ -8,7 +8,7 @@ use std::process::Command;
 
 use serde_json::Value;
 
-use base::{
+use touchstone_base::{
     absent::Absent,
     functions::{cos, exp, sin},
     random::Random,
@@ -815,7 +815,7 @@ fn particles_that_a_code_chose_itself_are_the_ones_that_are_measured() {
             let (x, y) = (place(id % columns as usize), place(id / columns as usize));
             let exponent = set("gamma") - 1.0;
             let deep = 1.0 + exponent * set("compressibility") * (depth - y) / depth;
-            let density = set("rho") * exp(base::functions::ln(deep) / exponent);
+            let density = set("rho") * exp(touchstone_base::functions::ln(deep) / exponent);
             lines
                 .push(cells(&format!("{time},{id},{x},{y},0,0,{density},{},0", density * dx * dx)));
         }

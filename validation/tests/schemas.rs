@@ -5,11 +5,11 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use base::mutation::{Constant, Detect, Disorder, Mutation};
-use base::record::{Metric, Record, Status};
-use base::spec::{Bisect, EndAfter, Keep, RunSpec, Task};
-use base::submission::{Division, Submission};
 use serde_json::{Value, json};
+use touchstone_base::mutation::{Constant, Detect, Disorder, Mutation};
+use touchstone_base::record::{Metric, Record, Status};
+use touchstone_base::spec::{Bisect, EndAfter, Keep, RunSpec, Task};
+use touchstone_base::submission::{Division, Submission};
 
 const NAMES: [&str; 3] = ["record", "problem", "verdicts"];
 

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use base::{
+use serde_json::Value;
+use touchstone_base::{
     record::{Record, Status},
     reference::sha256,
 };
-use serde_json::Value;
 
 const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
 /// A gate of the problem that the submissions of these tests solve.

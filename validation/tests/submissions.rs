@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
-use base::functions::cos;
-use base::record::Record;
-use base::reference::Reference;
-use base::spec::RunSpec;
-use base::submission::OURS;
+use touchstone_base::functions::cos;
+use touchstone_base::record::Record;
+use touchstone_base::reference::Reference;
+use touchstone_base::spec::RunSpec;
+use touchstone_base::submission::OURS;
 
 const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
 
@@ -951,7 +951,11 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
 fn the_records_of_other_codes_are_sound() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../references/peers/records");
     let files = fs::read_dir(&folder).unwrap().count();
-    assert_eq!(cases::peers::records().count(), files, "the program contains all that is there");
+    assert_eq!(
+        touchstone_cases::peers::records().count(),
+        files,
+        "the program contains all that is there"
+    );
     let mut codes = std::collections::BTreeSet::new();
     // The front at T = 2 by volume of fluid, from H = 2a to a.
     let row = [("scene", "martin_moyce"), ("quantity", "front_at_1")];
@@ -995,7 +999,7 @@ fn a_solid_is_measured_without_its_stress_and_without_what_needs_every_step() {
         let words = said(&touchstone(folder.path(), &format!("submit {case} own --store store")));
         let file = fs::read_dir(folder.path().join("store")).unwrap().flatten().next();
         let record = Record::from_json(&read(&file.expect(&words).path())).unwrap();
-        assert_eq!(record.status, base::record::Status::Completed, "{line}");
+        assert_eq!(record.status, touchstone_base::record::Status::Completed, "{line}");
         assert!(expected.is_empty() || record.metrics.contains_key(expected), "{line}: {expected}");
         let stepwise =
             ["frequency", "trajectory_error", "travel_error", "contact_begin_error@phase1"];

@@ -3,9 +3,9 @@
 
 use std::marker::PhantomData;
 
-use lanes::{LANES, Lane, OnLanes, gather_vector, on_four, total};
 use nalgebra::{Matrix2, Vector2};
-use solver::{Evolved, Potential, Symmetric, parallel};
+use touchstone_lanes::{LANES, Lane, OnLanes, gather_vector, on_four, total};
+use touchstone_solver::{Evolved, Potential, Symmetric, parallel};
 
 use crate::{
     law::{Law, Moduli, Strain},

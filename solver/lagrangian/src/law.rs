@@ -2,7 +2,7 @@
 //! small strains keep their digits.
 
 use nalgebra::Matrix2;
-use solver::Symmetric;
+use touchstone_solver::Symmetric;
 
 /// The moduli of small strains.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 //! derives from an energy.
 
 use nalgebra::Vector2;
-use solver::{Evolved, Smoothing, Symmetric, WendlandC2};
+use touchstone_solver::{Evolved, Smoothing, Symmetric, WendlandC2};
 
 use crate::{law::Moduli, reference::Reference};
 

@@ -1,9 +1,9 @@
 //! The reference configuration: who the neighbours of a particle are, with which weight, and what inverts
 //! the moments of its neighbourhood. It is found once, and nothing of it changes.
 
-use lanes::LANES;
 use nalgebra::{Matrix2, Vector2};
-use solver::{
+use touchstone_lanes::LANES;
+use touchstone_solver::{
     Domain, Kernel, ParticleData, SceneError, Smoothing, Symmetric,
     inverse::{Inverse, LEAST_DETERMINANT, of_two},
     scene::{Component, require},

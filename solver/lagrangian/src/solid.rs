@@ -2,7 +2,7 @@
 //! forces a step, after which every quantity has the same time.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Checkpoint, Domain, Kernel, Leapfrog, Limits, Particle, ParticleData, Phase, Potential, Rate,
     Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
@@ -19,7 +19,7 @@ use crate::{
 };
 
 /// The method that finds the neighbours of the reference: no terms, so that nothing else is compiled.
-type Frame<K, W> = solver::Compose<K, (), (), W, Leapfrog, Symmetric>;
+type Frame<K, W> = touchstone_solver::Compose<K, (), (), W, Leapfrog, Symmetric>;
 
 /// A scene of elastic solids.
 pub struct SolidScene<W, C> {
@@ -32,7 +32,8 @@ pub struct SolidScene<W, C> {
     pub particles: Vec<Particle<Symmetric>>,
     /// The number of the body of each particle, from 0; empty if there is one body.
     pub bodies: Vec<u32>,
-    /// Planes: [`solver::Ghosts`] hold the body, along [`solver::SlipGhosts`] it slides.
+    /// Planes: [`touchstone_solver::Ghosts`] hold the body, along [`touchstone_solver::SlipGhosts`] it
+    /// slides.
     pub walls: W,
     /// The moduli.
     pub moduli: Moduli,

@@ -3,11 +3,13 @@
 use crate::common::{
     DENSITY, MODULI, block, build, energy, forces, free, number, put, scene, stored,
 };
-use lagrangian::{
+use nalgebra::{Matrix2, Vector2};
+use touchstone_lagrangian::{
     BetweenFaces, Hencky, Law, Load, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
 };
-use nalgebra::{Matrix2, Vector2};
-use solver::{Domain, Ghosts, Open, PlaneWall, SlipGhosts, Stepper, Symmetric, walls::Walls};
+use touchstone_solver::{
+    Domain, Ghosts, Open, PlaneWall, SlipGhosts, Stepper, Symmetric, walls::Walls,
+};
 
 /// A place that is out of order, by up to `by` along each axis.
 fn jolted(by: f64) -> impl Fn(usize, Vector2<f64>) -> Vector2<f64> {
@@ -84,7 +86,7 @@ fn forces_are_derivatives_of_the_stored_energy() {
     check_forces::<Hencky, _, _>(scene(block(), Open, ()), 0.1);
     check_forces::<SaintVenantKirchhoff, _, _>(scene(block(), Open, ()), 0.1);
     // The force against modes that deform no particle alone, and stress without it.
-    let soft = lagrangian::Moduli { bulk: 0.0, ..MODULI };
+    let soft = touchstone_lagrangian::Moduli { bulk: 0.0, ..MODULI };
     check_forces::<Hencky, _, _>(
         SolidScene { moduli: soft, hourglass: 50.0, ..scene(block(), Open, ()) },
         0.1,
@@ -114,9 +116,10 @@ fn forces_at_planes_and_across_periods_are_derivatives_of_the_stored_energy() {
 /// Two blocks side by side, half a spacing too close to each other, beside a plane.
 fn two<C: Load>(loads: C) -> SolidScene<Open, C> {
     let left = block(4, 5, 0.1);
-    let right = left
-        .iter()
-        .map(|p| solver::Particle { position: p.position + Vector2::new(3.7, 0.3), ..*p });
+    let right = left.iter().map(|p| touchstone_solver::Particle {
+        position: p.position + Vector2::new(3.7, 0.3),
+        ..*p
+    });
     let particles: Vec<_> = left.iter().copied().chain(right).collect();
     let bodies = (0..particles.len()).map(|k| u32::from(k >= left.len())).collect();
     SolidScene { bodies, ..scene(particles, Open, loads) }
@@ -234,7 +237,7 @@ fn bodies_that_collide_keep_momentum_and_energy_and_part() {
     let (mut most, mut series) = (0.0_f64, Vec::new());
     for k in 1..=400 {
         let outcome = solid.advance(0.1 * f64::from(k), 0.02, &mut ());
-        assert_eq!(outcome, solver::Outcome::Reached);
+        assert_eq!(outcome, touchstone_solver::Outcome::Reached);
         most = most.max(solid.potential().unwrap().loads);
         series.push((energy(&solid) / before - 1.0).abs());
     }
@@ -254,10 +257,11 @@ fn bodies_that_collide_keep_momentum_and_energy_and_part() {
 #[test]
 fn a_body_touches_itself_where_it_is_no_neighbour() {
     let hook = || {
-        let at = |x: Vector2<f64>| solver::Particle::fluid(x, Vector2::zeros(), 1.0, 1.0);
-        let lattice = solver::lattice(Vector2::repeat(0.5), 1.0, 8, 7);
+        let at =
+            |x: Vector2<f64>| touchstone_solver::Particle::fluid(x, Vector2::zeros(), 1.0, 1.0);
+        let lattice = touchstone_solver::lattice(Vector2::repeat(0.5), 1.0, 8, 7);
         let is_hook = |x: &Vector2<f64>| x.x < 2.0 || x.y < 2.0 || x.y > 5.0;
-        lattice.filter(is_hook).map(at).collect::<Vec<solver::Particle<Symmetric>>>()
+        lattice.filter(is_hook).map(at).collect::<Vec<touchstone_solver::Particle<Symmetric>>>()
     };
     let bent = |by: f64| {
         move |_: usize, x: Vector2<f64>| {
@@ -291,7 +295,7 @@ fn a_step_counts_each_sweep_over_the_reference_and_over_the_contact() {
     let places: Vec<Vector2<f64>> = scene.particles.iter().map(|p| p.position).collect();
     let mut solid = build::<Hencky, _, _>(scene);
     let before = solid.work();
-    assert_eq!(solid.advance(1e-3, 1e-3, &mut ()), solver::Outcome::Reached);
+    assert_eq!(solid.advance(1e-3, 1e-3, &mut ()), touchstone_solver::Outcome::Reached);
     let within = near(&places, 2.0 * 1.2, |i, j| bodies[i] == bodies[j]);
     let across = near(&places, 2.0 * 1.2, |i, j| bodies[i] != bodies[j]);
     let sizes: Vec<f64> = solid.body.reference.sizes.clone();
@@ -318,7 +322,7 @@ fn neighbours_across_periods_count_and_restoring_counts_nothing() {
     let domain = Domain::torus(8.0, 6.0);
     let mut solid =
         build::<Hencky, _, _>(SolidScene { domain, ..scene(block(8, 6, 0.0), Open, ()) });
-    assert_eq!(solid.advance(1e-3, 1e-3, &mut ()), solver::Outcome::Reached);
+    assert_eq!(solid.advance(1e-3, 1e-3, &mut ()), touchstone_solver::Outcome::Reached);
     assert_eq!(solid.work().pair_interactions, 2 * 48 * 20);
     let state = solid.checkpoint();
     solid.restore(&state).unwrap();

@@ -3,12 +3,14 @@
 use crate::common::{
     Block, DENSITY, MODULI, block, build, energy, forces, free, number, put, scene,
 };
-use lagrangian::{BetweenFaces, Hencky, Law, SaintVenantKirchhoff, SolidScene, contact_stiffness};
 use nalgebra::Vector2;
-use solver::{
+use std::f64::consts::TAU;
+use touchstone_lagrangian::{
+    BetweenFaces, Hencky, Law, SaintVenantKirchhoff, SolidScene, contact_stiffness,
+};
+use touchstone_solver::{
     Domain, Limits, Open, Outcome, PlaneWall, SlipGhosts, Smoothing, Stepper, WendlandC2,
 };
-use std::f64::consts::TAU;
 
 const SIDE: usize = 12;
 
@@ -296,7 +298,7 @@ fn bits_are_equal_for_threads_and_after_a_restart() {
             solid.advance(10.0 * dt, dt, &mut ());
             solid.advance(20.0 * dt, dt, &mut ());
         }
-        let bits = |p: &solver::Particle<solver::Symmetric>| {
+        let bits = |p: &touchstone_solver::Particle<touchstone_solver::Symmetric>| {
             [p.position.x, p.velocity.y, p.density, p.extra.xy].map(f64::to_bits)
         };
         solid.particles().iter().map(bits).collect::<Vec<_>>()

@@ -43,8 +43,8 @@ pub use tensile_stress::{
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
 
-use lanes::Lane;
 use nalgebra::Vector2;
+use touchstone_lanes::Lane;
 
 // Each file takes the types with which terms are written from here.
 use crate::{
@@ -230,7 +230,7 @@ tuple_of_terms!(Split<A, B>: A 0, B 1);
 mod tests {
     use super::*;
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2, numbers::Buffer};
-    use lanes::{OnLanes, Portable, on_widest};
+    use touchstone_lanes::{OnLanes, Portable, on_widest};
 
     /// Up to eight neighbours, number k of field f; one is at the same place as the particle.
     fn number(field: usize, k: usize) -> f64 {

@@ -8,8 +8,8 @@
 //! removed by a later one.
 //!
 //! ```no_run
-//! # fn main() -> Result<(), base::files::FileError> {
-//! use base::{files::OutputFolder, record::Profile};
+//! # fn main() -> Result<(), touchstone_base::files::FileError> {
+//! use touchstone_base::{files::OutputFolder, record::Profile};
 //! let folder = OutputFolder::create("out".as_ref())?;
 //! let profile = Profile::of_rows(&[("y", "m"), ("u", "m/s")], &[[2.5e-5, 1.2e-4]]);
 //! folder.write("profile.csv", profile.to_csv().as_bytes())?;

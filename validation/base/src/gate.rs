@@ -5,7 +5,7 @@
 //! outside of that fails too.
 //!
 //! ```
-//! use base::gate::{Bound, Evidence, Gate, Verdict};
+//! use touchstone_base::gate::{Bound, Evidence, Gate, Verdict};
 //! let gate = Gate::new(
 //!     "couette.l2.t0.1",
 //!     "l2.t0.1",

@@ -6,13 +6,13 @@
 //! [`number`](crate::number)), and the key of a value that does not exist is omitted.
 //!
 //! ```
-//! use base::record::{Metric, Record};
+//! use touchstone_base::record::{Metric, Record};
 //! let mut record = Record::new("couette", "seed", serde_json::json!({"re": 0.5}), 1);
 //! let formula = "sqrt(sum (u - u_exact)^2 / sum u_exact^2)";
 //! record.metrics.insert("l2".into(), Metric::new(1e-3, "-", formula));
 //! let text = record.to_json()?;
 //! assert_eq!(Record::from_json(&text)?, record);
-//! # Ok::<(), base::record::RecordError>(())
+//! # Ok::<(), touchstone_base::record::RecordError>(())
 //! ```
 
 use std::collections::BTreeMap;
@@ -201,7 +201,7 @@ impl Metric {
 /// constant, so that a misspelt name does not compile.
 ///
 /// ```
-/// use base::record::{MetricKey, Record};
+/// use touchstone_base::record::{MetricKey, Record};
 /// const L2: MetricKey = MetricKey::new("l2", "-", "rms(u - u_exact)/rms(u_exact)");
 /// let mut record = Record::new("couette", "seed", serde_json::json!({}), 1);
 /// record.put(L2.at(0.1), 1e-3);
@@ -245,11 +245,11 @@ impl MetricKey {
 /// `all NAME;` they are in a list of this name too.
 ///
 /// ```
-/// base::metrics! {
+/// touchstone_base::metrics! {
 ///     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact)";
 ///     FORCE = "force" ["U_b^2/H"] "mean body force";
 /// }
-/// assert_eq!(FORCE, base::record::MetricKey::new("force", "U_b^2/H", "mean body force"));
+/// assert_eq!(FORCE, touchstone_base::record::MetricKey::new("force", "U_b^2/H", "mean body force"));
 /// assert_eq!(String::from(L2), "l2");
 /// ```
 #[macro_export]

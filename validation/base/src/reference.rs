@@ -5,11 +5,11 @@
 //! A package is refused if it states no provenance, or if a table differs from its description.
 //!
 //! ```
-//! use base::reference::Reference;
+//! use touchstone_base::reference::Reference;
 //! let table = Reference::load("periodic_hill")?.table("profiles")?.clone();
 //! assert_eq!((table.numbers("re")?[1], table.numbers("y")?[1]), (10.0, 1.0152625));
 //! assert_eq!(table.unit("y")?, "H");
-//! # Ok::<(), base::reference::ReferenceError>(())
+//! # Ok::<(), touchstone_base::reference::ReferenceError>(())
 //! ```
 
 use std::fmt::Write;

@@ -5,9 +5,9 @@
 //! Neither text nor JSON input can give a struct a value outside its range.
 //!
 //! ```
-//! use base::settings;
+//! use touchstone_base::settings;
 //!
-//! base::settings! {
+//! touchstone_base::settings! {
 //!     /// A channel between two plates.
 //!     pub struct Channel {
 //!         /// Reynolds number V L / nu

@@ -5,7 +5,7 @@
 //! whichever study planned it.
 //!
 //! ```
-//! use base::spec::RunSpec;
+//! use touchstone_base::spec::RunSpec;
 //! use serde_json::json;
 //! let spec = RunSpec::new("couette", "seed", json!({"rows": 20, "re": 0.5}));
 //! let line = r#"{"case":"couette","settings":{"re":0.5,"rows":20},"variant":"seed"}"#;

@@ -6,7 +6,7 @@
 //! hold a NaN: ParaView draws it in a colour of its own, and a state that diverged is worth inspecting.
 //!
 //! ```
-//! use base::{record::Profile, vtk};
+//! use touchstone_base::{record::Profile, vtk};
 //! let place = Profile::default().with("x", "m", vec![0.0, 1.0]).with("y", "m", vec![0.0, 0.5]);
 //! let velocity = place.with("u", "m/s", vec![0.1, 0.2]).with("v", "m/s", vec![0.0; 2]);
 //! let file = vtk::particles(0.25, &velocity.with("p", "Pa", vec![1.0, 2.0]))?;

@@ -10,9 +10,9 @@ pub mod stiffness;
 mod time;
 pub mod waters;
 
-use base::reference::Reference;
-pub use harness::case::find_in;
-use harness::case::{Case, RunError};
+use touchstone_base::reference::Reference;
+pub use touchstone_harness::case::find_in;
+use touchstone_harness::case::{Case, RunError};
 
 use crate::fluids::{cavity, channel, manufactured, periodic_hill, taylor_couette, taylor_green};
 use crate::lattice::{extremes, operators, resting_box, wave};

@@ -1,12 +1,12 @@
 //! The known limitations, grouped by cause.
 
-use base::spec::Task;
-use harness::{
+use touchstone_base::spec::Task;
+use touchstone_harness::{
     case::{self, Planned},
     runs::{Judged, JudgedRun, by_cause},
     suite::{JudgedOf, Of, Suite},
 };
-use report::{Block, Section, sig};
+use touchstone_report::{Block, Section, sig};
 
 /// A part of the page for each cause.
 pub fn section(suite: &Suite) -> Section {

@@ -1,13 +1,13 @@
 //! The report: from a judged suite to one page.
 
-use base::{
+use touchstone_base::{
     gate::Verdict,
     manifest::Manifest,
     record::Record,
     reference::Reference,
     spec::{RunSpec, Task},
 };
-use harness::{
+use touchstone_harness::{
     case::{self, Case},
     columns::Columns,
     notes::Notes,
@@ -15,7 +15,7 @@ use harness::{
     study::Study,
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
-use report::{
+use touchstone_report::{
     Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, code, counted,
     plain,
 };
@@ -96,8 +96,8 @@ fn cost(suite: &Suite) -> String {
     format!(
         "{} took {} of processor time for stepping and {} pair interactions.",
         counted(records().count(), "run", "runs"),
-        report::seconds(stepping + repeated),
-        report::sci(pairs, 2)
+        touchstone_report::seconds(stepping + repeated),
+        touchstone_report::sci(pairs, 2)
     )
 }
 

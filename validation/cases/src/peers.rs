@@ -1,8 +1,8 @@
 //! What other codes made of exported problems, and this one in turn with them: the records of
 //! `references/peers`, which the program contains.
 
-use base::{pack, record::Record, spec::RunKey, submission::SESSION};
-use harness::{make::Made, suite::Plans};
+use touchstone_base::{pack, record::Record, spec::RunKey, submission::SESSION};
+use touchstone_harness::{make::Made, suite::Plans};
 
 /// Packed by the build script.
 const RECORDS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/peers"));

@@ -1,12 +1,12 @@
 //! Which mechanism limits the time step of each variant, and what it costs that the others are slower.
 
-use harness::{
+use touchstone_harness::{
     case::{self, Case, Rules, RunError},
     columns::Columns,
     limits::Mechanism,
     suite::{CaseResults, Suite},
 };
-use report::{Block, Cell, Section, Table};
+use touchstone_report::{Block, Cell, Section, Table};
 
 /// A variant at its default settings.
 pub struct Row {
@@ -70,8 +70,11 @@ pub fn table(rows: &[Row]) -> Table {
         .num(["step", "s"], |row| Cell::sci(row.rules.dt(), 3))
         .text("set by", |row| {
             let step = row.rules.step;
-            let number =
-                if step.number == 1.0 { String::new() } else { report::sig(step.number, 3) };
+            let number = if step.number == 1.0 {
+                String::new()
+            } else {
+                touchstone_report::sig(step.number, 3)
+            };
             format!("{number} {}", step.by).trim_start().to_string()
         });
     let limit = |value: f64| Cell::num(value, 3);

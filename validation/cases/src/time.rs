@@ -1,12 +1,12 @@
 //! Where the time of the main cases goes.
 
-use base::{breakdown::Breakdown, record::Record};
-use harness::{
+use touchstone_base::{breakdown::Breakdown, record::Record};
+use touchstone_harness::{
     columns::Columns,
     profile::{BOTH, DRIFT, FORCES, REFRESH, REST, SEARCH, SORTING, WALLS},
     suite::{CaseResults, Suite},
 };
-use report::{Cell, Section};
+use touchstone_report::{Cell, Section};
 
 /// A run with its profile.
 type Profiled<'a> = (&'a Record, &'a Breakdown);

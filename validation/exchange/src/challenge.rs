@@ -1,9 +1,9 @@
 //! Sealed problems: settings that are drawn from a seed and from what the method is, so that a method which
 //! was tuned for the problems that everybody knows shows it.
 
-use base::{random::Random, reference::sha256, spec::RunSpec};
-use harness::{case::Case, sealed};
 use serde_json::{Map, Value, json};
+use touchstone_base::{random::Random, reference::sha256, spec::RunSpec};
+use touchstone_harness::{case::Case, sealed};
 
 use crate::{
     problem::Sealed,

@@ -1,6 +1,6 @@
 //! Digits of what was handed in: rates over a short time, and equality to round-off, need all of a double.
 
-use harness::playback::{Frame, Placed};
+use touchstone_harness::playback::{Frame, Placed};
 
 /// Numbers with at most so many digits are rounded: of numbers with all digits one in 10⁵ is as short.
 const FEW: usize = 11;

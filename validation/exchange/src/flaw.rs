@@ -2,7 +2,7 @@
 
 use std::{collections::BTreeMap, fmt};
 
-use base::text::{first, short};
+use touchstone_base::text::{first, short};
 
 /// What is wrong with a text whose last line does not end: the rest of its last number may be missing.
 pub const CUT: &str = "the last line does not end; the file was cut short";

@@ -1,7 +1,7 @@
 //! A solver of another library, called in place of one whose files are read.
 
-use base::{record::Record, reference::sha256, spec::RunSpec};
-use harness::{
+use touchstone_base::{record::Record, reference::sha256, spec::RunSpec};
+use touchstone_harness::{
     case::{Case, RunError},
     playback::{Frame, Placed},
 };
@@ -21,8 +21,8 @@ pub trait Solver {
     fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System;
 }
 
-/// The record of a solver for a run of a case. Put into [`harness::make::Made::submissions`] it has a section
-/// of the report.
+/// The record of a solver for a run of a case. Put into [`touchstone_harness::make::Made::submissions`] it
+/// has a section of the report.
 ///
 /// # Errors
 /// If the case refuses the run, or what the solver told does not fit it: each flaw in a line.

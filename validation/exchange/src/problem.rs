@@ -1,13 +1,15 @@
 //! A problem as a document: every number with its unit, every equation with its text.
 
-use base::{
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
+use touchstone_base::{
     gate::Gate,
     record::{self, Column, MetricName, Profile},
     settings::{self, Field},
     spec::RunSpec,
     text::short,
 };
-use harness::{
+use touchstone_harness::{
     case::{self, Case, RunError, Tier},
     declare::{Curve, Declaration, Fact},
     method::{Knob, Medium, Properties},
@@ -16,8 +18,6 @@ use harness::{
     relation::Relation,
     sealed,
 };
-use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value, json};
 
 use crate::flaw::Flaw;
 
@@ -280,7 +280,7 @@ impl Problem {
     pub fn to_json(&self) -> Value {
         let Outline { medium: m, domain, mirrors, dt, method, .. } = &self.outline;
         let times = self.times();
-        let plane = |wall: &solver::PlaneWall| {
+        let plane = |wall: &touchstone_solver::PlaneWall| {
             json!({
                 "point": with_unit(wall.point.as_slice(), "m"),
                 "normal_into_the_material": with_unit(wall.normal.as_slice(), "-"),

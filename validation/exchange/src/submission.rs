@@ -3,7 +3,12 @@
 
 use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
-use base::{
+use serde::{
+    Deserialize, Deserializer,
+    de::{DeserializeOwned, Error},
+};
+use serde_json::{Map, Value};
+use touchstone_base::{
     absent::Absent,
     files,
     gate::Gate,
@@ -13,19 +18,14 @@ use base::{
     submission::{Division, MACHINE, Submission, code_name},
     text::{first, number, short, unseen},
 };
-use harness::{
+use touchstone_harness::{
     case::{Case, RunError, Tier},
     medium::Medium,
     outline::{Outline, role},
     playback::{self, Fill, Frame, Own, Placed, Playback},
     suite,
 };
-use serde::{
-    Deserialize, Deserializer,
-    de::{DeserializeOwned, Error},
-};
-use serde_json::{Map, Value};
-use solver::{Domain, Role};
+use touchstone_solver::{Domain, Role};
 
 use crate::{
     digits::{self, ROUND_OFF},
@@ -260,7 +260,7 @@ fn reach(problem: &Problem) -> f64 {
 
 /// Bounds beyond which a run of the problem has diverged: 30 % of the density of a fluid, a half of that of a
 /// solid, and twice the sum of the sound speed, the largest speed at the start and that of a fall to the end.
-fn limits(problem: &Problem) -> solver::Limits {
+fn limits(problem: &Problem) -> touchstone_solver::Limits {
     let Outline { particles, medium, times, .. } = &problem.outline;
     let share = if problem.is_solid() { 0.5 } else { 0.7 };
     let start = particles.column("density").iter().copied();
@@ -270,7 +270,7 @@ fn limits(problem: &Problem) -> solver::Limits {
     let fall = medium.acceleration.norm() * times.last().copied().unwrap_or_default();
     let speed = 2.0 * (medium.eos.sound_speed + fastest + fall);
     let most = if problem.is_solid() { 2.0 * high } else { 1.3 * high };
-    solver::Limits { density: [share * low, most], speed }
+    touchstone_solver::Limits { density: [share * low, most], speed }
 }
 
 /// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.

@@ -1,7 +1,7 @@
 //! Dumps of LAMMPS: its names, its numbers of atoms, and names that the caller gives.
 
-use exchange::read::{Renamed, read};
 use nalgebra::Vector2;
+use touchstone_exchange::read::{Renamed, read};
 
 /// Id, place, velocity and density.
 type Row = (u32, Vector2<f64>, Vector2<f64>, Option<f64>);
@@ -39,10 +39,14 @@ fn read_text(text: &str, map: &[(&str, &str)]) -> Result<Vec<(f64, Vec<Row>)>, S
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.dump"), text).unwrap();
     let renamed = map.iter().map(|(ours, theirs)| (theirs.to_string(), ours.to_string()));
-    let lines = |flaws: Vec<exchange::flaw::Flaw>| exchange::flaw::lines(&flaws).join("\n");
+    let lines = |flaws: Vec<touchstone_exchange::flaw::Flaw>| {
+        touchstone_exchange::flaw::lines(&flaws).join("\n")
+    };
     let results = read(folder.path(), &renamed.collect::<Renamed>()).map_err(lines)?;
-    let row = |p: &harness::playback::Placed| (p.id, p.position, p.velocity, p.density);
-    let frame = |of: &harness::playback::Frame| (of.time, of.particles.iter().map(row).collect());
+    let row = |p: &touchstone_harness::playback::Placed| (p.id, p.position, p.velocity, p.density);
+    let frame = |of: &touchstone_harness::playback::Frame| {
+        (of.time, of.particles.iter().map(row).collect())
+    };
     Ok(results.frames.iter().map(frame).collect())
 }
 

@@ -19,7 +19,7 @@
 use std::fs;
 use std::path::Path;
 
-use exchange::read::{Renamed, Results, read};
+use touchstone_exchange::read::{Renamed, Results, read};
 
 fn fixture(name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name)).unwrap()
@@ -33,7 +33,7 @@ fn read_as(name: &str, bytes: &[u8]) -> Result<Results, String> {
 
 fn read_in(folder: &Path, name: &str, bytes: &[u8]) -> Result<Results, String> {
     fs::write(folder.join(name), bytes).unwrap();
-    let flaws = |flaws: Vec<exchange::flaw::Flaw>| {
+    let flaws = |flaws: Vec<touchstone_exchange::flaw::Flaw>| {
         flaws.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
     };
     read(folder, &Renamed::new()).map_err(flaws)

@@ -2,9 +2,9 @@
 
 use std::io::Write;
 
-use exchange::read::{Renamed, read};
 use flate2::{Compression, write::DeflateEncoder};
 use rawzip::{CompressionMethod, ZipArchiveWriter};
+use touchstone_exchange::read::{Renamed, read};
 
 /// An array of floats with a head that says what it likes.
 fn array(order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {

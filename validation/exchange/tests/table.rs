@@ -1,13 +1,15 @@
 //! Tables of comma-separated values: names, what files state beside places and velocities, and messages.
 
-use exchange::read::{Renamed, Results, read};
+use touchstone_exchange::read::{Renamed, Results, read};
 
 /// What is read of tables, or what is wrong with them.
 fn read_as(text: &str, map: &[(&str, &str)]) -> Result<Results, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("results.csv"), text).unwrap();
     let renamed = map.iter().map(|(ours, theirs)| (theirs.to_string(), ours.to_string()));
-    let lines = |flaws: Vec<exchange::flaw::Flaw>| exchange::flaw::lines(&flaws).join("\n");
+    let lines = |flaws: Vec<touchstone_exchange::flaw::Flaw>| {
+        touchstone_exchange::flaw::lines(&flaws).join("\n")
+    };
     read(folder.path(), &renamed.collect::<Renamed>()).map_err(lines)
 }
 
@@ -131,7 +133,7 @@ fn mass_and_role_do_not_change() {
         )
     };
     let stated = read_as(&of("1.50003,0"), &[]).unwrap().stated;
-    assert_eq!(stated[&1], (1.5, Some(solver::Role::Wall)));
+    assert_eq!(stated[&1], (1.5, Some(touchstone_solver::Role::Wall)));
     for (later, says) in [
         ("1.6,0", "line 4, column mass: it is 1.6, and was 1.5 before"),
         ("1.4,0", "line 4, column mass: it is 1.4, and was 1.5 before"),

@@ -3,9 +3,9 @@
 
 use std::io::Write;
 
-use base::text::base64;
-use exchange::read::{Renamed, Results, read};
 use flate2::{Compression, write::ZlibEncoder};
+use touchstone_base::text::base64;
+use touchstone_exchange::read::{Renamed, Results, read};
 
 /// How a file is written.
 #[derive(Clone, Copy, Debug)]
@@ -131,7 +131,9 @@ fn read_as(file: &[u8], map: &[(&str, &str)]) -> Result<Results, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.vtp"), file).unwrap();
     let renamed = map.iter().map(|(ours, theirs)| (theirs.to_string(), ours.to_string()));
-    let lines = |flaws: Vec<exchange::flaw::Flaw>| exchange::flaw::lines(&flaws).join("\n");
+    let lines = |flaws: Vec<touchstone_exchange::flaw::Flaw>| {
+        touchstone_exchange::flaw::lines(&flaws).join("\n")
+    };
     read(folder.path(), &renamed.collect::<Renamed>()).map_err(lines)
 }
 

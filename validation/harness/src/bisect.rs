@@ -1,6 +1,6 @@
 //! The largest stable value of a setting by bisection, and the criterion by which a run counts as growing.
 
-use base::{
+use touchstone_base::{
     record::{Cost, Record, Status},
     spec::{Bisect, RunSpec, Task},
 };
@@ -10,7 +10,7 @@ use crate::{
     context::Context,
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     STABLE = "stable" ["-"] "largest x that was stable";
     UNSTABLE = "unstable" ["-"] "smallest x that was not";
 }
@@ -149,7 +149,7 @@ pub struct Growth {
     pub beyond_doubt: bool,
 }
 
-base::observed! { Growth: changes(seen, quarters, beyond_doubt), stays(start, steps) }
+touchstone_base::observed! { Growth: changes(seen, quarters, beyond_doubt), stays(start, steps) }
 
 impl Growth {
     /// Watches `steps` steps from an energy of `start` > 0.
@@ -179,12 +179,12 @@ impl Growth {
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use serde_json::{Value, json};
+    use touchstone_base::{
         functions::{exp, sin},
         settings::Field,
         spec::EndAfter,
     };
-    use serde_json::{Value, json};
 
     use super::*;
     use crate::{
@@ -245,7 +245,7 @@ mod tests {
         assert!(last <= 16.0 && last * last / before > 16.0, "{before} and {last} were the last");
     }
 
-    base::metrics! {
+    touchstone_base::metrics! {
         GREW = "grew" ["-"] "1 of a run that was not stable";
     }
 

@@ -1,12 +1,12 @@
 //! The interface of a benchmark case: description of the problem, settings, variants to compare, and a plan
 //! of judged runs.
 
-use base::{
+use serde_json::Value;
+use touchstone_base::{
     record::Record,
     settings::{self, Field, Kind},
     spec::{RunSpec, SpecError, Task},
 };
-use serde_json::Value;
 
 use crate::{context::Context, declare::Declaration, problem::Posed};
 pub use crate::{

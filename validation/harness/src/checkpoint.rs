@@ -9,14 +9,14 @@ use std::collections::VecDeque;
 use std::sync::Mutex;
 use std::time::Duration;
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     bits::{self, Bits},
     files::FileError,
     lock,
     record::{Cost, Status},
 };
-use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Checkpoint, Interval, Numbers, Particle, PreviousStep, Progress, Stepper, Symmetric, Work,
 };
 
@@ -35,7 +35,7 @@ pub(crate) struct Stage {
     pub ended: Option<Status>,
 }
 
-base::observed! { Stage: changes(reached, cost, frames, ended), stays() }
+touchstone_base::observed! { Stage: changes(reached, cost, frames, ended), stays() }
 
 /// Id and role of a particle, its position, its velocity and where it was when the neighbour lists were
 /// built, and then density and mass.

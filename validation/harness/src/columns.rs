@@ -2,7 +2,7 @@
 
 use std::borrow::Borrow;
 
-use report::{Cell, Column, Table, code};
+use touchstone_report::{Cell, Column, Table, code};
 
 /// What a column shows of an item.
 type Shown<'a, T> = dyn Fn(&T) -> Cell + 'a;

@@ -3,7 +3,7 @@
 
 use std::{fmt::Display, marker::PhantomData, rc::Rc};
 
-use base::{
+use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
     settings::{self, Field, SettingError, Settings, Values},

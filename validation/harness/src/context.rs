@@ -6,7 +6,7 @@ use std::sync::{
     atomic::{AtomicBool, Ordering},
 };
 
-use base::{record::Profile, spec::RunSpec};
+use touchstone_base::{record::Profile, spec::RunSpec};
 
 use crate::{
     checkpoint::Checkpoints,

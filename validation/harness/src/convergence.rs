@@ -12,7 +12,7 @@
 //!   largest: the error first decreased with a clear order and then stopped decreasing;
 //! - [`Label::NotYet`] otherwise.
 
-use base::functions::ln;
+use touchstone_base::functions::ln;
 
 /// Local orders within this fraction of the fitted one count as the same order.
 pub const SAME_ORDER: f64 = 0.15;
@@ -157,7 +157,7 @@ fn student_t(freedom: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use base::functions::powf;
+    use touchstone_base::functions::powf;
 
     use super::*;
     use approx::assert_relative_eq;

@@ -5,15 +5,15 @@
 
 use std::fmt;
 
-use base::{
+use nalgebra::Vector2;
+use serde_json::Value;
+use touchstone_base::{
     gate::{Cause, Gate},
     mutation::{Constant, Detect, Mutation},
     record::{MetricKey, MetricName, Record, Status},
     spec::{Bisect, Measure, RunSpec},
 };
-use nalgebra::Vector2;
-use report::{Axis, Colour, ColourMap};
-use serde_json::Value;
+use touchstone_report::{Axis, Colour, ColourMap};
 
 use crate::{
     rules::Rules,
@@ -205,15 +205,15 @@ pub struct Stated {
 impl Stated {
     /// A setting as it is written in the words.
     pub fn setting(settings: &Value, name: &str) -> String {
-        settings[name].as_f64().map_or_else(|| settings[name].to_string(), report::exact)
+        settings[name].as_f64().map_or_else(|| settings[name].to_string(), touchstone_report::exact)
     }
 
     /// A number in the unit of the error.
     pub fn number(&self, value: f64) -> String {
         if self.unit.is_empty() {
-            return report::percent(value, 2);
+            return touchstone_report::percent(value, 2);
         }
-        format!("{}\u{a0}{}", report::sig(value, 2), self.unit)
+        format!("{}\u{a0}{}", touchstone_report::sig(value, 2), self.unit)
     }
 
     /// The name and the reference.

@@ -2,10 +2,10 @@
 //! cell, and tables of what gates detect over every judged run. It is made for clusters: its runs are
 //! independent of each other, and some may take more than a run may unless that is asked for.
 
-use base::functions::powf;
-use base::mutation::Disorder;
-use base::spec::{Keep, RunKey, RunSpec, Task};
 use serde_json::Value;
+use touchstone_base::functions::powf;
+use touchstone_base::mutation::Disorder;
+use touchstone_base::spec::{Keep, RunKey, RunSpec, Task};
 
 use crate::{
     case::{self, Case, Planned, Tier},

@@ -1,6 +1,6 @@
 //! The smallest deliberate error of a constant that the gates of a run detect.
 
-use base::{
+use touchstone_base::{
     gate::{Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
     record::Record,
@@ -17,7 +17,7 @@ use crate::{
 /// The relative errors that are tried, ascending.
 const ERRORS: [f64; 10] = [0.001, 0.002, 0.005, 0.01, 0.02, 0.03, 0.05, 0.1, 0.2, 0.3];
 
-base::metrics! {
+touchstone_base::metrics! {
     DETECTED = "detected" ["-"]
         "smallest relative error of the constant with either sign of which the run fails a gate";
     UNDETECTED = "undetected" ["-"]
@@ -126,8 +126,8 @@ fn failed(
 
 #[cfg(test)]
 mod tests {
-    use base::{gate::Bound, settings::Field, spec::Measure};
     use serde_json::{Value, json};
+    use touchstone_base::{gate::Bound, settings::Field, spec::Measure};
 
     use super::*;
     use crate::{
@@ -135,7 +135,7 @@ mod tests {
         declare::Declaration,
     };
 
-    base::metrics! {
+    touchstone_base::metrics! {
         FORCE = "force" ["-"] "1 of a healthy run";
     }
 

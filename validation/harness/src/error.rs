@@ -1,14 +1,14 @@
 //! Why a run was refused before its first step.
 
-use base::{
+use thiserror::Error;
+use touchstone_base::{
     bits::OtherBits,
     files::FileError,
     settings::{SettingError, hint},
     spec::SpecError,
     text::short,
 };
-use report::sig;
-use thiserror::Error;
+use touchstone_report::sig;
 
 use crate::{
     limits::ADVISED_SHARE,
@@ -111,7 +111,7 @@ pub enum RunError {
     /// More time or memory than a run may take.
     #[error(
         "the run would be {size}; without --allow-long at most {} and {} MB are allowed; change {settings}",
-        report::seconds(MOST_SECONDS), report::sig(1e-6 * MOST_BYTES, 2)
+        touchstone_report::seconds(MOST_SECONDS), touchstone_report::sig(1e-6 * MOST_BYTES, 2)
     )]
     TooLong {
         /// What it would take.
@@ -121,14 +121,14 @@ pub enum RunError {
     },
     /// The solver refuses the scene.
     #[error("the scene is impossible: {0}")]
-    Scene(#[from] solver::SceneError),
+    Scene(#[from] touchstone_solver::SceneError),
     /// The same, with the settings that are not those of the variant, as `key=value`.
     #[error("with {set} the scene is impossible: {scene}")]
     SceneOf {
         /// The settings.
         set: String,
         /// What is wrong with the scene.
-        scene: solver::SceneError,
+        scene: touchstone_solver::SceneError,
     },
     /// A reference that the case needs could not be loaded.
     #[error("a reference that the case needs cannot be loaded: {0}")]

@@ -3,12 +3,12 @@
 
 use std::path::PathBuf;
 
-use base::{
+use touchstone_base::{
     files::{FileError, OutputFolder},
     record::Profile,
     vtk,
 };
-use solver::{Numbers, Particle, Stepper, Symmetric};
+use touchstone_solver::{Numbers, Particle, Stepper, Symmetric};
 
 /// Writes `count` frames at equal intervals, each after the first step that reaches its time, and the last
 /// one at the end. In a leapfrog the velocities of a frame are half a step behind the places.

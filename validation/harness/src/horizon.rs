@@ -1,6 +1,6 @@
 //! The horizon of a flow: the time until which runs that differ by next to nothing at the start agree.
 
-use base::random::Random;
+use touchstone_base::random::Random;
 
 use crate::quantiles::{CONFIDENCE, between};
 
@@ -89,7 +89,7 @@ fn median(parted: &[Vec<f64>], among: &[usize]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::functions::{exp, ln};
+    use touchstone_base::functions::{exp, ln};
 
     const RATE: f64 = 2.0;
 

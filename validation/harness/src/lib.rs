@@ -4,8 +4,8 @@
 //! case declares ──▶ plan ──▶ make: spec → record ──▶ store ──▶ judge, study ──▶ page
 //! ```
 //!
-//! The steps exchange plain data: [`base::spec::RunSpec`], [`base::record::Record`], [`study::Study`]. Only
-//! the step that makes runs calls the solver.
+//! The steps exchange plain data: [`touchstone_base::spec::RunSpec`], [`touchstone_base::record::Record`],
+//! [`study::Study`]. Only the step that makes runs calls the solver.
 
 pub mod bisect;
 pub mod case;
@@ -47,4 +47,4 @@ pub mod suite;
 pub mod symmetry;
 pub mod table;
 
-pub use base::observed;
+pub use touchstone_base::observed;

@@ -1,7 +1,7 @@
 //! What limits the time step of a run: the limit of each mechanism of its scene alone, and of all waves of
 //! the lattice together.
 
-use maths::theory::time_step::{self, Integrator, Mode};
+use touchstone_maths::theory::time_step::{self, Integrator, Mode};
 
 /// The share of the theoretical limit up to which a step is advised. The limit is that of a lattice at rest,
 /// and particles that move come nearer to each other and faster: over all variants with the coarsest settings

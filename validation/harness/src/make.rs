@@ -10,14 +10,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use base::{
+use rayon::prelude::*;
+use touchstone_base::{
     files::FileError,
     lock,
     manifest::UNKNOWN,
     record::{Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
-use rayon::prelude::*;
 
 use crate::{
     bisect,
@@ -511,13 +511,13 @@ pub fn jobs(plans: Vec<(&'static dyn Case, Vec<Planned>)>) -> Vec<Job> {
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use serde_json::{Value, json};
+    use touchstone_base::{
         mutation::{Constant, Detect},
         record::MetricKey,
         settings::Field,
         spec::Bisect,
     };
-    use serde_json::{Value, json};
 
     use super::*;
     use crate::{
@@ -677,7 +677,7 @@ mod tests {
         assert_eq!(build("one", false), (2, 0, one()), "its own records");
         assert_eq!(build("other", true), (2, 2, one()), "any build will do");
         assert_eq!(build("other", false), (0, 0, other()), "those of another build are made again");
-        let unknown = base::manifest::UNKNOWN;
+        let unknown = touchstone_base::manifest::UNKNOWN;
         assert_eq!(build(unknown, false), (0, 0, unknown.into()), "unknown and known differ");
         assert_eq!(build(unknown, false), (0, 0, unknown.into()), "so do unknown and unknown");
     }

@@ -1,9 +1,9 @@
 //! The parameters from which terms and walls are constructed.
 
-use base::settings::{Field, Value, Values};
-use maths::theory::time_step;
 use nalgebra::Vector2;
-use solver::Tait;
+use touchstone_base::settings::{Field, Value, Values};
+use touchstone_maths::theory::time_step;
+use touchstone_solver::Tait;
 
 /// The parameters of a material at a particle spacing. Parameters that a case does not use are 0.
 #[derive(Clone, Copy, Debug)]

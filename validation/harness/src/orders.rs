@@ -3,8 +3,8 @@
 
 use std::cmp::Ordering;
 
-use base::{functions::powf, gate::Gate};
-use report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
+use touchstone_base::{functions::powf, gate::Gate};
+use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 
 use crate::{
     columns::Columns,
@@ -134,8 +134,8 @@ impl<'a, T> Columns<'a, T> {
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use base::gate::{Bound, Evidence};
-    use report::{Block, Layer};
+    use touchstone_base::gate::{Bound, Evidence};
+    use touchstone_report::{Block, Layer};
 
     use super::*;
 

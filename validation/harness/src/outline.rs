@@ -1,7 +1,7 @@
 //! The scene of a run as data, for other codes: its particles, walls, medium and times before the first step.
 
-use base::record::Profile;
-use solver::{Domain, PlaneWall, Role};
+use touchstone_base::record::Profile;
+use touchstone_solver::{Domain, PlaneWall, Role};
 
 use crate::{medium::Medium, method::properties::Properties, relation::View};
 

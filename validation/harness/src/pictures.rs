@@ -1,8 +1,8 @@
 //! Pictures of particles, from what a record keeps of them.
 
-use base::record::{Profile, Record};
 use nalgebra::Vector2;
-use report::{Axis, Colour, Dots, Figure, Plot, Series};
+use touchstone_base::record::{Profile, Record};
+use touchstone_report::{Axis, Colour, Dots, Figure, Plot, Series};
 
 use crate::{
     declare::{Picture, PicturePanel},

@@ -1,6 +1,6 @@
 //! Turns the declarations of cases into a list of runs in which each run occurs once.
 
-use base::{
+use touchstone_base::{
     functions::log10,
     gate::Gate,
     spec::{RunSpec, Task},
@@ -94,14 +94,14 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use serde_json::{Value, json};
+    use touchstone_base::{
         gate::{Bound, Evidence, Gate},
         mutation::Disorder,
         record::Record,
         settings::Field,
         spec::{Measure, RunSpec},
     };
-    use serde_json::{Value, json};
 
     use super::*;
     use crate::case::{Recommended, RunError, Variant};

@@ -3,12 +3,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     absent::Absent,
     record::{Record, Status},
 };
-use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     Checkpoint, Divergence, Domain, InvalidState, Numbers, Outcome, Particle, Role, Stepper,
 };
 
@@ -66,7 +66,7 @@ pub struct Playback<'a> {
     /// A coordinate beyond this is of a particle that the code has lost \[m\].
     pub reach: f64,
     /// Densities and speeds beyond these are of a run that diverged, whatever its case looks at.
-    pub limits: solver::Limits,
+    pub limits: touchstone_solver::Limits,
     /// What stands in place of numbers that were not handed in.
     pub fill: Fill,
 }
@@ -231,7 +231,7 @@ pub(crate) fn put<X: Numbers>(
     let reference = std::mem::replace(&mut state.built_at, places);
     state.lag = 0.0;
     state.past.clear();
-    state.progress = solver::Progress { time, ..solver::Progress::default() };
+    state.progress = touchstone_solver::Progress { time, ..touchstone_solver::Progress::default() };
     if simulation.restore(&state).is_err() {
         // A total Lagrangian solid keeps the lists of its reference.
         state.built_at = reference;
@@ -291,12 +291,12 @@ fn without_extra<X: Numbers>(frame: &Frame, number: f64, state: &mut Checkpoint<
 
 #[cfg(test)]
 mod tests {
-    use base::{record::Profile, spec::RunSpec};
     use serde_json::json;
+    use touchstone_base::{record::Profile, spec::RunSpec};
 
     use super::*;
 
-    base::metrics! {
+    touchstone_base::metrics! {
         FIXED = "fixed" ["-"] "as it was made up";
         RESTS = "rests" ["-"] "as it was made up";
     }

@@ -2,14 +2,14 @@
 //! these the functions here simulate a run, estimate it, export it, show it to another observer, and measure
 //! particles of another code.
 
-use base::{
+use serde_json::Value;
+use touchstone_base::{
     bits::Bits,
     number,
     record::{Profile, Record, Status},
     spec::{Keep, Measure, RunSpec},
 };
-use serde_json::Value;
-use solver::{Flow, Numbers, Outcome, Particle, Role, Stepper};
+use touchstone_solver::{Flow, Numbers, Outcome, Particle, Role, Stepper};
 
 use crate::{
     context::Context,
@@ -333,7 +333,7 @@ impl<P: Problem> Posed for P {
 
 fn pressure(medium: &Medium) -> impl Fn(f64) -> f64 + use<> {
     let eos = medium.eos;
-    move |density| solver::EquationOfState::pressure(&eos, density)
+    move |density| touchstone_solver::EquationOfState::pressure(&eos, density)
 }
 
 /// The parts of the verbs.

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
 
-use base::breakdown::{Breakdown, Part};
-use solver::{Evolved, GROUP, Numbers, Phase, Stepper};
+use touchstone_base::breakdown::{Breakdown, Part};
+use touchstone_solver::{Evolved, GROUP, Numbers, Phase, Stepper};
 
 /// The pair sweep over the forces.
 pub const FORCES: &str = "force sweep";

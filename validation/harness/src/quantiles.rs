@@ -61,7 +61,7 @@ fn ranks(n: usize, share: f64) -> [usize; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::random::Random;
+    use touchstone_base::random::Random;
 
     /// Ranks of tables, such as those of Conover, Practical Nonparametric Statistics.
     #[test]
@@ -87,9 +87,9 @@ mod tests {
         let (mut hits, trials) = ([0; 3], 2000);
         for _ in 0..trials {
             let sample: Vec<f64> =
-                (0..20).map(|_| -base::functions::ln(1.0 - random.uniform())).collect();
+                (0..20).map(|_| -touchstone_base::functions::ln(1.0 - random.uniform())).collect();
             for (k, share) in [0.25, 0.5, 0.75].into_iter().enumerate() {
-                let exact = -base::functions::ln(1.0 - share);
+                let exact = -touchstone_base::functions::ln(1.0 - share);
                 let [low, high] = Quantile::of_sample(&sample, share).within.expect("20 numbers");
                 hits[k] += usize::from(low <= exact && exact <= high);
             }

@@ -1,12 +1,12 @@
 //! Exact symmetries of the equations: the same problem as another observer sees it, and back.
 
-use base::{
+use nalgebra::{Matrix2, Vector2};
+use touchstone_base::{
     functions::{cos, sin},
     random::Random,
     text::short,
 };
-use nalgebra::{Matrix2, Vector2};
-use solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
+use touchstone_solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
 
 use crate::medium::Medium;
 
@@ -271,7 +271,7 @@ fn direction(
 
 #[cfg(test)]
 mod tests {
-    use solver::Symmetric;
+    use touchstone_solver::Symmetric;
 
     use super::*;
 

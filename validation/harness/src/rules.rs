@@ -1,6 +1,6 @@
 //! The quantities that a case derives from its settings: time step, its limit, and sound speed.
 
-use base::{number, record::Record};
+use touchstone_base::{number, record::Record};
 
 use crate::limits::Limits;
 

@@ -5,8 +5,8 @@
 
 use std::time::{Duration, Instant};
 
-use base::{bits::Bits, lock, mutation::Constant, record::*};
-use solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper, Symmetric};
+use touchstone_base::{bits::Bits, lock, mutation::Constant, record::*};
+use touchstone_solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper, Symmetric};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -519,7 +519,7 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
     }
 
     /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
-    /// what is no part of a [`Checkpoint`](solver::Checkpoint), such as a force.
+    /// what is no part of a [`Checkpoint`](touchstone_solver::Checkpoint), such as a force.
     pub fn resumed(mut self, resumed: impl Fn(&S, &mut D) + 'a) -> Self {
         self.run.resumed = Box::new(resumed);
         self
@@ -546,15 +546,15 @@ impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
 
 #[cfg(test)]
 mod tests {
-    use base::functions::sin;
     use std::path::PathBuf;
     use std::sync::{
         Mutex,
         atomic::{AtomicBool, AtomicUsize, Ordering},
     };
+    use touchstone_base::functions::sin;
 
     use nalgebra::Vector2;
-    use solver::{
+    use touchstone_solver::{
         Compose, Continuity, CubicSpline, Domain, Leapfrog, Open, Particle, Pressure, Tait, lattice,
     };
 
@@ -762,7 +762,7 @@ mod tests {
         let write = |_: &[Vec<u8>]| {
             tries.fetch_add(1, Ordering::Relaxed);
             let reason = std::io::Error::other("the disk is full");
-            Err(base::files::FileError::File { path: "checkpoint".into(), reason })
+            Err(touchstone_base::files::FileError::File { path: "checkpoint".into(), reason })
         };
         let checkpoints = Checkpoints::new(Duration::from_secs(30), Vec::new(), &write);
         let clock = Ticking::default();
@@ -874,7 +874,7 @@ mod tests {
     }
 
     /// One run of 400 steps with two observers after each and one at each of two times.
-    fn profiled(profile: bool) -> (String, solver::Work, Cost, usize) {
+    fn profiled(profile: bool) -> (String, touchstone_solver::Work, Cost, usize) {
         let slow = Slow { each: Duration::from_micros(200), at: (0, || ()) };
         let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
         let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())

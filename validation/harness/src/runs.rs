@@ -3,13 +3,13 @@
 use std::cmp::Reverse;
 use std::sync::Mutex;
 
-pub use base::gate::Judged;
-use base::{
+pub use touchstone_base::gate::Judged;
+use touchstone_base::{
     gate::{Cause, Gate},
     record::{MetricName, Record, Status},
     spec::{RunKey, RunSpec, Task},
 };
-use report::Counts;
+use touchstone_report::Counts;
 
 /// How much to run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -183,7 +183,7 @@ impl Runs {
         let found = find(&self.by_key, &spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         if found.is_none() {
-            let mut unplanned = base::lock(&self.unplanned);
+            let mut unplanned = touchstone_base::lock(&self.unplanned);
             entry(&mut unplanned, spec.canonical(), || ());
         }
         found
@@ -217,15 +217,15 @@ impl Runs {
 
     /// Runs that were asked for and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
-        let unplanned = base::lock(&self.unplanned);
+        let unplanned = touchstone_base::lock(&self.unplanned);
         unplanned.iter().map(|(asked, ())| asked.clone()).collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use base::gate::{Bound, Evidence, Verdict};
-    use base::record::Metric;
+    use touchstone_base::gate::{Bound, Evidence, Verdict};
+    use touchstone_base::record::Metric;
 
     use super::*;
 

@@ -2,14 +2,14 @@
 //! of judged runs. Between the resolutions of two judged runs the bound is interpolated, logarithm over
 //! logarithm; beyond them it changes with the formal order.
 
-use base::{
+use serde_json::Value;
+use touchstone_base::{
     functions::{exp, ln},
     gate::{Bound, Evidence, Gate},
     random::Random,
     settings::Kind,
     spec::{RunSpec, Task},
 };
-use serde_json::Value;
 
 use crate::{
     case::{Case, Planned, Tier},

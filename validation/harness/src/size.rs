@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use report::{seconds, sig};
-use solver::{Numbers, Stepper};
+use touchstone_report::{seconds, sig};
+use touchstone_solver::{Numbers, Stepper};
 
 /// Processor time of a step for one particle \[s\], and what each of its neighbours adds to it. Over all
 /// compositions and both integrators (a predictor-corrector visits its pairs as often as a leapfrog), the

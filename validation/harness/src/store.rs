@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-use base::{
+use touchstone_base::{
     files::{self, FileError, OutputFolder},
     lock,
     record::{Record, Status},
@@ -220,10 +220,10 @@ fn read(path: PathBuf) -> Result<Record, FileError> {
 
 #[cfg(test)]
 mod tests {
-    use base::mutation::{Constant, Detect, Mutation};
-    use base::record::MetricKey;
     use serde_json::json;
     use std::time::SystemTime;
+    use touchstone_base::mutation::{Constant, Detect, Mutation};
+    use touchstone_base::record::MetricKey;
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! A study: a result from many runs, with what the report shows and the gates that judge it.
 
-use base::gate::Gate;
-use report::Block;
+use touchstone_base::gate::Gate;
+use touchstone_report::Block;
 
 use crate::runs::Judged;
 

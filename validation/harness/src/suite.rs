@@ -1,14 +1,14 @@
 //! Planning, making and judging of all runs, which `verify` and `report` share.
 
-use base::{
+use rayon::prelude::*;
+use touchstone_base::{
     absent::Absent,
     gate::{Bound, Evidence, Gate},
     record::{self, Record, Status},
     spec::RunSpec,
     submission::SESSION,
 };
-use rayon::prelude::*;
-use report::{Card, Counts};
+use touchstone_report::{Card, Counts};
 
 use crate::{
     case::{Case, Planned, Tier},

@@ -1,8 +1,8 @@
 //! A battery of exact symmetries: the particles that another observer has after a few steps are those that we
 //! have, but for round-off. It needs no reference, and judges our own runs and those of other codes alike.
 
-use base::{record::Profile, spec::RunSpec};
 use nalgebra::Vector2;
+use touchstone_base::{record::Profile, spec::RunSpec};
 
 use crate::{
     case::{Case, RunError},

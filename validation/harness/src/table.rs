@@ -3,8 +3,8 @@
 //! A case states its runs here once. Its plan, its ladders and its studies look them up by what they are for,
 //! so none of them states variants, resolutions or tiers again.
 
-use base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
-use report::ColourMap;
+use touchstone_base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
+use touchstone_report::ColourMap;
 
 use std::ops::RangeInclusive;
 

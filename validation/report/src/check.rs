@@ -123,7 +123,7 @@ mod tests {
         Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, Page, Plot, Section, Series,
         Table, VERDICTS,
     };
-    use base::gate::Verdict;
+    use touchstone_base::gate::Verdict;
 
     fn x() -> Axis {
         Axis::linear("x [m]")

@@ -2,8 +2,8 @@
 
 use super::number::counted;
 use super::table::{class, mark};
-use base::gate::Verdict;
 use maud::{Markup, html};
+use touchstone_base::gate::Verdict;
 
 /// How many gates ended how, and how many runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -48,7 +48,7 @@ impl Explorer {
 mod tests {
     use super::*;
     use crate::{Cell, Column};
-    use base::gate::Verdict;
+    use touchstone_base::gate::Verdict;
 
     #[test]
     fn a_gate_can_be_linked_and_names_its_reasons() {

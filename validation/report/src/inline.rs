@@ -2,8 +2,8 @@
 //! `[label](target)`. A backslash before a mark makes it plain text. Texts from outside, such as the name of
 //! another code, pass [`plain`] or [`code`] before they become part of such a text.
 
-use base::text::escaped;
 use maud::{Markup, PreEscaped};
+use touchstone_base::text::escaped;
 
 /// Characters that mean something.
 const MARKS: [char; 5] = ['*', '`', '[', ']', '\\'];

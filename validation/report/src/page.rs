@@ -9,11 +9,11 @@ use super::inline::inline;
 use super::pixels::drawing;
 use super::render;
 use super::table::{Table, class, first_sentence, mark};
-use base::{files::OutputFolder, text::base64};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 use std::io;
 use std::path::Path;
+use touchstone_base::{files::OutputFolder, text::base64};
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");

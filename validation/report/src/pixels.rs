@@ -1,10 +1,10 @@
 //! Figures in pixels inside the page: those that would be too large as SVG.
 
-use base::text::{base64, escaped};
 use color_quant::NeuQuant;
 use maud::{Markup, PreEscaped};
 use std::collections::BTreeMap;
 use std::io;
+use touchstone_base::text::{base64, escaped};
 
 use super::{figure::Figure, render};
 

@@ -9,9 +9,9 @@ use super::legend::{self, Entry};
 use super::plot::{Prepared, extent};
 use super::raster::Raster;
 use super::svg::{self, Svg};
-use base::files;
 use plotters::prelude::BitMapBackend;
 use std::{io, path::Path};
+use touchstone_base::files;
 
 /// Drawn pixels per pixel of a PNG.
 const SUPERSAMPLE: u32 = 3;

@@ -5,7 +5,7 @@ use super::canvas::{Point, Sheet};
 use super::colour::Colour;
 use super::figure::Dash;
 use super::font::{self, Align, Type};
-use base::text::escaped;
+use touchstone_base::text::escaped;
 
 /// Units of the drawing per CSS pixel: coordinates are quarters of a pixel.
 const FINE: f64 = 4.0;

@@ -2,8 +2,8 @@
 
 use super::inline::inline;
 use super::number;
-use base::gate::Verdict;
 use maud::{Markup, PreEscaped, html};
+use touchstone_base::gate::Verdict;
 
 /// A verdict as a class of the style sheet.
 pub(super) fn class(verdict: Verdict) -> &'static str {

@@ -3,13 +3,13 @@
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 
-use base::gate::Verdict;
-use report::{
+use std::io;
+use std::path::PathBuf;
+use touchstone_base::gate::Verdict;
+use touchstone_report::{
     Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Page, Plot,
     Section, Series, Table, VERDICTS, check_page,
 };
-use std::io;
-use std::path::PathBuf;
 
 #[test]
 fn a_page_of_made_up_data_is_whole() {

@@ -5,11 +5,11 @@
 //! are so short that lists are never rebuilt: what is measured is the right-hand side. Building lists
 //! is measured by [`Rebuilding`], an integrator that does nothing else.
 
-use base::functions::sin;
 use std::time::Instant;
+use touchstone_base::functions::sin;
 
 use nalgebra::Vector2;
-use solver::{integrator::Stepped, physics::State, *};
+use touchstone_solver::{integrator::Stepped, physics::State, *};
 
 /// The scheme whose right-hand side is measured.
 pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;

@@ -1,9 +1,9 @@
 //! Viscous flows: channels, cylinders, vortices, the cavity, and the manufactured flow.
 
-use harness::method::{FromMedium, Medium};
-use maths::exact::manufactured;
 use nalgebra::Vector2;
-use solver::{lane::Lane, particles::Common, terms::Pair, *};
+use touchstone_harness::method::{FromMedium, Medium};
+use touchstone_maths::exact::manufactured;
+use touchstone_solver::{lane::Lane, particles::Common, terms::Pair, *};
 
 use crate::{Method, methods, stepped};
 

@@ -1,8 +1,8 @@
 //! The flow over hills, whose body force is set while it runs.
 
-use harness::method::{self, Standard};
 use nalgebra::Vector2;
-use solver::*;
+use touchstone_harness::method::{self, Standard};
+use touchstone_solver::*;
 
 use crate::flow::{ConsistentDrift, Fluid, Mean, Modern, Stabilised};
 use crate::{Method, methods};

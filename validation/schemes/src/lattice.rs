@@ -1,8 +1,8 @@
 //! Waves, boxes at rest, extremes and operators on a lattice: no more than the equations.
 
-use harness::method::{FromMedium, Medium};
-use solver::terms::Pair;
-use solver::{lane::Lane, particles::Common, *};
+use touchstone_harness::method::{FromMedium, Medium};
+use touchstone_solver::terms::Pair;
+use touchstone_solver::{lane::Lane, particles::Common, *};
 
 use crate::{Method, methods, stepped};
 

@@ -13,7 +13,7 @@ pub mod solid;
 pub mod total;
 pub mod water;
 
-use harness::method::{Method, Standard};
+use touchstone_harness::method::{Method, Standard};
 
 /// The method of a scheme of which cases need no more than that it steps.
 fn stepped<S: Standard>() -> Method<S::Extra> {

@@ -7,8 +7,8 @@
 //! factor. Artificial stress in principal axes (ξ = 0.3, n = 4) lowers the largest s² to 0.18, and artificial
 //! viscosity makes what is left slow. So tearing is delayed and not removed, as without correction.
 
-use harness::method::{Boundary, FirstRow, Medium};
-use solver::{walls::Walls, *};
+use touchstone_harness::method::{Boundary, FirstRow, Medium};
+use touchstone_solver::{walls::Walls, *};
 
 use crate::{methods, stepped};
 
@@ -65,7 +65,7 @@ pub fn clamped() -> [Method; 2] {
     [clamped_seed(), clamped_bare()]
 }
 
-/// Walls of an elastic body: particles of [`solver::Role::Wall`] that stand still and continue the
+/// Walls of an elastic body: particles of [`touchstone_solver::Role::Wall`] that stand still and continue the
 /// body, so that it is held where they begin. Their density and their stress follow the motion of the
 /// free particles by (3) and (11), so that they pull as well as push.
 ///

@@ -3,13 +3,13 @@
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 
-use base::lock;
-use harness::method::{Medium, Parts, Properties, mutate};
-use lagrangian::*;
-use maths::theory::bending;
-use maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use nalgebra::Vector2;
-use solver::*;
+use touchstone_base::lock;
+use touchstone_harness::method::{Medium, Parts, Properties, mutate};
+use touchstone_lagrangian::*;
+use touchstone_maths::theory::bending;
+use touchstone_maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
+use touchstone_solver::*;
 
 use crate::methods;
 

@@ -1,9 +1,9 @@
 //! Water with a free surface. To a method a free surface is nothing: density follows (3), which knows no
 //! surface, and there is neither Morris viscosity nor a search for the surface.
 
-use harness::method::{self, Standard};
-use maths::metrics::budget::{Metered, WaterDrift, WaterForces};
-use solver::{terms::Hydrostatic, *};
+use touchstone_harness::method::{self, Standard};
+use touchstone_maths::metrics::budget::{Metered, WaterDrift, WaterForces};
+use touchstone_solver::{terms::Hydrostatic, *};
 
 use crate::{Method, methods};
 

@@ -3,11 +3,11 @@
 use std::ops::Range;
 use std::path::PathBuf;
 
-use base::{gate::Verdict, spec::Measure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use exchange::write::Format;
-use harness::{case::Tier, relation::Relation};
+use touchstone_base::{gate::Verdict, spec::Measure};
+use touchstone_exchange::write::Format;
+use touchstone_harness::{case::Tier, relation::Relation};
 
 /// Measures how wrong a particle method (SPH) is, what smaller errors cost, and when it breaks.
 #[derive(Debug, Parser)]

@@ -4,12 +4,12 @@
 
 use std::path::Path;
 
-use base::{
+use serde::{Deserialize, Serialize};
+use touchstone_base::{
     files::{self, FileError, OutputFolder},
     reference::sha256,
     spec::RunSpec,
 };
-use serde::{Deserialize, Serialize};
 
 use super::Failure;
 

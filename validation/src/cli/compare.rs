@@ -3,22 +3,22 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use base::{
+use serde::Serialize;
+use serde_json::json;
+use touchstone_base::{
     functions::ln,
     gate::{Bound, Verdict},
     record::{Record, Status},
     spec::RunSpec,
     submission::MACHINE,
 };
-use harness::{
+use touchstone_harness::{
     case::{Case, Planned, Tier},
     plan,
     runs::Judged,
     store::Store,
     suite,
 };
-use serde::Serialize;
-use serde_json::json;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
@@ -245,7 +245,7 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
     let mut text = String::new();
     if let (Some(old), Some(new)) = (&before.records, &after.records) {
         let shared = new.keys().filter(|name| old.contains_key(*name)).count();
-        let before = ::report::counted(old.len(), "run", "runs");
+        let before = touchstone_report::counted(old.len(), "run", "runs");
         text += &format!("{before} before, {} after, {shared} in both\n", new.len());
     }
     let [old, new] = [before, after].map(|side| side.submissions.len());
@@ -388,8 +388,8 @@ fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(Ki
 
 #[cfg(test)]
 mod tests {
-    use base::gate::{Evidence, Gate};
-    use base::record::MetricKey;
+    use touchstone_base::gate::{Evidence, Gate};
+    use touchstone_base::record::MetricKey;
 
     use super::*;
 

@@ -1,9 +1,9 @@
 //! Comparisons with references for other programs: a part of the verdicts.
 
-use harness::declare::Comparison;
-use harness::studies::validation::Found;
-use harness::suite::{CaseResults, Suite};
 use serde::{Deserialize, Serialize};
+use touchstone_harness::declare::Comparison;
+use touchstone_harness::studies::validation::Found;
+use touchstone_harness::suite::{CaseResults, Suite};
 
 /// A comparison with a reference. A number that is not known, or has no meaning, is missing.
 #[derive(Debug, Serialize, Deserialize)]

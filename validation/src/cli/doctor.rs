@@ -2,11 +2,11 @@
 
 use std::time::Instant;
 
-use base::files::OutputFolder;
-use base::manifest::Manifest;
-use base::reference::Reference;
-use harness::{case, context::Context};
-use schemes::bench;
+use touchstone_base::files::OutputFolder;
+use touchstone_base::manifest::Manifest;
+use touchstone_base::reference::Reference;
+use touchstone_harness::{case, context::Context};
+use touchstone_schemes::bench;
 
 use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
 
@@ -78,16 +78,16 @@ const BOUND: f64 = 0.02;
 fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
     let start = Instant::now();
     let set = ["rows=10".to_string(), "end=0.1".to_string()];
-    let case = cases::find("couette")?;
+    let case = touchstone_cases::find("couette")?;
     let spec = case::spec(case, "seed", &set)?;
     let context = Context { interrupt: Some(world.interrupt), ..Context::default() };
     let (first, second) = (case.run(&spec, &context)?, case.run(&spec, &context)?);
     let error = first.metric("l2@0.1").unwrap_or(f64::NAN);
-    let took = report::seconds(start.elapsed().as_secs_f64());
+    let took = touchstone_report::seconds(start.elapsed().as_secs_f64());
     let words = format!(
         "Couette flow of 10 rows, l2 error {} at most {} after {} steps, in {took}",
-        report::percent(error, 3),
-        report::percent(BOUND, 3),
+        touchstone_report::percent(error, 3),
+        touchstone_report::percent(BOUND, 3),
         first.cost.steps
     );
     match (error <= BOUND, first.state.is_some() && first.state == second.state) {
@@ -117,9 +117,11 @@ fn bench(world: &World) -> Result<(), Failure> {
             })?;
             if row.is_empty() {
                 let (particles, bytes) = (speed.particles.to_string(), speed.bytes.to_string());
-                row.extend([particles, report::sig(speed.neighbours, 3), bytes]);
+                row.extend([particles, touchstone_report::sig(speed.neighbours, 3), bytes]);
             }
-            row.extend([speed.rate, speed.list_rate].map(|rate| report::sig(rate / 1e6, 3)));
+            row.extend(
+                [speed.rate, speed.list_rate].map(|rate| touchstone_report::sig(rate / 1e6, 3)),
+            );
             world.go_on("the measurements are not complete; the same command begins again")?;
         }
         rows.push(row);

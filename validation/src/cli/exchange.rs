@@ -4,15 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use ::exchange::{
-    challenge,
-    flaw::{Flaw, lines},
-    problem::{Asked, CURVE, PROBLEM, Problem, Sealed},
-    read::{COLUMNS, Head, RESULTS, Renamed},
-    submission::{self, Entry, METHOD, SYSTEM},
-    write,
-};
-use base::{
+use serde_json::{Value, json};
+use touchstone_base::{
     files,
     files::OutputFolder,
     record::{Profile, Record, Status},
@@ -20,7 +13,15 @@ use base::{
     submission::OURS,
     text::short,
 };
-use harness::{
+use touchstone_exchange::{
+    challenge,
+    flaw::{Flaw, lines},
+    problem::{Asked, CURVE, PROBLEM, Problem, Sealed},
+    read::{COLUMNS, Head, RESULTS, Renamed},
+    submission::{self, Entry, METHOD, SYSTEM},
+    write,
+};
+use touchstone_harness::{
     case::{self, Case, Tier},
     context::Context,
     problem::Steps,
@@ -28,7 +29,6 @@ use harness::{
     store::Store,
     suite, symmetry,
 };
-use serde_json::{Value, json};
 
 use super::{Exit, Failure, Outcome, World, arguments, output, submitted};
 
@@ -37,7 +37,7 @@ pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failur
     if let (Some(seed), Some(method)) = (arguments.sealed, &arguments.method) {
         return sealed(of, seed, method, world);
     }
-    let case = cases::find_in(world.cases, &of.case)?;
+    let case = touchstone_cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
     if arguments.solve {
@@ -149,7 +149,7 @@ fn solve(
     let add = |results: Profile, (name, unit, _): &Head| results.with(name, unit, Vec::new());
     let results = Mutex::new(written.fold(Profile::default(), add));
     let tell = |time: f64, particles: Profile| {
-        let mut results = base::lock(&results);
+        let mut results = touchstone_base::lock(&results);
         if results.column("t").last() == Some(&time) {
             return; // stated twice
         }
@@ -208,7 +208,7 @@ pub fn sealed(
     method: &Path,
     world: &World,
 ) -> Result<(), Failure> {
-    let case = cases::find_in(world.cases, &of.case)?;
+    let case = touchstone_cases::find_in(world.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     case.settings(variant, &[])?;
     let (method, text) = submission::method(method).map_err(|flaws| {
@@ -232,7 +232,7 @@ pub fn sealed(
 }
 
 pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
-    let case = cases::find_in(world.cases, &arguments.case)?;
+    let case = touchstone_cases::find_in(world.cases, &arguments.case)?;
     world.check_references(&[case])?;
     let mut entry = read(&arguments.folder, &arguments.map)?;
     let problem = problem(case, &entry, arguments)?;
@@ -345,7 +345,7 @@ pub fn relate(
     allow_long: bool,
     world: &World,
 ) -> Outcome {
-    let case = cases::find_in(world.cases, case)?;
+    let case = touchstone_cases::find_in(world.cases, case)?;
     let observed = |folder: &Path| -> Result<_, Failure> {
         let entry = read(folder, map)?;
         let usage = |what: &str| Failure::usage(format!("{}: {what}", folder.display()));

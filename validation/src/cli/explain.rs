@@ -3,17 +3,16 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use ::report;
-use base::gate::{Evidence, Gate, Verdict};
-use base::record;
-use base::settings::by_similarity;
-use base::text::short;
-use harness::case::{self, Case, Tier};
-use harness::make::Stored;
-use harness::plan;
-use harness::runs::{self, Judged};
-use harness::store::Store;
-use harness::suite::{self, JudgedOf, Of};
+use touchstone_base::gate::{Evidence, Gate, Verdict};
+use touchstone_base::record;
+use touchstone_base::settings::by_similarity;
+use touchstone_base::text::short;
+use touchstone_harness::case::{self, Case, Tier};
+use touchstone_harness::make::Stored;
+use touchstone_harness::plan;
+use touchstone_harness::runs::{self, Judged};
+use touchstone_harness::store::Store;
+use touchstone_harness::suite::{self, JudgedOf, Of};
 
 use super::{
     Failure, World, arguments,
@@ -160,7 +159,8 @@ pub fn listed(gates: Vec<&Judged>, verdict: Verdict) -> String {
 
 fn table(gates: &[&Judged]) -> String {
     let row = |judged: &&Judged| {
-        let value = judged.judgement.value.map_or("-".into(), |value| report::sig(value, 5));
+        let value =
+            judged.judgement.value.map_or("-".into(), |value| touchstone_report::sig(value, 5));
         vec![judged.gate.id.clone(), value, judged.gate.bounds()]
     };
     output::table(&["gate", "value", "bound"], gates.iter().map(row))
@@ -227,8 +227,11 @@ fn evidence(gate: &Gate) -> String {
         Evidence::Regression => "regression: what this program computed before",
     };
     let case = gate.id.split('.').next().unwrap_or_default();
-    let grades =
-        if gate.evidence == Evidence::Reference { cases::graded(case) } else { Vec::new() };
+    let grades = if gate.evidence == Evidence::Reference {
+        touchstone_cases::graded(case)
+    } else {
+        Vec::new()
+    };
     let grades = grades.into_iter().map(|(name, grade)| format!("; {name}: {grade}"));
     words.to_string() + &grades.collect::<String>()
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, sleep};
 use std::time::Duration;
 
-use base::files;
+use touchstone_base::files;
 
 use super::{Exit, output};
 

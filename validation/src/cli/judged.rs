@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use base::files::{self, write_atomically};
-use base::gate::{Judgement, Verdict};
-use base::record;
-use base::submission::Submission;
-use base::text::escaped;
-use harness::case::{self, Case, Tier};
-use harness::notes::Notes;
-use harness::runs::{Judged, JudgedRun};
-use harness::study::Study;
-use harness::suite::{CaseResults, Suite};
-use report::Counts;
 use serde::{Deserialize, Serialize};
+use touchstone_base::files::{self, write_atomically};
+use touchstone_base::gate::{Judgement, Verdict};
+use touchstone_base::record;
+use touchstone_base::submission::Submission;
+use touchstone_base::text::escaped;
+use touchstone_harness::case::{self, Case, Tier};
+use touchstone_harness::notes::Notes;
+use touchstone_harness::runs::{Judged, JudgedRun};
+use touchstone_harness::study::Study;
+use touchstone_harness::suite::{CaseResults, Suite};
+use touchstone_report::Counts;
 
 use super::comparisons::{self, ComparisonVerdict};
 use super::{Failure, output};
@@ -32,7 +32,8 @@ fn table_of<'a>(mut judged: Vec<&'a Judged>) -> String {
         Some(reason) => format!("known limitation [{}]", notes.number(reason)),
         None => judged.words(),
     };
-    let number = |number: Option<f64>| number.map_or("-".into(), |number| report::sig(number, 4));
+    let number =
+        |number: Option<f64>| number.map_or("-".into(), |number| touchstone_report::sig(number, 4));
     let row = |judged: &'a Judged| {
         let Judged { gate, judgement, .. } = judged;
         vec![
@@ -161,7 +162,7 @@ pub struct RunVerdicts {
     /// how it ended
     pub status: record::Status,
     /// wall time in seconds
-    #[serde(with = "base::number")]
+    #[serde(with = "touchstone_base::number")]
     pub wall_s: f64,
     /// the judgements
     pub judged: Vec<Judged>,
@@ -247,7 +248,7 @@ pub fn write_junit(suite: &Suite, path: Option<&Path>) -> Result<(), Failure> {
 
 /// The number that was judged, for people.
 pub fn value(judgement: &Judgement) -> String {
-    judgement.value.map_or("not measured".into(), |value| report::sig(value, 5))
+    judgement.value.map_or("not measured".into(), |value| touchstone_report::sig(value, 5))
 }
 
 /// Runs of other codes in the store as a table, those with failing gates first; of many the first.

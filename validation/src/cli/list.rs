@@ -1,8 +1,8 @@
 //! `list`: cases, variants and settings.
 
-use base::settings::Field;
-use harness::case::{Case, Recommended, Variant};
 use serde_json::{Value, json};
+use touchstone_base::settings::Field;
+use touchstone_harness::case::{Case, Recommended, Variant};
 
 use super::{Failure, World, arguments, output};
 
@@ -11,7 +11,7 @@ pub fn list(arguments: &arguments::List, world: &World) -> Result<(), Failure> {
         let all = || world.cases.iter().map(|case| json(*case)).collect();
         return output::answer(arguments.json, all, || overview(world));
     };
-    let case = cases::find_in(world.cases, name)?;
+    let case = touchstone_cases::find_in(world.cases, name)?;
     output::answer(arguments.json, || json(case), || details(case))
 }
 

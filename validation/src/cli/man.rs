@@ -1,8 +1,8 @@
 //! `man`: pages for the manual.
 
-use base::files::OutputFolder;
 use clap::CommandFactory;
 use clap_mangen::Man;
+use touchstone_base::files::OutputFolder;
 
 use super::arguments::{self, Arguments};
 use super::{Failure, output};

@@ -41,15 +41,15 @@ use std::error::Error as _;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use base::files::FileError;
-use base::manifest::{Known, Source, UNKNOWN, tell_source};
-use base::reference::{Reference, ReferenceError};
-use base::spec::RunKey;
 use clap::{CommandFactory, Parser};
-use harness::case::{Case, RunError, Tier};
-use harness::make::{self, Done, Job, Made, Making, Stored};
-use harness::store::Store;
-use harness::suite::Plans;
+use touchstone_base::files::FileError;
+use touchstone_base::manifest::{Known, Source, UNKNOWN, tell_source};
+use touchstone_base::reference::{Reference, ReferenceError};
+use touchstone_base::spec::RunKey;
+use touchstone_harness::case::{Case, RunError, Tier};
+use touchstone_harness::make::{self, Done, Job, Made, Making, Stored};
+use touchstone_harness::store::Store;
+use touchstone_harness::suite::Plans;
 
 use arguments::{Arguments, Command};
 
@@ -131,7 +131,7 @@ impl World {
         }
         let mut chosen: Vec<&'static dyn Case> = Vec::new();
         for name in names {
-            let case = cases::find_in(self.cases, name)?;
+            let case = touchstone_cases::find_in(self.cases, name)?;
             if !chosen.iter().any(|known| known.name() == case.name()) {
                 chosen.push(case);
             }
@@ -248,7 +248,7 @@ const SOURCE: Source = Source {
 
 /// The digest of the sources of the family that a case belongs to.
 fn sources(case: &str) -> String {
-    let family = cases::find(case).map_or("", |case| case.family());
+    let family = touchstone_cases::find(case).map_or("", |case| case.family());
     let digests = env!("TOUCHSTONE_SOURCES").split(' ').filter_map(|of| of.split_once('='));
     let digest = digests.into_iter().find(|(name, _)| *name == family);
     digest.map_or(UNKNOWN, |(_, digest)| digest).into()
@@ -256,7 +256,7 @@ fn sources(case: &str) -> String {
 
 /// The embedded references of these cases, and those of none, that are not as they were described.
 fn references(cases: &[&str]) -> Vec<WrongReference> {
-    let names = Reference::names().into_iter().map(|name| (name, cases::users(name)));
+    let names = Reference::names().into_iter().map(|name| (name, touchstone_cases::users(name)));
     // To read all takes as long as half of a small run.
     let asked = names
         .filter(|(_, users)| users.is_empty() || users.iter().any(|user| cases.contains(user)));
@@ -278,7 +278,8 @@ pub fn main() -> ExitCode {
             return code(conclude(|| printed.map(|()| Exit::Pass)));
         }
     };
-    let world = World { cases: cases::CASES, sources, references, interrupt: interrupt::flag() };
+    let world =
+        World { cases: touchstone_cases::CASES, sources, references, interrupt: interrupt::flag() };
     let threads = default_threads();
     if threads > 0 {
         output::say(&format!(

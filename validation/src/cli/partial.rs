@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use base::spec::RunKey;
-use harness::{
+use touchstone_base::spec::RunKey;
+use touchstone_harness::{
     case::{self, Tier},
     make::{self, Job, Made, Stored},
     runs,
@@ -12,7 +12,7 @@ use harness::{
     study::Study,
     suite::{self, Plans, Suite},
 };
-use report::counted;
+use touchstone_report::counted;
 
 /// A run without a record, and why it has none.
 type Lacking = (Job, Pending);

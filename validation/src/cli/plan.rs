@@ -6,20 +6,20 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-use ::report::{counted, seconds, sig};
-use base::{
+use rayon::prelude::*;
+use touchstone_base::{
     files,
     record::{Profile, Status},
     spec::RunSpec,
 };
-use harness::{
+use touchstone_harness::{
     case::{self, Case, Planned, Tier},
     make::{Job, Made, Making, size, time},
     plan,
     size::{self, Size},
     store::Store,
 };
-use rayon::prelude::*;
+use touchstone_report::{counted, seconds, sig};
 
 use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
 
@@ -135,7 +135,7 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, world: &World
     }
     let lines = planned.len() + refused.len();
     let job = |planned: Planned| -> Result<Job, Failure> {
-        Ok(Job { case: cases::find_in(world.cases, &planned.spec.case)?, planned })
+        Ok(Job { case: touchstone_cases::find_in(world.cases, &planned.spec.case)?, planned })
     };
     let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
     world.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
@@ -239,6 +239,7 @@ fn spec(line: &str, world: &World) -> Result<RunSpec, String> {
         let (what, column) = words.split_once(" at line 1 column ").unwrap_or((&words, "1"));
         format!("{what} (column {column})")
     })?;
-    let case = cases::find_in(world.cases, &spec.case).map_err(|error| error.to_string())?;
+    let case =
+        touchstone_cases::find_in(world.cases, &spec.case).map_err(|error| error.to_string())?;
     case::resolved(case, spec).map_err(|error| error.to_string())
 }

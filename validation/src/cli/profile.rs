@@ -1,10 +1,10 @@
 //! Where the time of a run went, for people.
 
-use ::report::{percent, seconds, sig};
-use base::{
+use touchstone_base::{
     breakdown::{Breakdown, Part},
     record::Cost,
 };
+use touchstone_report::{percent, seconds, sig};
 
 use super::output;
 

@@ -4,8 +4,8 @@ use std::io::{self, IsTerminal};
 use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
-use harness::{context::Progress, make::Done};
 use indicatif::{ProgressBar, ProgressStyle};
+use touchstone_harness::{context::Progress, make::Done};
 
 use super::output;
 
@@ -53,7 +53,7 @@ impl Bar {
         let done = (time / end).clamp(0.0, 1.0);
         let rate = particle_steps as f64 / elapsed / 1e6;
         let left = left(elapsed, *self.first.get_or_init(|| done), done);
-        let left = left.map(|seconds| format!(", {} left", report::seconds(seconds)));
+        let left = left.map(|seconds| format!(", {} left", touchstone_report::seconds(seconds)));
         let left = left.unwrap_or_default();
         self.bar.set_position((done * PARTS as f64) as u64);
         self.bar.set_message(format!(
@@ -64,12 +64,12 @@ impl Bar {
     /// Shows how far the runs of a plan are.
     pub fn show_runs(&self, done: Done) {
         let Done { runs, all, share, left, last } = done;
-        let mut words = format!("{runs} of {}", report::counted(all, "run", "runs"));
+        let mut words = format!("{runs} of {}", touchstone_report::counted(all, "run", "runs"));
         if runs > 0 {
             words += &format!(", last {last}");
         }
         if let Some(left) = left {
-            words += &format!(", {} left", report::seconds(left));
+            words += &format!(", {} left", touchstone_report::seconds(left));
         }
         self.bar.set_position((share * PARTS as f64) as u64);
         self.bar.set_message(words);
@@ -87,7 +87,7 @@ impl Bar {
 
     fn is_time(&self) -> bool {
         let now = Instant::now();
-        let mut next = base::lock(&self.next);
+        let mut next = touchstone_base::lock(&self.next);
         let is_time = !self.bar.is_hidden() && now >= *next;
         if is_time {
             *next = now + EVERY;

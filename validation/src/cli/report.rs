@@ -4,15 +4,15 @@
 use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime};
 
-use ::report::{self, check_page};
-use base::files::{FileError, OutputFolder};
-use cases::{page, peers};
-use harness::{
+use touchstone_base::files::{FileError, OutputFolder};
+use touchstone_cases::{page, peers};
+use touchstone_harness::{
     case::Tier,
     make::Made,
     store::Store,
     suite::{Plans, Suite},
 };
+use touchstone_report::{self, check_page};
 
 use super::{
     Failure, Outcome, World, arguments,
@@ -68,7 +68,7 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         output::print(&summary(&suite))?;
         return Err(Failure::usage(reasons.join("\n")));
     }
-    let took = report::seconds(start.elapsed().as_secs_f64());
+    let took = touchstone_report::seconds(start.elapsed().as_secs_f64());
     let (headline, others) = (judged::headline(&suite), judged::submissions(&suite));
     output::print(&format!("{listed}{others}{headline}\n{}\n", path.display()))?;
     output::say(&format!("the page shows {} in {took}", verify::runs(&suite)));
@@ -103,7 +103,7 @@ fn early(
     folder: &OutputFolder,
     last: &Mutex<Option<(Instant, Duration)>>,
 ) -> Option<String> {
-    let mut last = base::lock(last);
+    let mut last = touchstone_base::lock(last);
     if last.is_some_and(|(at, took)| at.elapsed() < SHARE_OF_EARLY * took) {
         return None;
     }

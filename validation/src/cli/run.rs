@@ -8,14 +8,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, Once, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use base::{
+use humantime::format_rfc3339_seconds;
+use serde_json::Value;
+use touchstone_base::{
     absent::Absent,
     files::{self, FileError, OutputFolder},
     gate::Gate,
     lock,
     record::{Profile, Record, Status},
 };
-use harness::{
+use touchstone_harness::{
     case::{self, Case, RunError},
     checkpoint::Checkpoints,
     context::{Context, Progress},
@@ -24,8 +26,6 @@ use harness::{
     size::Size,
     store::MOST_BYTES,
 };
-use humantime::format_rfc3339_seconds;
-use serde_json::Value;
 
 use super::{
     Exit, Failure, Outcome, World, arguments,
@@ -42,14 +42,15 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     }
     if let Some(path) = &arguments.resume {
         let (asked, earlier) = checkpoint::read(path, world.sources)?;
-        let case = cases::find_in(world.cases, &asked.spec.case)?;
+        let case = touchstone_cases::find_in(world.cases, &asked.spec.case)?;
         world.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
         let asked = Asked { every: arguments.checkpoint_every.or(asked.every), ..asked };
         output::GOES_ON.store(true, Ordering::Relaxed);
         return carry_out(case, asked, earlier, Some(folder), arguments, world);
     }
-    let case = cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
+    let case =
+        touchstone_cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
     world.check_references(&[case])?;
     let variant = arguments.variant.as_deref().unwrap_or(case.recommended().variant);
     let rows = arguments.rows.iter().map(|rows| format!("rows={rows}"));
@@ -378,7 +379,7 @@ fn velocities(record: &Record) -> Option<Profile> {
 fn summary(record: &Record) -> String {
     let Record { run, cost, .. } = record;
     let value = |value: &Value| match value.as_f64() {
-        Some(number) if !value.is_u64() => report::sig(number, 4),
+        Some(number) if !value.is_u64() => touchstone_report::sig(number, 4),
         _ => value.as_str().map_or_else(|| value.to_string(), String::from),
     };
     let numerics: Vec<String> =
@@ -390,7 +391,7 @@ fn summary(record: &Record) -> String {
         "    {} particles, {} steps in {}, {rate:.2} million particle right-hand sides a second\n\n",
         cost.particles,
         cost.steps,
-        report::seconds(cost.wall_s)
+        touchstone_report::seconds(cost.wall_s)
     );
     let profile = cost.breakdown.as_ref().map(|breakdown| profile::tables(cost, breakdown));
     text + &metrics(record) + &absent(record) + &profile.unwrap_or_default()
@@ -417,7 +418,7 @@ fn metrics(record: &Record) -> String {
             times.push(time);
             of_times.entry(name).or_insert(metric);
         } else {
-            let value = report::sig(metric.value, 4);
+            let value = touchstone_report::sig(metric.value, 4);
             single.push(vec![name.clone(), value, metric.unit.clone(), metric.formula.clone()]);
         }
     }
@@ -426,7 +427,7 @@ fn metrics(record: &Record) -> String {
     times.dedup();
     let value = |name: &str, time: &str| {
         let metric = record.metrics.get(&format!("{name}@{time}"));
-        metric.map(|metric| report::sig(metric.value, 4)).unwrap_or_default()
+        metric.map(|metric| touchstone_report::sig(metric.value, 4)).unwrap_or_default()
     };
     // Times of channels are νt/L²; those of other cases are in the units that their formulas name.
     let at = if velocities(record).is_some() { "at νt/L²" } else { "at" };
@@ -449,7 +450,7 @@ fn metrics(record: &Record) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::record::MetricKey;
+    use touchstone_base::record::MetricKey;
 
     /// The phases of colliding rings were listed five times each.
     #[test]

@@ -1,6 +1,7 @@
 //! `stability`: the largest stable time steps that cases declare, measured and by theory.
 
-use harness::{
+use serde_json::{Value, json};
+use touchstone_harness::{
     case::Case,
     declare::StepLimit,
     limits::{ADVISED_SHARE, Mechanism},
@@ -8,10 +9,9 @@ use harness::{
     runs::{JudgedRun, Planned, Runs},
     studies::limit_of_theory,
 };
-use report::Cell;
-use serde_json::{Value, json};
+use touchstone_report::Cell;
 
-use cases::stiffness::{self, Row};
+use touchstone_cases::stiffness::{self, Row};
 
 use super::{Exit, Failure, Outcome, World, arguments, output, trouble};
 
@@ -105,15 +105,15 @@ fn table(declared: &[Declared], runs: &Runs) -> String {
     let row = |Declared { case, limit }: &Declared| {
         let ratio = limit_of_theory(limit, runs);
         let number = |value: Option<f64>, digits| {
-            value.map_or("none found".to_string(), |value| report::sig(value, digits))
+            value.map_or("none found".to_string(), |value| touchstone_report::sig(value, digits))
         };
         vec![
             format!("{} {}", case.name(), limit.spec.variant),
             limit.scene.clone(),
-            report::sig(limit.theory, 4),
+            touchstone_report::sig(limit.theory, 4),
             number(ratio.map(|ratio| ratio * limit.theory), 4),
             number(ratio, 3),
-            report::sig(limit.default_at / limit.theory_at, 3),
+            touchstone_report::sig(limit.default_at / limit.theory_at, 3),
         ]
     };
     let heads =

@@ -1,15 +1,15 @@
 //! What `submit` says of a submission: its gates, why others have no number or do not apply, and a few lines
 //! that are of use to a submitter.
 
-use base::{gate::Gate, record::Status, spec::RunSpec};
-use harness::{
+use touchstone_base::{gate::Gate, record::Status, spec::RunSpec};
+use touchstone_harness::{
     case::{self, Case, Tier},
     declare::Declaration,
     plan,
     runs::{Judged, JudgedRun},
     studies::cost_in_words,
 };
-use report::Counts;
+use touchstone_report::Counts;
 
 use super::{
     Exit, judged, output,

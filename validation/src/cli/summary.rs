@@ -2,19 +2,19 @@
 //! how `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command
 //! to go on with.
 
-use base::{
+use touchstone_base::{
     gate::Verdict,
     record::{self, Record, Status},
     spec::RunSpec,
 };
-use harness::{
+use touchstone_harness::{
     case::{self, Case, Tier},
     declare::{Breaks, Declaration},
     runs::{Judged, counts},
     studies::{cost_in_words, headline},
     suite::{CaseResults, JudgedOf, Suite},
 };
-use report::Counts;
+use touchstone_report::Counts;
 
 use super::{explain, judged, output};
 
@@ -68,14 +68,14 @@ fn row(results: &CaseResults) -> Vec<String> {
         Some((card, record)) => [
             headline(card, record).unwrap_or_else(|_| "none".into()),
             record.run.variant.clone(),
-            report::seconds(record.cost.alone_median().unwrap_or(record.cost.cpu_s)),
+            touchstone_report::seconds(record.cost.alone_median().unwrap_or(record.cost.cpu_s)),
         ],
         None => Default::default(),
     });
     let worst = worst(results.judged().map(|of| of.judged));
     row.push(worst.map_or(String::new(), |judged| judged.gate.id.clone()));
     let margin = worst.and_then(|judged| judged.judgement.margin);
-    row.push(margin.map_or(String::new(), |margin| report::percent(margin, 2)));
+    row.push(margin.map_or(String::new(), |margin| touchstone_report::percent(margin, 2)));
     row
 }
 
@@ -100,7 +100,7 @@ fn failures(suite: &Suite) -> String {
     }
     let more: Vec<&str> = all.iter().skip(IN_FULL).map(|of| &*of.judged.gate.id).collect();
     if !more.is_empty() {
-        let words = report::counted(more.len(), "more gate fails", "more gates fail");
+        let words = touchstone_report::counted(more.len(), "more gate fails", "more gates fail");
         let words = format!("{words}: {}", more.join(", "));
         text += &format!("\n{}", output::wrap(&words, ""));
     }
@@ -129,7 +129,12 @@ pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Jud
 
 /// A number of a record in words.
 pub fn in_words(name: &str, metric: &record::Metric) -> String {
-    format!("{name} = {} [{}], {}", report::sig(metric.value, 4), metric.unit, metric.formula)
+    format!(
+        "{name} = {} [{}], {}",
+        touchstone_report::sig(metric.value, 4),
+        metric.unit,
+        metric.formula
+    )
 }
 
 /// The error of the case, which is that of its card or of its first ladder, in words; and the name of its
@@ -163,7 +168,7 @@ fn broken(declared: &Declaration, record: &Record) -> Option<String> {
     let breaks = &declared.card.as_ref()?.breaks;
     let Breaks { setting, words: [before, after], has_broken, sign } = breaks;
     has_broken(record).filter(|broken| *broken)?;
-    let value = report::exact(record.run.settings[*setting].as_f64()?);
+    let value = touchstone_report::exact(record.run.settings[*setting].as_f64()?);
     Some(format!("at {before}{value}{after}: {sign}"))
 }
 
@@ -176,7 +181,8 @@ pub fn bound(verdicts: &[Judged], metric: &str) -> String {
             worst(verdicts.iter()).map(|of| format!("; nearest to its bound is {}", of.gate.id));
         return format!("{none}{}", other.unwrap_or_default());
     };
-    let margin = judgement.margin.map(|m| format!(", {} of it left", report::percent(m, 2)));
+    let margin =
+        judgement.margin.map(|m| format!(", {} of it left", touchstone_report::percent(m, 2)));
     let (verdict, margin) = (judgement.verdict, margin.unwrap_or_default());
     format!("{}: {verdict}{margin} ({})", gate.bounds(), gate.id)
 }

@@ -1,13 +1,13 @@
 //! `symmetry`: what observers of one problem have of our own runs.
 
-use ::report::sig;
-use base::spec::RunSpec;
-use harness::{
+use rayon::prelude::*;
+use touchstone_base::spec::RunSpec;
+use touchstone_harness::{
     case::{self, Case, RunError},
     relation::Relation,
     symmetry::{self, Difference},
 };
-use rayon::prelude::*;
+use touchstone_report::sig;
 
 use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
 

@@ -6,8 +6,9 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ::report::check_page;
-use base::{
+use clap::Parser;
+use serde_json::{Value, json};
+use touchstone_base::{
     files::OutputFolder,
     gate::{Bound, Cause, Evidence, Gate, Verdict},
     record::{MetricKey, Record, Status},
@@ -15,9 +16,8 @@ use base::{
     settings::Field,
     spec::RunSpec,
 };
-use cases::page;
-use clap::Parser;
-use harness::{
+use touchstone_cases::page;
+use touchstone_harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
     declare::{Card, Declaration},
@@ -27,7 +27,7 @@ use harness::{
     study::Study,
     suite::{self, Suite},
 };
-use serde_json::{Value, json};
+use touchstone_report::check_page;
 
 use super::{
     Exit, World, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,
@@ -530,7 +530,7 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
         assert_eq!(build(sources, line), of_its_own, "{line}");
         assert_eq!(build(other, line), of_another, "{line}");
     }
-    let unknown: fn(&str) -> String = |_| base::manifest::UNKNOWN.into();
+    let unknown: fn(&str) -> String = |_| touchstone_base::manifest::UNKNOWN.into();
     assert_eq!(build(unknown, "verify --store OUT"), Exit::Pass);
     assert_eq!(build(unknown, "judge --store OUT"), Exit::GateFailed, "of whom are they?");
 }
@@ -648,7 +648,7 @@ fn verify_is_a_line_a_case_then_each_failure_in_full() {
 
 #[test]
 fn a_run_ends_with_error_bound_cost_and_the_next_command() {
-    let couette = cases::find("couette").expect("a case");
+    let couette = touchstone_cases::find("couette").expect("a case");
     let spec = |set: &str| case::spec(couette, "plain", &[set.to_string()]).expect("settings");
     let mut record = Record::new("couette", "plain", spec("rows=20").settings, 1);
     let of = |metric: &str, most: f64| {
@@ -688,7 +688,7 @@ fn a_run_states_the_error_by_its_own_settings() {
         ("dam_break", &["n=10"], &["Martin", "a/dx = 10", "0.012\u{a0}a"], &["Lobovsky"]),
     ];
     for (name, set, says, not) in runs {
-        let case = cases::find(name).expect("a case");
+        let case = touchstone_cases::find(name).expect("a case");
         let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
         let spec = case::spec(case, case.recommended().variant, &set).expect("settings");
         let card = case.declaration(Tier::Quick).card.expect("a card");
@@ -709,7 +709,7 @@ fn a_run_states_the_error_by_its_own_settings() {
 /// the method: both distances are told, with the uncertainty of the experiment.
 #[test]
 fn a_dam_break_states_both_distances_from_its_experiment() {
-    let case = cases::find("dam_break").expect("a case");
+    let case = touchstone_cases::find("dam_break").expect("a case");
     let spec = case::spec(case, "modern", &[]).expect("settings");
     let mut record = Record::new("dam_break", "modern", spec.settings.clone(), 1);
     let put = [("front_away@2", -0.0576), ("front_rms", 0.2815), ("front_rms_shifted", 0.037)];
@@ -730,7 +730,7 @@ fn a_dam_break_states_both_distances_from_its_experiment() {
 #[test]
 fn the_picture_of_a_card_is_of_the_run_that_it_states() {
     for (case, tier) in
-        cases::CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)])
+        touchstone_cases::CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)])
     {
         let declared = case.declaration(tier);
         let Some(card) = &declared.card else { continue };
@@ -742,7 +742,7 @@ fn the_picture_of_a_card_is_of_the_run_that_it_states() {
 #[test]
 fn the_next_run_has_half_the_spacing() {
     for (name, finer) in [("rubber_rings", "spacing=0.05"), ("dam_break", "n=40")] {
-        let case = cases::find(name).expect("a case");
+        let case = touchstone_cases::find(name).expect("a case");
         let declared = case.declaration(Tier::Quick);
         let spec = case::spec(case, case.recommended().variant, &[]).expect("settings");
         let words = super::summary::finer(case, &declared, &spec);
@@ -753,7 +753,7 @@ fn the_next_run_has_half_the_spacing() {
 /// `run` of plate, disk, bar and cantilever was of the paper's variant, which is wrong by 7 to 35 %.
 #[test]
 fn a_plain_run_is_of_the_recommended_variant_and_list_says_why() {
-    for case in cases::CASES {
+    for case in touchstone_cases::CASES {
         let (name, recommended) = (case.name(), case.recommended());
         for variant in [Some(recommended.variant), recommended.papers].into_iter().flatten() {
             let is_one = case.variants().iter().any(|one| one.name == variant);
@@ -771,7 +771,7 @@ fn a_plain_run_is_of_the_recommended_variant_and_list_says_why() {
             [Some(recommended.variant), recommended.papers].into_iter().flatten().collect();
         assert!(shown.is_empty() || shown == named, "{name}: {shown:?} on the card, not {named:?}");
     }
-    let bar = cases::find("elastic_bar").expect("a case");
+    let bar = touchstone_cases::find("elastic_bar").expect("a case");
     let spec = case::spec(bar, bar.recommended().variant, &[]).expect("settings");
     let record = bar.run(&spec, &Context::default()).expect("a run");
     let error = record.metrics["travel_error"].value;
@@ -780,7 +780,7 @@ fn a_plain_run_is_of_the_recommended_variant_and_list_says_why() {
 
 #[test]
 fn the_problem_of_a_case_has_at_most_ten_words() {
-    for case in cases::CASES {
+    for case in touchstone_cases::CASES {
         let words = case.problem().split_whitespace().count();
         assert!((2..=10).contains(&words), "{}: {}", case.name(), case.problem());
     }

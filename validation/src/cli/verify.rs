@@ -1,18 +1,18 @@
 //! `verify`: plans of cases, judged.
 
-use base::gate::Verdict;
 use std::path::Path;
 use std::time::Instant;
+use touchstone_base::gate::Verdict;
 
-use harness::{
+use touchstone_harness::{
     case::{Case, Tier},
     make::{self, Making, Stored},
     store::Store,
     suite::{self, JudgedOf, Plans, Suite},
 };
 
-use cases::peers;
-use report::counted;
+use touchstone_cases::peers;
+use touchstone_report::counted;
 
 use super::{
     Early, Exit, Failure, Outcome, World, arguments, judged, output, partial::partial,
@@ -55,7 +55,7 @@ fn show(
         };
         output::print(&(all + &summary(&suite)))
     };
-    let took = report::seconds(start.elapsed().as_secs_f64());
+    let took = touchstone_report::seconds(start.elapsed().as_secs_f64());
     output::say(&format!("{} in {took}", runs(&suite)));
     exported?;
     printed?;

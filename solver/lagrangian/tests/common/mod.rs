@@ -1,9 +1,11 @@
 //! Solids for tests.
 #![allow(dead_code)] // each test uses some of it
 
-use lagrangian::{Hencky, Law, Load, Moduli, Solid, SolidScene};
 use nalgebra::Vector2;
-use solver::{Domain, Limits, Open, Particle, Stepper, Symmetric, WendlandC2, walls::Walls};
+use touchstone_lagrangian::{Hencky, Law, Load, Moduli, Solid, SolidScene};
+use touchstone_solver::{
+    Domain, Limits, Open, Particle, Stepper, Symmetric, WendlandC2, walls::Walls,
+};
 
 pub const MODULI: Moduli = Moduli { bulk: 2.0, shear: 0.7 };
 pub const DENSITY: f64 = 1.3;
@@ -20,7 +22,10 @@ pub fn block(columns: usize, rows: usize, disorder: f64) -> Vec<Particle<Symmetr
         let volume = 1.0 + 0.4 * disorder * number(7 * k + 3);
         Particle::fluid(x + shift, Vector2::zeros(), DENSITY, volume)
     };
-    solver::lattice(Vector2::repeat(0.5), 1.0, columns, rows).enumerate().map(at).collect()
+    touchstone_solver::lattice(Vector2::repeat(0.5), 1.0, columns, rows)
+        .enumerate()
+        .map(at)
+        .collect()
 }
 
 /// A scene of these particles with the kernel's h in spacings.
@@ -82,6 +87,7 @@ pub fn stored<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
 
 /// The whole energy.
 pub fn energy<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
-    let kinetic = |(m, e): (f64, &solver::Evolved<Symmetric>)| 0.5 * m * e.velocity.norm_squared();
+    let kinetic =
+        |(m, e): (f64, &touchstone_solver::Evolved<Symmetric>)| 0.5 * m * e.velocity.norm_squared();
     stored(solid) + solid.data().fluid().map(kinetic).fold(0.0, |sum, one| sum + one)
 }

@@ -1,8 +1,9 @@
 //! The lid-driven cavity: a closed box without a free surface, in which densities must not drift. Side
 //! L = 1 m, speed of the lid U = 1 m/s, ρ = 1 kg/m³.
 
-use base::{gate::*, mutation::Constant, record::*, reference::*};
-use harness::{
+use nalgebra::{SMatrix, SVector, Vector2};
+use touchstone_base::{gate::*, mutation::Constant, record::*, reference::*};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::*,
@@ -11,11 +12,10 @@ use harness::{
     problem::{Asked, Brief, Calls, Problem},
     table,
 };
-use maths::metrics::norms::rms;
-use nalgebra::{SMatrix, SVector, Vector2};
-use report::ColourMap;
-use schemes::flow;
-use solver::*;
+use touchstone_maths::metrics::norms::rms;
+use touchstone_report::ColourMap;
+use touchstone_schemes::flow;
+use touchstone_solver::*;
 
 use crate::fluids::unit_flow::{Scales, UnitFlow, unit_settings};
 
@@ -35,7 +35,7 @@ unit_settings! {
     }
 }
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     U_RMS = "u_rms" ["U"] "rms of mean u - finite differences at the inner places of Ghia et al. on x = L/2";
     V_RMS = "v_rms" ["U"] "the same of v on y = L/2";
@@ -192,7 +192,7 @@ struct Means {
     volume: f64,
 }
 
-harness::observed! { Means: changes(means, volume), stays() }
+touchstone_harness::observed! { Means: changes(means, volume), stays() }
 
 impl Problem for Closed {
     type Extra = ();

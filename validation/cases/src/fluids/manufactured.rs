@@ -1,16 +1,16 @@
 //! A manufactured flow between two walls, whose force makes it an exact steady solution, so that each
 //! combination of terms, walls and integrator has an order of accuracy. L = U = ρ = 1.
 
-use base::{gate::*, record::*};
-use harness::orders::{self, Line, Refinement};
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::{gate::*, record::*};
+use touchstone_harness::orders::{self, Line, Refinement};
+use touchstone_harness::{
     case::*, composed::*, convergence::Level, declare::Declaration, method::*, problem::Simple,
     runs::Runs, study::Study, table,
 };
-use maths::{exact::manufactured, metrics::norms::rms};
-use nalgebra::Vector2;
-use schemes::flow;
-use solver::*;
+use touchstone_maths::{exact::manufactured, metrics::norms::rms};
+use touchstone_schemes::flow;
+use touchstone_solver::*;
 
 use crate::fluids::unit_flow::{DECISIVE, Scales, UnitFlow, unit_settings};
 
@@ -83,7 +83,7 @@ pub static CASE: Composed<ManufacturedSettings> = Composed {
     plan: |tier| table(tier).plan(),
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
     PRESSURE_L2 = "pressure_l2" ["-"]
@@ -110,7 +110,7 @@ fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
             let density = eos.density(nu * manufactured::pressure(x));
             Particle::fluid(x, Vector2::zeros(), density, dx * dx).with_role(role)
         };
-        solver::lattice(Vector2::new(0.5 * dx, y), dx, count, 1).map(of)
+        touchstone_solver::lattice(Vector2::new(0.5 * dx, y), dx, count, 1).map(of)
     };
     let (first, behind) =
         (m.properties.first_row.fluid(), m.properties.first_row != FirstRow::Nowhere);
@@ -249,10 +249,10 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
 
 #[cfg(test)]
 mod tests {
-    use base::mutation::{Constant, Mutation};
-    use base::spec::RunSpec;
-    use harness::context::Context;
-    use harness::runs::Judged;
+    use touchstone_base::mutation::{Constant, Mutation};
+    use touchstone_base::spec::RunSpec;
+    use touchstone_harness::context::Context;
+    use touchstone_harness::runs::Judged;
 
     use super::*;
 

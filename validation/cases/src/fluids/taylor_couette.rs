@@ -1,18 +1,18 @@
 //! Steady flow between two cylinders, the inner one turning: exact, with one convex and one concave wall.
 
-use base::{gate::*, record::*};
-use harness::table::{Row, Table};
-use harness::{case::*, composed::*, declare::*, method::*, problem::Simple};
-use maths::exact::TaylorCouette;
-use maths::geometry::{Curve, Row as Particles};
-use maths::metrics::norms::l2;
 use nalgebra::Vector2;
-use schemes::flow;
-use solver::*;
+use touchstone_base::{gate::*, record::*};
+use touchstone_harness::table::{Row, Table};
+use touchstone_harness::{case::*, composed::*, declare::*, method::*, problem::Simple};
+use touchstone_maths::exact::TaylorCouette;
+use touchstone_maths::geometry::{Curve, Row as Particles};
+use touchstone_maths::metrics::norms::l2;
+use touchstone_schemes::flow;
+use touchstone_solver::*;
 
 use crate::fluids::unit_flow::LIMIT_BOX;
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of the flow between two cylinders, the inner one turning.
     pub struct CylinderSettings {
         /// spacings across the gap
@@ -48,7 +48,7 @@ const EXTRAPOLATING: &str = "extrapolating-wall";
 /// The settings on which time and memory of a run depend.
 const DECISIVE: &str = "end, viscous, layers or ratio";
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
     RADIAL_RMS = "radial_rms" ["-"] "rms of the radial velocity over V";
@@ -286,7 +286,7 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    fn value(record: &Record, metric: base::record::MetricKey) -> f64 {
+    fn value(record: &Record, metric: touchstone_base::record::MetricKey) -> f64 {
         record.value(metric).expect("a metric")
     }
 
@@ -297,7 +297,10 @@ mod tests {
         let flow = TaylorCouette { inner: 1e-3, outer: 2e-3, speed: 0.5 };
         let at = |k: usize, r: f64| {
             let angle = 0.7 * k as f64;
-            let out = Vector2::new(base::functions::cos(angle), base::functions::sin(angle));
+            let out = Vector2::new(
+                touchstone_base::functions::cos(angle),
+                touchstone_base::functions::sin(angle),
+            );
             let velocity = Vector2::new(-out.y, out.x) * (1.02 * flow.velocity(r)) - out * 5e-3;
             Particle::fluid(out * r, velocity, 1000.0, 1e-8)
         };

@@ -2,9 +2,9 @@
 //! and the vortices have in common.
 
 use nalgebra::Vector2;
-use solver::{Domain, Limits, Particle, Tait};
+use touchstone_solver::{Domain, Limits, Particle, Tait};
 
-use harness::{case::*, method::*, problem::Brief};
+use touchstone_harness::{case::*, method::*, problem::Brief};
 
 /// What a case adds to its settings.
 #[derive(Clone, Copy, Debug)]
@@ -82,7 +82,7 @@ impl UnitFlow {
 /// that all these flows have.
 macro_rules! unit_settings {
     ($(#[doc = $doc:literal])+ pub struct $Struct:ident { $($own:tt)+ }) => {
-        base::settings! {
+        touchstone_base::settings! {
             $(#[doc = $doc])+
             pub struct $Struct {
                 $($own)+
@@ -109,18 +109,18 @@ macro_rules! unit_settings {
             /// Follows the rules for a method.
             fn flow(
                 &self,
-                method: &harness::method::Properties,
+                method: &touchstone_harness::method::Properties,
                 scales: $crate::fluids::unit_flow::Scales,
             ) -> $crate::fluids::unit_flow::UnitFlow {
                 let (dx, nu) = (1.0 / self.n as f64, 1.0 / self.re);
                 let h = self.h_over_dx * dx;
-                let eos = solver::Tait {
+                let eos = touchstone_solver::Tait {
                     gamma: self.gamma as i32,
                     background: self.background * self.c0 * self.c0,
-                    ..solver::Tait::new(1.0, self.c0)
+                    ..touchstone_solver::Tait::new(1.0, self.c0)
                 };
                 let medium = method.medium(eos, [dx, h]).set_by(self);
-                let medium = harness::method::Medium { nu, ..medium };
+                let medium = touchstone_harness::method::Medium { nu, ..medium };
                 let numbers =
                     [self.h_over_dx, self.courant, self.viscous, self.skin, self.end];
                 $crate::fluids::unit_flow::UnitFlow::new(method, medium, numbers, scales)

@@ -1,11 +1,12 @@
 //! Settings far outside of the usual, each with its own criterion.
 //!
 //! Common to all: nothing hangs, nothing panics, and a run that leaves its bounds ends as
-//! [`solver::Outcome::Diverged`] with step, time, particle and quantity. What is not a scene is refused with
-//! its reason; `tests/tests/extremes.rs` shows that, and particles without neighbours.
+//! [`touchstone_solver::Outcome::Diverged`] with step, time, particle and quantity. What is not a scene is
+//! refused with its reason; `tests/tests/extremes.rs` shows that, and particles without neighbours.
 
-use base::{gate::*, random::Random, record::*, settings::Settings};
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::{gate::*, random::Random, record::*, settings::Settings};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::Declaration,
@@ -13,13 +14,12 @@ use harness::{
     problem::{Asked, Brief, Calls, Problem},
     table::{Row, Table},
 };
-use maths::metrics::{momentum::momentum, norms::largest};
-use nalgebra::Vector2;
-use solver::{Domain, Particle, Stepper, Tait};
+use touchstone_maths::metrics::{momentum::momentum, norms::largest};
+use touchstone_solver::{Domain, Particle, Stepper, Tait};
 
 use crate::lattice::torus;
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of the experiments; each uses some of them.
     pub struct ExtremeSettings {
         /// particles along each side of the periodic box
@@ -56,7 +56,7 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     plan,
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     HEAT = "heat" ["c0^2"] "largest v^2/2 of a particle at the end";
     CLOCK_ERROR = "clock_error" ["dx/c0"]
         "largest |t - n dt| at ten times, infinite if the steps are not n";
@@ -80,7 +80,7 @@ const BULLET: &str = "bullet";
 fn variants() -> Compositions<ExtremeSettings> {
     const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
     const SHORT: &[&str] = &["distance", "steps", "dt"];
-    let cubic = schemes::lattice::cubic;
+    let cubic = touchstone_schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
     // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
     let pressed = "does it under pressure? Wendland function";
@@ -90,7 +90,7 @@ fn variants() -> Compositions<ExtremeSettings> {
         let names = ExtremeSettings::FIELDS.iter().map(|field| field.name);
         names.filter(|name| !uses.contains(name)).collect()
     };
-    let wendland = schemes::lattice::wendland();
+    let wendland = touchstone_schemes::lattice::wendland();
     Variants::<_, (Method, Scene)>::of(|(method, scene), s: &ExtremeSettings| {
         Ok(Extreme { method: method.clone(), scene: *scene, settings: s.clone() })
     })
@@ -120,7 +120,7 @@ struct Watch {
     late: f64,
 }
 
-harness::observed! { Watch: changes(late), stays(start) }
+touchstone_harness::observed! { Watch: changes(late), stays(start) }
 
 impl Extreme {
     fn is_resting(&self) -> bool {
@@ -232,7 +232,7 @@ fn stirred(method: &Method, s: &ExtremeSettings) -> Parts {
 /// A block that hits another.
 fn blocks(method: &Method, s: &ExtremeSettings) -> Parts {
     let block = |first, velocity| {
-        let places = solver::lattice(Vector2::new(first, 0.0), 1.0, 10, 10);
+        let places = touchstone_solver::lattice(Vector2::new(first, 0.0), 1.0, 10, 10);
         places.map(move |place| Particle::fluid(place, velocity, 1.0, 1.0))
     };
     let moving = block(-12.0, Vector2::new(s.speed, 0.0));

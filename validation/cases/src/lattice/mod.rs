@@ -5,9 +5,9 @@ pub mod operators;
 pub mod resting_box;
 pub mod wave;
 
-use harness::method::*;
 use nalgebra::Vector2;
-use solver::{Domain, Particle};
+use touchstone_harness::method::*;
+use touchstone_solver::{Domain, Particle};
 
 /// A periodic square with this side \[m\] and n × n particles. `start` gives a particle's place and velocity
 /// from its place on the lattice, first counted in spacings and then in metres.
@@ -17,8 +17,8 @@ fn torus(
     mut start: impl FnMut(Vector2<f64>, Vector2<f64>) -> (Vector2<f64>, Vector2<f64>),
 ) -> Parts {
     let Medium { dx, density, .. } = medium;
-    let places = solver::lattice(Vector2::repeat(0.5 * dx), dx, n, n);
-    let labels = solver::lattice(Vector2::zeros(), 1.0, n, n);
+    let places = touchstone_solver::lattice(Vector2::repeat(0.5 * dx), dx, n, n);
+    let labels = touchstone_solver::lattice(Vector2::zeros(), 1.0, n, n);
     let particle = |(label, place)| {
         let (place, velocity) = start(label, place);
         Particle::fluid(place, velocity, density, dx * dx)
@@ -29,7 +29,7 @@ fn torus(
 
 #[cfg(test)]
 mod tests {
-    use harness::{
+    use touchstone_harness::{
         case::{Case, Tier},
         make::Making,
         runs::Judged,

@@ -8,8 +8,9 @@
 //! growing modes have time to show. A larger box has waves between, of which one may be stiffer: with 20
 //! limits are up to 1.6 % shorter, measured and in theory, and take twice as long to find.
 
-use base::{gate::*, random::Random, record::*, spec::Bisect};
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::{gate::*, random::Random, record::*, spec::Bisect};
+use touchstone_harness::{
     bisect::Growth,
     case::*,
     composed::*,
@@ -20,13 +21,12 @@ use harness::{
     rules::PLANNED_DT_OVER_LIMIT,
     table::{Row, Table},
 };
-use maths::theory::time_step::{self, Mode};
-use nalgebra::Vector2;
-use solver::{Flow, Limits, Particle, Stepper, Tait};
+use touchstone_maths::theory::time_step::{self, Mode};
+use touchstone_solver::{Flow, Limits, Particle, Stepper, Tait};
 
 use crate::lattice::torus;
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of a periodic lattice at rest with velocity noise; its side, its density and its sound
     /// speed are 1.
     pub struct BoxSettings {
@@ -47,7 +47,7 @@ base::settings! {
     }
 }
 
-base::metrics! {
+touchstone_base::metrics! {
     GREW = "grew" ["-"]
         "1 if the energy exceeded a hundred times that of the start at some step, or in the mean of the \
          last quarter of the steps 1.5 times that of the second; else 0";
@@ -84,12 +84,12 @@ const SINGLE: &str = "cubic-single-sweep";
 /// The method of a variant.
 fn method(variant: &str) -> Method {
     match variant {
-        MIDPOINT => schemes::lattice::midpoint(),
-        SINGLE => schemes::lattice::single_sweep(),
-        SUPER => schemes::lattice::super_stepping(),
-        DAMPED => schemes::lattice::damped(),
-        QUINTIC => schemes::lattice::quintic(),
-        _ => schemes::lattice::cubic(),
+        MIDPOINT => touchstone_schemes::lattice::midpoint(),
+        SINGLE => touchstone_schemes::lattice::single_sweep(),
+        SUPER => touchstone_schemes::lattice::super_stepping(),
+        DAMPED => touchstone_schemes::lattice::damped(),
+        QUINTIC => touchstone_schemes::lattice::quintic(),
+        _ => touchstone_schemes::lattice::cubic(),
     }
 }
 
@@ -182,7 +182,7 @@ fn parts(method: &Method, s: &BoxSettings) -> Parts {
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
 fn energy(simulation: &dyn Stepper<()>) -> f64 {
-    let of = |(mass, e): (f64, &solver::Evolved<()>)| {
+    let of = |(mass, e): (f64, &touchstone_solver::Evolved<()>)| {
         0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
     };
     simulation.data().fluid().map(of).sum()
@@ -345,9 +345,9 @@ fn plan(_: Tier) -> Vec<Planned> {
 mod tests {
     use super::*;
     use crate::lattice::tests::judged;
-    use harness::case::Case;
-    use harness::context::Context;
     use std::collections::BTreeSet;
+    use touchstone_harness::case::Case;
+    use touchstone_harness::context::Context;
 
     #[test]
     fn boxes_have_the_limits_of_theory() {

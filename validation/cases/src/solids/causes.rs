@@ -1,6 +1,6 @@
 //! Why elastic bodies lie outside of their bounds.
 
-use base::gate::Cause;
+use touchstone_base::gate::Cause;
 
 /// Sums miss neighbours at free faces.
 pub static FREE_FACES: Cause = Cause::new(

@@ -1,11 +1,13 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
-use base::{functions::*, gate::*, record::*};
-use harness::{case::*, composed::*, declare::*, table::*};
-use maths::{exact::impact::Impact, metrics::history::passes, theory::lattice::SquareLattice};
 use nalgebra::Vector2;
-use solver::*;
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
+use touchstone_base::{functions::*, gate::*, record::*};
+use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_maths::{
+    exact::impact::Impact, metrics::history::passes, theory::lattice::SquareLattice,
+};
+use touchstone_solver::*;
 
 use super::{
     causes::*,
@@ -49,12 +51,12 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             = ((K + 4 mu/3)/rho)^(1/2). In one test a pulse runs through a bar. In the other two equal \
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
-    variants: || solid::variants(schemes::solid::free()).all,
+    variants: || solid::variants(touchstone_schemes::solid::free()).all,
     declaration,
     plan: |tier| table(tier).plan(),
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     TRAVEL_ERROR = "travel_error" ["-"]
         "t c_p/(0.4 L) - 1, t the time of sum m v x/sum m v from 0.3 L to 0.7 L";
@@ -127,8 +129,9 @@ impl Body for BarSettings {
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, speed, wave) = (self.dx(), self.speed(), self.wave());
         let Material { density, shear, .. } = self.material();
-        let lattice =
-            |first: f64| solver::lattice(Vector2::new(first, 0.5 * dx), dx, self.n, self.rows());
+        let lattice = |first: f64| {
+            touchstone_solver::lattice(Vector2::new(first, 0.5 * dx), dx, self.n, self.rows())
+        };
         let at = |x, v| Particle::fluid(x, Vector2::new(v, 0.0), density, dx * dx);
         if self.collide {
             let half = 0.5 * (1.0 + self.gap) * dx;
@@ -175,7 +178,7 @@ pub struct Motion {
     stress: Option<f64>,
 }
 
-harness::observed! {
+touchstone_harness::observed! {
     Motion: changes(series, stress), stays(settings, momentum, total, energy)
 }
 
@@ -281,7 +284,8 @@ impl Watch for Motion {
             }
         }
         let after = Energy::of(simulation, &self.settings.material());
-        let momentum = maths::metrics::momentum::momentum(&simulation.particles()) - self.momentum;
+        let momentum =
+            touchstone_maths::metrics::momentum::momentum(&simulation.particles()) - self.momentum;
         record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
         record.put(ENERGY_CHANGE, after.total() / self.energy - 1.0);
         let column = |k: usize| self.series.iter().map(|row| row[k]).collect();
@@ -475,7 +479,7 @@ fn declaration(tier: Tier) -> Declaration {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::{
+    use touchstone_harness::{
         case::{Case, RunError},
         context::Context,
         method::Parts,
@@ -592,7 +596,7 @@ mod tests {
             p.extra.xx = -1000.0;
             p.velocity.x = if p.position.x < 0.0 { -0.2 } else { 0.5 };
         }
-        let method = schemes::solid::bare();
+        let method = touchstone_schemes::solid::bare();
         let mut watch = Motion::new(&s, &particles, 0.0);
         let parts = Parts::new(solid::medium(&s, &method.properties), s.scales().domain, particles);
         let simulation = (method.build)(parts).expect("a scene");

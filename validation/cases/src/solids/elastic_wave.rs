@@ -4,8 +4,10 @@
 //! longitudinal wave has ω² = |g|² (K + 4μ/3)/ρ and a transverse one ω² = |g|² μ/ρ, whatever the
 //! kernel. The leapfrog turns by θ a step, 2 sin(θ/2) = ω dt, which is divided out.
 
-use base::{functions::*, gate::*, record::*};
-use harness::{
+use nalgebra::Vector2;
+use std::f64::consts::TAU;
+use touchstone_base::{functions::*, gate::*, record::*};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::*,
@@ -14,13 +16,11 @@ use harness::{
     rules::PLANNED_DT,
     table::*,
 };
-use nalgebra::Vector2;
-use solver::*;
-use std::f64::consts::TAU;
+use touchstone_solver::*;
 
 use super::solid::{Material, limits};
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of a wave along x on a lattice of the unit square.
     pub struct WaveSettings {
         /// smoothing length over spacing
@@ -53,7 +53,7 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
 
 const NAME: &str = "elastic_wave";
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     FREQUENCY_ERROR = "frequency_error" ["-"]
         "|omega - theory|/theory, the time step divided out; theory: |g| (K + 4 mu/3)^(1/2) along, |g| \
@@ -66,7 +66,7 @@ fn variants() -> Compositions<WaveSettings> {
     Variants::of(|m: &Method<Symmetric>, s: &WaveSettings| {
         Ok(Wave { settings: s.clone(), method: m.clone() })
     })
-    .with(CubicSpline::NAME, equations, schemes::solid::bare(), |_| {})
+    .with(CubicSpline::NAME, equations, touchstone_schemes::solid::bare(), |_| {})
     .all
 }
 
@@ -82,7 +82,7 @@ const STEPS: usize = 400;
 impl WaveSettings {
     /// The scene: a lattice with a cosine of velocity.
     fn parts(&self, method: &Method<Symmetric>) -> Parts<Symmetric> {
-        let places = solver::lattice(Vector2::repeat(0.5 * DX), DX, N, N).enumerate();
+        let places = touchstone_solver::lattice(Vector2::repeat(0.5 * DX), DX, N, N).enumerate();
         let wave = places.map(|(k, x)| {
             let velocity = self.direction() * (AMPLITUDE * cos(phase(k)));
             Particle::fluid(x, velocity, RUBBER.density, DX * DX)
@@ -174,7 +174,7 @@ struct Watch {
     amplitudes: Vec<f64>,
 }
 
-harness::observed! { Watch: changes(amplitudes), stays(direction) }
+touchstone_harness::observed! { Watch: changes(amplitudes), stays(direction) }
 
 impl Watch {
     /// θ of a step, from a fit to all steps.
@@ -219,8 +219,8 @@ fn gates(row: &Row<WaveSettings, ()>) -> Vec<Gate> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::case::{Case, Planned};
-    use harness::context::Context;
+    use touchstone_harness::case::{Case, Planned};
+    use touchstone_harness::context::Context;
 
     #[test]
     fn waves_of_rubber_have_the_symbols_of_the_lattice() {

@@ -1,11 +1,11 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
-use base::{gate::*, record::*};
-use harness::{case::*, composed::*, declare::*, table::*};
-use maths::metrics::history;
 use nalgebra::Vector2;
-use solver::*;
 use std::f64::consts::{PI, TAU};
+use touchstone_base::{gate::*, record::*};
+use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_maths::metrics::history;
+use touchstone_solver::*;
 
 use super::{
     causes::FREE_FACES,
@@ -37,12 +37,12 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     about: "A free elastic disk begins to spin without stress. Angular momentum must stay, and stress must \
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",
-    variants: || solid::variants(schemes::solid::free()).all,
+    variants: || solid::variants(touchstone_schemes::solid::free()).all,
     declaration,
     plan: |tier| table(tier).plan(),
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     INTERIOR_STRAIN = "interior_strain" ["-"]
         "largest ((S_xx - S_yy)^2/2 + 2 S_xy^2)^(1/2)/(2 mu dt) over the spin after one step, of particles \
@@ -80,7 +80,7 @@ impl Body for DiskSettings {
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, side) = (self.dx(), 2 * self.n + 1);
         let (spin, density) = (self.speed() / self.radius, self.material().density);
-        solver::lattice(Vector2::repeat(-self.radius), dx, side, side)
+        touchstone_solver::lattice(Vector2::repeat(-self.radius), dx, side, side)
             .filter(|x| x.norm() <= self.radius * (1.0 + 1e-9))
             .map(|x| Particle::fluid(x, Vector2::new(-x.y, x.x) * spin, density, dx * dx))
             .collect()
@@ -104,7 +104,7 @@ pub struct History {
     first: Option<([f64; 2], f64)>,
 }
 
-harness::observed! { History: changes(until, series, first), stays(settings, mass) }
+touchstone_harness::observed! { History: changes(until, series, first), stays(settings, mass) }
 
 impl History {
     fn new(s: &DiskSettings, start: &[Particle<Symmetric>]) -> Self {
@@ -173,7 +173,8 @@ impl Watch for History {
         let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
-        let momentum = maths::metrics::momentum::momentum(&simulation.particles()).norm();
+        let momentum =
+            touchstone_maths::metrics::momentum::momentum(&simulation.particles()).norm();
         record.put(MOMENTUM_ERROR, momentum / (self.mass * speed));
     }
 }
@@ -319,7 +320,7 @@ fn declaration(tier: Tier) -> Declaration {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::{
+    use touchstone_harness::{
         case::{Case, RunError},
         context::Context,
         method::Parts,
@@ -356,7 +357,7 @@ mod tests {
             .iter_mut()
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
-        let method = schemes::solid::bare();
+        let method = touchstone_schemes::solid::bare();
         let parts = Parts::new(solid::medium(&s, &method.properties), Domain::open(), particles);
         let simulation = (method.build)(parts).expect("a scene");
         let [inside, rim] = mistaken(&*simulation, 0.03);

@@ -1,6 +1,6 @@
 //! Why water lies outside of its bounds.
 
-use base::gate::Cause;
+use touchstone_base::gate::Cause;
 
 /// Images behind a ghost wall with the opposite velocity.
 pub static NO_SLIP_IMAGES: Cause = Cause::new(

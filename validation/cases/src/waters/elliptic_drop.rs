@@ -1,8 +1,10 @@
 //! A free drop that a uniform strain pulls into an ellipse (Monaghan 1994): free surface, no walls, and
 //! an exact solution.
 
-use base::{gate::*, record::*};
-use harness::{
+use nalgebra::Vector2;
+use std::f64::consts::FRAC_PI_4;
+use touchstone_base::{gate::*, record::*};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::*,
@@ -11,15 +13,13 @@ use harness::{
     problem::{Asked, Brief, Calls, Problem},
     rules, table,
 };
-use maths::{
+use touchstone_maths::{
     exact::EllipticDrop as Exact,
     metrics::{budget::Metered, norms::largest},
 };
-use nalgebra::Vector2;
-use report::ColourMap;
-use schemes::water::{self, WaterMethod};
-use solver::*;
-use std::f64::consts::FRAC_PI_4;
+use touchstone_report::ColourMap;
+use touchstone_schemes::water::{self, WaterMethod};
+use touchstone_solver::*;
 
 use super::{
     causes::{NOISY_DENSITY, SHORT_KERNEL},
@@ -46,7 +46,7 @@ crate::water_settings! {
 
 const NAME: &str = "elliptic_drop";
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     A_ERROR = "a_error" ["-"]
         "max over samples of |a - a_exact|/a_exact, a^2 = 4 sum m (x - x_c)^2/sum m";
@@ -106,7 +106,7 @@ impl Drop {
         let (s, Medium { dx, eos, .. }) = (&self.settings, self.medium);
         let corner = Vector2::repeat(0.5 * dx - s.radius);
         let centre = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
-        solver::lattice(corner, dx, s.n, s.n)
+        touchstone_solver::lattice(corner, dx, s.n, s.n)
             .filter(|x| x.norm() <= s.radius)
             .map(|x| {
                 let inside = 1.0 - x.norm_squared() / (s.radius * s.radius);
@@ -159,7 +159,7 @@ struct History {
     velocity: f64,
 }
 
-harness::observed! { History: changes(rows, free_fall, velocity), stays(exact) }
+touchstone_harness::observed! { History: changes(rows, free_fall, velocity), stays(exact) }
 
 impl History {
     fn new(exact: Exact) -> Self {
@@ -213,7 +213,7 @@ struct Watch {
     kinetic: f64,
 }
 
-harness::observed! { Watch: changes(history, ledger), stays(kinetic) }
+touchstone_harness::observed! { Watch: changes(history, ledger), stays(kinetic) }
 
 impl Problem for Drop {
     type Extra = ();
@@ -433,8 +433,8 @@ fn gates(row: &Row) -> Vec<Gate> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::record::MetricKey;
-    use harness::{case::Case, context::Context};
+    use touchstone_base::record::MetricKey;
+    use touchstone_harness::{case::Case, context::Context};
 
     fn run(variant: &str, set: impl FnOnce(&mut DropSettings)) -> Result<Record, RunError> {
         ELLIPTIC_DROP.run(&ELLIPTIC_DROP.spec(variant, set).measure_all(), &Context::default())
@@ -498,9 +498,10 @@ mod tests {
     #[test]
     fn a_drop_that_has_not_moved_has_no_error_whatever_its_spacing() {
         for (n, variant) in [(8, "modern"), (17, "modern"), (20, "seed"), (40, "modern")] {
-            let settings: DropSettings =
-                base::settings::of_json(&ELLIPTIC_DROP.spec(variant, |s| s.n = n).settings)
-                    .expect("settings");
+            let settings: DropSettings = touchstone_base::settings::of_json(
+                &ELLIPTIC_DROP.spec(variant, |s| s.n = n).settings,
+            )
+            .expect("settings");
             let method = if variant == "seed" { water::free_seed() } else { water::free() };
             let drop = Drop::new(&method, &settings);
             let parts = drop.scene().expect("a scene");
@@ -522,7 +523,7 @@ mod tests {
     fn extents_and_places_of_a_drop_put_by_hand_are_measured() {
         let settings: DropSettings = {
             let spec = ELLIPTIC_DROP.spec("modern", |s| (s.n, s.gravity) = (40, 1.0));
-            base::settings::of_json(&spec.settings).expect("settings")
+            touchstone_base::settings::of_json(&spec.settings).expect("settings")
         };
         let method = water::free();
         let (drop, rate) = (Drop::new(&method, &settings), settings.strain);

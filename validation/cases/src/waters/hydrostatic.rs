@@ -1,8 +1,9 @@
 //! Water at rest in an open tank: a column of Tait fluid, compressed by its own weight, whose density
 //! and pressure are known exactly. What walls and density treatments do to it is all that happens.
 
-use base::{gate::*, mutation::Constant, random::Random, record::*};
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::{gate::*, mutation::Constant, random::Random, record::*};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::*,
@@ -10,20 +11,19 @@ use harness::{
     problem::{Asked, Brief, Calls, Problem},
     table,
 };
-use maths::{
+use touchstone_maths::{
     exact, geometry,
     metrics::{
         budget::Metered,
         norms::{l2, largest},
     },
 };
-use nalgebra::Vector2;
-use schemes::water::WaterMethod;
-use solver::*;
+use touchstone_schemes::water::WaterMethod;
+use touchstone_solver::*;
 
 use crate::waters::{causes::MIRRORED_PRESSURE, water};
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of water at rest in an open tank.
     pub struct HydrostaticSettings {
         /// spacings from the bottom to the surface
@@ -69,7 +69,7 @@ base::settings! {
 
 const NAME: &str = "hydrostatic";
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     P_L2 = "p_l2" ["-"]
         "rms(p - p_exact)/rms(p_exact) over particles, p_exact at their places, at the end";
@@ -99,10 +99,10 @@ fn variants() -> Compositions<HydrostaticSettings> {
     let plain = "modern with the diffusion of Molteni and Colagrossi: does plain diffusion level out the \
                  column?";
     Variants::of(|m, s| Ok(Column::new(m, s)))
-        .with("seed", seed, schemes::water::seed(), |_| {})
-        .with("ghosts", "seed with ghosts for walls", schemes::water::ghosts(), |_| {})
-        .with("modern", modern_is, schemes::water::modern(), modern)
-        .with("extrapolating-molteni", plain, schemes::water::molteni(), modern)
+        .with("seed", seed, touchstone_schemes::water::seed(), |_| {})
+        .with("ghosts", "seed with ghosts for walls", touchstone_schemes::water::ghosts(), |_| {})
+        .with("modern", modern_is, touchstone_schemes::water::modern(), modern)
+        .with("extrapolating-molteni", plain, touchstone_schemes::water::molteni(), modern)
         .all
 }
 
@@ -280,7 +280,7 @@ struct History {
     spread: f64,
 }
 
-harness::observed! { History: changes(rows, outside, spread), stays(start) }
+touchstone_harness::observed! { History: changes(rows, outside, spread), stays(start) }
 
 impl History {
     /// No sample yet of water that starts as in this simulation.
@@ -496,8 +496,8 @@ mod tests {
     fn what_is_measured_of_water_at_rest_is_what_was_done_to_it() {
         let spec = HYDROSTATIC.spec("modern", |_| {});
         let settings: HydrostaticSettings =
-            base::settings::of_json(&spec.settings).expect("settings");
-        let method = schemes::water::modern();
+            touchstone_base::settings::of_json(&spec.settings).expect("settings");
+        let method = touchstone_schemes::water::modern();
         let column = Column::new(&method, &settings);
         let (dx, g) = (column.medium.dx, settings.g);
         let water = || -> Vec<Particle> { column.water(method.properties.first_row).collect() };

@@ -1,7 +1,8 @@
 //! Still water over a wedge: corners and edges at which walls must bear what is above them. Depth H = 1 m.
 
-use base::{gate::*, mutation::Constant, record::*};
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::{gate::*, mutation::Constant, record::*};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::*,
@@ -10,11 +11,10 @@ use harness::{
     problem::{Asked, Brief, Calls, Problem},
     table,
 };
-use maths::metrics::{budget::Metered, norms::rms};
-use nalgebra::Vector2;
-use report::ColourMap;
-use schemes::water::WaterMethod;
-use solver::*;
+use touchstone_maths::metrics::{budget::Metered, norms::rms};
+use touchstone_report::ColourMap;
+use touchstone_schemes::water::WaterMethod;
+use touchstone_solver::*;
 
 use super::water;
 
@@ -35,7 +35,7 @@ crate::water_settings! {
 }
 
 const NAME: &str = "still_wedge";
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     P_L2 = "p_l2" ["rho g H"]
         "rms over particles of the mean of p - p_exact over the last quarter, eight times a period";
@@ -52,8 +52,10 @@ fn variants() -> Compositions<Wedge> {
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";
     Variants::of(|m, s| Ok(Still::new(m, s)))
-        .with("seed", seed, schemes::water::seed(), |s| s.courant = 0.4)
-        .with("modern", modern, schemes::water::modern(), |s| (s.alpha, s.courant) = (0.02, 0.8))
+        .with("seed", seed, touchstone_schemes::water::seed(), |s| s.courant = 0.4)
+        .with("modern", modern, touchstone_schemes::water::modern(), |s| {
+            (s.alpha, s.courant) = (0.02, 0.8)
+        })
         .all
 }
 
@@ -175,7 +177,7 @@ struct Moments {
     kinetic: f64,
 }
 
-harness::observed! { Moments: changes(samples, corners, errors, kinetic), stays() }
+touchstone_harness::observed! { Moments: changes(samples, corners, errors, kinetic), stays() }
 
 /// Samples a period.
 const SAMPLES: f64 = 8.0;
@@ -360,7 +362,8 @@ mod tests {
     use super::*;
 
     fn wedge() -> Wedge {
-        base::settings::of_json(&STILL_WEDGE.spec("modern", |_| {}).settings).expect("settings")
+        touchstone_base::settings::of_json(&STILL_WEDGE.spec("modern", |_| {}).settings)
+            .expect("settings")
     }
 
     /// Sums over four samples of errors at both corners of the base and at the apex.
@@ -388,7 +391,7 @@ mod tests {
     /// particle inside of the wedge and one below the floor.
     #[test]
     fn what_is_measured_of_water_over_a_wedge_is_what_was_done_to_it() {
-        let still = Still::new(&schemes::water::modern(), &wedge());
+        let still = Still::new(&touchstone_schemes::water::modern(), &wedge());
         let Still { settings: s, method, medium, .. } = &still;
         let mut all = particles(s, method, medium).expect("particles");
         let exact = water::at_rest(medium);

@@ -1,6 +1,6 @@
 //! Numbers as bytes.
 
-use base::text::short;
+use touchstone_base::text::short;
 
 /// An array of three components of a particle has no more than these.
 pub const MOST_NUMBERS: usize = 3 * super::MOST_ROWS;

@@ -1,6 +1,6 @@
 //! Which column of ours each column of a file is: by the names of the caller, by ours, and by usual ones.
 
-use base::text::{few, short};
+use touchstone_base::text::{few, short};
 
 use super::{Head, Renamed};
 use crate::flaw::Flaw;

@@ -4,12 +4,12 @@
 
 use std::iter::once;
 
-use base::text::number;
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::text::number;
+use touchstone_harness::{
     declare::Curve,
     playback::{self, Frame, Placed},
 };
-use nalgebra::Vector2;
 
 use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, Rows, table};
 use crate::{

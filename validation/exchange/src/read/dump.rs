@@ -1,6 +1,6 @@
 //! Dumps of LAMMPS: one or more snapshots a file, each with its time (`dump_modify time yes`).
 
-use base::text::{number, short};
+use touchstone_base::text::{number, short};
 
 use super::{
     COLUMNS, MOST_FLAWS, MOST_ROWS, Renamed, Rows,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use hdf5_reader::{Dataset, Datatype, H5Type, Hdf5File, OpenOptions, error::Error, group::Group};
 
-use base::{files, text::short};
+use touchstone_base::{files, text::short};
 
 use super::{MOST_BYTES, MOST_ROWS, Renamed, Rows, columns::Heads, number_in, of_arrays, too_many};
 use crate::flaw::Flaw;

@@ -17,16 +17,16 @@ mod vtk;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     files,
     text::{few, number, short},
 };
-use harness::{
+use touchstone_harness::{
     outline::role,
     playback::{Frame, Own, Placed},
 };
-use nalgebra::Vector2;
-use solver::Role;
+use touchstone_solver::Role;
 
 use crate::flaw::Flaw;
 use columns::{MOST_SHOWN, Places, THIRD};

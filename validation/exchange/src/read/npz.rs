@@ -6,7 +6,7 @@ use std::io::Read;
 use flate2::bufread::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive};
 
-use base::text::short;
+use touchstone_base::text::short;
 
 use super::{MOST_ROWS, Renamed, Rows, binary, columns::Heads, of_arrays};
 use crate::flaw::Flaw;

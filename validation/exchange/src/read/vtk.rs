@@ -3,8 +3,8 @@
 
 use std::{borrow::Cow, io::Read};
 
-use base::text::{few, from_base64, short};
 use roxmltree::{Document, Node, ParsingOptions};
+use touchstone_base::text::{few, from_base64, short};
 
 use super::{
     Renamed, Rows,

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use harness::outline::Outline;
+use touchstone_harness::outline::Outline;
 
 use super::{WriteError, check_fluid};
 use crate::problem::Problem;

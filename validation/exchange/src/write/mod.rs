@@ -2,8 +2,8 @@
 
 mod lammps;
 
-use base::vtk;
 use thiserror::Error;
+use touchstone_base::vtk;
 
 use crate::problem::{PARTICLES, PROBLEM, Problem};
 

@@ -1,11 +1,11 @@
 //! Deliberate errors and a deliberate disorder of a scene.
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     mutation::{Constant, Disorder},
     random::Random,
 };
-use nalgebra::Vector2;
-use solver::{Numbers, Particle, Role};
+use touchstone_solver::{Numbers, Particle, Role};
 
 use super::Parts;
 use crate::relation::{DENSITY, LENGTH, NoSymmetry, Relation, View};
@@ -81,18 +81,18 @@ pub(crate) fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View
 
 #[cfg(test)]
 mod tests {
-    use base::mutation::Mutation;
-    use solver::{Domain, PlaneWall, Tait};
+    use touchstone_base::mutation::Mutation;
+    use touchstone_solver::{Domain, PlaneWall, Tait};
 
     use super::*;
     use crate::method::{Medium, Method};
 
-    type Plain = solver::Compose<
-        solver::CubicSpline,
-        (solver::Pressure<Tait>, solver::Viscosity),
-        solver::Continuity,
-        solver::Ghosts,
-        solver::Leapfrog,
+    type Plain = touchstone_solver::Compose<
+        touchstone_solver::CubicSpline,
+        (touchstone_solver::Pressure<Tait>, touchstone_solver::Viscosity),
+        touchstone_solver::Continuity,
+        touchstone_solver::Ghosts,
+        touchstone_solver::Leapfrog,
     >;
 
     fn parts(mutation: Option<Mutation>) -> Parts {

@@ -1,8 +1,8 @@
 //! What is known of a method before anything is built.
 
-use maths::theory::{Stepping, lattice::SquareLattice, time_step};
 use nalgebra::Vector2;
-use solver::{
+use touchstone_maths::theory::{Stepping, lattice::SquareLattice, time_step};
+use touchstone_solver::{
     Integrator as _, Kernel, Scheme, Smoothing, Tait, Term,
     walls::{Extrapolation as _, Walls},
 };

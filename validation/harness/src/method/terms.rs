@@ -1,6 +1,6 @@
 //! How each term and each wall is constructed from the parameters of a medium, and which settings it reads.
 
-use solver::{
+use touchstone_solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConjugateStress,
     ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure, ConsistentViscosity,
     Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts,

@@ -1,6 +1,6 @@
 //! The step from which super-time-stepping counts its stages, by hand.
 
-use solver::{
+use touchstone_solver::{
     Compose, Continuity, Leapfrog, Open, Pressure, Split, SuperSteps, Tait, Viscosity, WendlandC2,
 };
 

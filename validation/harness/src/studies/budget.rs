@@ -1,6 +1,6 @@
 //! The error budget: the same run with one thing changed at a time.
 
-use report::Cell;
+use touchstone_report::Cell;
 
 use crate::{
     columns::Columns,
@@ -39,7 +39,7 @@ pub fn study(accuracy: &Accuracy, budgets: &Budgets, runs: &Runs) -> Study {
 
 #[cfg(test)]
 mod tests {
-    use base::spec::RunSpec;
+    use touchstone_base::spec::RunSpec;
 
     use super::*;
     use crate::studies::tests::{ERROR, column, runs, spec, tables};

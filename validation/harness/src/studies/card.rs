@@ -1,10 +1,10 @@
 //! What the report says first of a case: errors and costs of two variants, how far they got, verdicts.
 
-use base::{
+use touchstone_base::{
     record::{Record, Status},
     spec::RunSpec,
 };
-use report::{Block, Card, Figure, exact, plain, sci, seconds, sig};
+use touchstone_report::{Block, Card, Figure, exact, plain, sci, seconds, sig};
 
 use super::{
     limit,

@@ -1,6 +1,6 @@
 //! Why gates do not detect an error of a constant, whatever the case.
 
-use base::gate::Cause;
+use touchstone_base::gate::Cause;
 
 /// What is measured does not depend on the constant.
 pub static NOT_MEASURED: Cause = Cause::new(

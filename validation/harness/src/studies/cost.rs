@@ -2,8 +2,10 @@
 //! reach an error with the least work, in seconds of a run that was made alone, and in pair interactions,
 //! which do not depend on the machine or on other programs.
 
-use base::record::median;
-use report::{Axis, Cell, Colour, Figure, Plot, Series, Table, exact, first_sentence, percent};
+use touchstone_base::record::median;
+use touchstone_report::{
+    Axis, Cell, Colour, Figure, Plot, Series, Table, exact, first_sentence, percent,
+};
 
 use crate::{
     columns::Columns,
@@ -184,11 +186,11 @@ fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use touchstone_base::{
         gate::{Bound, Evidence, Gate, Verdict},
         record::Record,
     };
-    use report::Block;
+    use touchstone_report::Block;
 
     use super::*;
     use crate::studies::tests::{ERROR, column, comparison, records, spec, tables};
@@ -301,7 +303,7 @@ mod tests {
         assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
         let Block::Figure(figure) = &study.blocks[0] else { panic!("a figure") };
         assert!(figure.caption.ends_with(" The grey line has order 2."), "{}", figure.caption);
-        let [_, report::Layer::Series(seed), _] = &figure.panels[1].layers[..] else {
+        let [_, touchstone_report::Layer::Series(seed), _] = &figure.panels[1].layers[..] else {
             panic!("the front and two ladders")
         };
         assert_eq!(seed.x_bars, [(0.25, 1.0), (0.5, 2.0), (1.0, 4.0), (2.0, 8.0)], "over run time");

@@ -1,6 +1,6 @@
 //! Profiles or histories, plotted together with their reference.
 
-use report::{Colour, Figure, Plot, Series, Shape};
+use touchstone_report::{Colour, Figure, Plot, Series, Shape};
 
 use crate::{
     declare::{CurvePanel, Curves},
@@ -45,7 +45,7 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
 
 #[cfg(test)]
 mod tests {
-    use report::{Axis, Block, Layer};
+    use touchstone_report::{Axis, Block, Layer};
 
     use super::*;
     use crate::{
@@ -54,8 +54,9 @@ mod tests {
     };
 
     fn line(name: &str, variant: &str, n: usize) -> CurveOf {
-        let points =
-            |record: &base::record::Record| vec![(1.0, record.value(ERROR).unwrap_or(f64::NAN))];
+        let points = |record: &touchstone_base::record::Record| {
+            vec![(1.0, record.value(ERROR).unwrap_or(f64::NAN))]
+        };
         CurveOf { name: name.into(), spec: spec(variant, n), points: Box::new(points) }
     }
 

@@ -1,10 +1,10 @@
 //! Ensembles: until when their members agree, and how what comes later is distributed.
 
-use base::{
+use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
 };
-use report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig};
+use touchstone_report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig};
 
 use super::anchor;
 use crate::{
@@ -231,8 +231,8 @@ fn quantiles(members: &[Curve]) -> Vec<(f64, [f64; 5])> {
 
 #[cfg(test)]
 mod tests {
-    use base::record::Status;
-    use report::Block;
+    use touchstone_base::record::Status;
+    use touchstone_report::Block;
 
     use super::*;
     use crate::{
@@ -251,7 +251,7 @@ mod tests {
         let points = |record: &Record| {
             let own = 1e-6 * (record.value(ERROR).unwrap_or(f64::NAN) - 10.5);
             let at = |k: u32| 0.01 * f64::from(k);
-            (0..=800).map(at).map(|t| (t, own * base::functions::exp(2.0 * t))).collect()
+            (0..=800).map(at).map(|t| (t, own * touchstone_base::functions::exp(2.0 * t))).collect()
         };
         let gate = |name: &str, bound| {
             Gate::new(format!("case.{name}"), name, bound, Evidence::Invariant, "made up")
@@ -323,12 +323,12 @@ mod tests {
         assert_eq!(plot.layers.len(), 5);
         // The history of member k is (k − 10.5) 1e-6 exp(2t): at t = 8 the range is ± 9.5, the quartiles ±
         // 4.75.
-        let unit = 1e-6 * base::functions::exp(16.0);
+        let unit = 1e-6 * touchstone_base::functions::exp(16.0);
         for (layer, ends) in plot.layers.iter().zip([[-9.5, 9.5], [-4.75, 4.75]]) {
             let Layer::Band { points, .. } = layer else { panic!("a band") };
             let (t, low, high) = points.last().expect("points");
             assert!((t - 8.0).abs() < 0.05);
-            let unit = unit * base::functions::exp(2.0 * (t - 8.0));
+            let unit = unit * touchstone_base::functions::exp(2.0 * (t - 8.0));
             for (found, expected) in [low, high].into_iter().zip(ends) {
                 assert!((found / unit / expected - 1.0).abs() < 1e-9, "{found}, not {expected}");
             }

@@ -1,6 +1,6 @@
 //! The largest stable time step compared with theory.
 
-use report::Cell;
+use touchstone_report::Cell;
 
 use super::anchor;
 use crate::{
@@ -43,7 +43,7 @@ fn stable(limit: &StepLimit, runs: &Runs) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use touchstone_base::{
         gate::{Bound, Evidence, Gate, Verdict},
         record::{Metric, Record},
         spec::Bisect,

@@ -1,7 +1,7 @@
 //! Maps: the outcomes of runs as a function of two settings.
 
-use base::record::Record;
-use report::{Axis, Figure, Layer, Plot};
+use touchstone_base::record::Record;
+use touchstone_report::{Axis, Figure, Layer, Plot};
 
 use crate::{
     declare::{Map, MapPanel},
@@ -35,8 +35,8 @@ fn panel(map: &Map, panel: &MapPanel, runs: &Runs) -> Plot {
 
 #[cfg(test)]
 mod tests {
-    use base::spec::RunSpec;
-    use report::{Block, Colour};
+    use touchstone_base::spec::RunSpec;
+    use touchstone_report::{Block, Colour};
 
     use super::*;
     use crate::studies::tests::{ERROR, runs, spec};

@@ -1,11 +1,11 @@
 //! The smallest error of each constant that the gates of a case detect.
 
-use base::{
+use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     mutation::Constant,
     record::Record,
 };
-use report::{Cell, code};
+use touchstone_report::{Cell, code};
 
 use super::anchor;
 use crate::{
@@ -147,8 +147,8 @@ fn gate(case: &str, watched: &Watched) -> Gate {
 
 #[cfg(test)]
 mod tests {
-    use base::{gate::Verdict, spec::RunSpec};
     use serde_json::json;
+    use touchstone_base::{gate::Verdict, spec::RunSpec};
 
     use super::*;
     use crate::{

@@ -1,11 +1,11 @@
 //! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
 
-use base::{
+use touchstone_base::{
     gate::Verdict,
     record::Record,
     submission::{Division, OURS, SESSION, Submission},
 };
-use report::{Axis, Cell, Colour, Figure, Plot, Series, Shape, percent, plain, seconds};
+use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, Shape, percent, plain, seconds};
 
 use super::anchor;
 use crate::{
@@ -255,7 +255,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
 }
 
 /// The runs of the closed division, then those of the open one, the best first.
-fn table(declared: &Declaration, runs: &Runs) -> report::Table {
+fn table(declared: &Declaration, runs: &Runs) -> touchstone_report::Table {
     type Row<'a> = (&'a Submission, &'a JudgedRun, f64, &'a str);
     let rows = runs.of_others().filter_map(|run| {
         let mut all = declared.accuracy.iter();
@@ -332,7 +332,7 @@ fn all_gates(run: &JudgedRun) -> String {
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use touchstone_base::{
         gate::{Bound, Evidence, Gate},
         record::Metric,
     };

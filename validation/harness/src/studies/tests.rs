@@ -1,8 +1,8 @@
 //! Runs whose records are made up by hand, for the tests of studies.
 
-use base::{record::Record, spec::RunSpec};
-use report::{Block, Table};
 use serde_json::json;
+use touchstone_base::{record::Record, spec::RunSpec};
+use touchstone_report::{Block, Table};
 
 use crate::{
     declare::{Comparison, Level, Resolution},
@@ -10,7 +10,7 @@ use crate::{
     study::Study,
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     ERROR = "error" ["-"] "as it was made up";
 }
 

@@ -2,11 +2,11 @@
 //! falls or stops falling. Where the reference or the inputs have an uncertainty, E = S − D, result minus
 //! data, is held against twice u_val = (u_num² + u_input² + u_D²)^(1/2), by ASME V&V 20-2009.
 
-use base::{
+use touchstone_base::{
     functions::{ln, powf},
     spec::RunSpec,
 };
-use report::{Cell, Table, percent, sig};
+use touchstone_report::{Cell, Table, percent, sig};
 
 use super::anchor;
 use crate::{

@@ -1,7 +1,7 @@
 //! A column of Tait fluid at rest under gravity: dp/dy = −ρ g with (7).
 
-use base::functions::powf;
-use solver::Tait;
+use touchstone_base::functions::powf;
+use touchstone_solver::Tait;
 
 /// A column, compressed by its own weight.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +42,7 @@ impl Hydrostatic {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use solver::EquationOfState;
+    use touchstone_solver::EquationOfState;
 
     #[test]
     fn the_column_is_in_equilibrium_and_obeys_the_equation_of_state() {

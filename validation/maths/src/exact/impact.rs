@@ -5,7 +5,7 @@
 //! V travels through the strip at U with ⁰ρ U V = −σ and V = U (1 − J); as V → 0, −σ = ⁰ρ c_p V and
 //! U = c_p. Each strip of length L gives its momentum 2 ⁰ρ L V to the other in 2 L/U.
 
-use base::functions::ln_1p;
+use touchstone_base::functions::ln_1p;
 
 use crate::halved;
 

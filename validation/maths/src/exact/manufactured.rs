@@ -7,8 +7,8 @@
 //! walls. So the flow satisfies the equations of a weakly compressible fluid, whatever its sound speed, with
 //! the force f = (u·∇)u + ∇p/ρ − ν∇²u and no source of mass.
 
-use base::functions::{cos, sin};
 use std::f64::consts::{PI, TAU};
+use touchstone_base::functions::{cos, sin};
 
 use nalgebra::Vector2;
 

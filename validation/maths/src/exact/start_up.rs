@@ -8,8 +8,8 @@
 //!   F = 8νV/L². u/V = 4η(1-η) - Σ_{n≥0} 32/(π³m³) sin(mπη) exp(-m²π²τ), m = 2n+1, and, as an image sum,
 //!   u/V = 8τ (1 - 4 Σ_{n≥0} (-1)ⁿ [i²erfc((n+η)/(2√τ)) + i²erfc((n+1-η)/(2√τ))]).
 
-use base::functions::{erfc, exp, exp_m1, sin};
 use std::f64::consts::PI;
+use touchstone_base::functions::{erfc, exp, exp_m1, sin};
 
 /// A series is summed until the rigorous bound on its tail, relative to the velocity scale, is
 /// below this.

@@ -1,7 +1,7 @@
 //! Taylor-Green vortices: a periodic array of vortices that decays without changing its shape.
 
-use base::functions::{cos, exp, sin};
 use std::f64::consts::TAU;
+use touchstone_base::functions::{cos, exp, sin};
 
 use nalgebra::Vector2;
 

@@ -1,8 +1,8 @@
 //! Rows of particles along a smooth curve and beside it, each spaced evenly by its own arc length.
 
-use base::functions::{cos, sin};
 use nalgebra::Vector2;
-use solver::{Particle, Role};
+use touchstone_base::functions::{cos, sin};
+use touchstone_solver::{Particle, Role};
 
 type Point = Vector2<f64>;
 
@@ -185,8 +185,8 @@ impl Curve {
 mod tests {
     use super::*;
     use crate::geometry::Hill;
-    use base::functions::exp;
-    use solver::{Kernel, QuinticSpline, Smoothing, WendlandC2};
+    use touchstone_base::functions::exp;
+    use touchstone_solver::{Kernel, QuinticSpline, Smoothing, WendlandC2};
 
     /// Particles of a curve and of the fluid before it, with their areas.
     struct Fitted {

@@ -1,6 +1,6 @@
 //! The periodic hill: a curved lower wall, convex at the crest and concave at the foot, and a flat lid.
 
-use base::reference::{Reference, ReferenceError};
+use touchstone_base::reference::{Reference, ReferenceError};
 
 /// The height for which the pieces are tabulated \[mm\].
 const TABULATED: f64 = 28.0;

@@ -1,7 +1,7 @@
 //! An open rectangular tank: a bottom, two sides, and no lid.
 
 use nalgebra::Vector2;
-use solver::{PlaneWall, Role, lattice};
+use touchstone_solver::{PlaneWall, Role, lattice};
 
 /// The inside of a tank, from its lower left corner at the origin.
 ///
@@ -23,9 +23,9 @@ impl Tank {
         self.columns as f64 * self.dx
     }
 
-    /// For [`solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, and wall
-    /// particles behind them, out to the `support` \[m\], which come last. The fluid's first row is at dx,
-    /// see [`Tank`].
+    /// For [`touchstone_solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, and
+    /// wall particles behind them, out to the `support` \[m\], which come last. The fluid's first row is at
+    /// dx, see [`Tank`].
     pub fn interface_walls(&self, support: f64) -> Vec<(Vector2<f64>, Role)> {
         let (mut walls, mut behind_them) = (Vec::new(), Vec::new());
         let behind = (support / self.dx - 1e-9).floor() as i32;
@@ -47,8 +47,8 @@ impl Tank {
         walls
     }
 
-    /// For [`solver::ExtrapolatingWall`]: rows from half a spacing behind bottom and sides on, up to the
-    /// rim, out to the `support` \[m\]. The fluid's first row is at dx/2.
+    /// For [`touchstone_solver::ExtrapolatingWall`]: rows from half a spacing behind bottom and sides on, up
+    /// to the rim, out to the `support` \[m\]. The fluid's first row is at dx/2.
     pub fn rows_behind(&self, support: f64) -> Vec<Vector2<f64>> {
         let behind = (support / self.dx + 0.5 - 1e-9).floor() as usize;
         let first = Vector2::repeat((0.5 - behind as f64) * self.dx);

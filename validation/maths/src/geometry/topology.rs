@@ -243,8 +243,8 @@ impl Background {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::functions::{rotation, sin_cos};
     use std::f64::consts::TAU;
+    use touchstone_base::functions::{rotation, sin_cos};
 
     const DX: f64 = 0.1;
 

@@ -13,7 +13,7 @@
 //! diffusion in dρ/dt. An artificial stress, which acts in dv/dt too, takes a sweep of its own.
 
 use nalgebra::Vector2;
-use solver::{
+use touchstone_solver::{
     ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
     FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
     terms::{Rest, Tensile},
@@ -138,14 +138,14 @@ where
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector2;
-    use solver::{
+    use touchstone_solver::{
         ArtificialStress, Compose, CubicSpline, Domain, InterfaceWall, Particle,
         PredictorCorrector, Role, Scene, Smoothing, Tait,
     };
 
     use super::*;
     use crate::metrics::energy::{Energy, Water, water_slope};
-    use base::random::Random;
+    use touchstone_base::random::Random;
 
     type Forces = (Pressure<Tait, ArtificialStress>, ArtificialViscosity<Tait>, BodyForce);
     type Drift = (Continuity, Xsph, DensityDiffusion);
@@ -161,17 +161,20 @@ mod tests {
     fn scene() -> Scene<Method> {
         let (mut random, eos, h) = (Random::new(7), WATER.eos, 1.3 * DX);
         let mut number = move || random.uniform() - 0.5;
-        let mut particles: Vec<Particle> = solver::lattice(Vector2::zeros(), DX, 12, 9)
+        let mut particles: Vec<Particle> = touchstone_solver::lattice(Vector2::zeros(), DX, 12, 9)
             .map(|x| {
                 let x = x + Vector2::new(number(), number()) * (0.3 * DX);
                 let v = Vector2::new(number(), number());
                 Particle::fluid(x, v, 2.0 * (1.0 + 0.02 * number()), DX * DX)
             })
             .collect();
-        particles.extend(solver::lattice(Vector2::new(-0.3, -3.0 * DX), DX, 18, 3).map(|x| {
-            let wall = Particle::fluid(x, Vector2::zeros(), 2.0 * (1.0 + 0.02 * number()), DX * DX);
-            wall.with_role(Role::Wall)
-        }));
+        particles.extend(touchstone_solver::lattice(Vector2::new(-0.3, -3.0 * DX), DX, 18, 3).map(
+            |x| {
+                let wall =
+                    Particle::fluid(x, Vector2::zeros(), 2.0 * (1.0 + 0.02 * number()), DX * DX);
+                wall.with_role(Role::Wall)
+            },
+        ));
         let stress = ArtificialStress::new(0.3, 4, Smoothing::<CubicSpline>::new(h).w(DX * DX));
         let forces = (
             Pressure { eos, tensile: stress },

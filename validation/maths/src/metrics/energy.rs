@@ -1,8 +1,8 @@
 //! The energies of weakly compressible water under gravity, from its particles.
 
-use base::functions::{exp_m1, ln};
 use nalgebra::Vector2;
-use solver::{EquationOfState, Evolved, Numbers, Rate, Stepper, Tait};
+use touchstone_base::functions::{exp_m1, ln};
+use touchstone_solver::{EquationOfState, Evolved, Numbers, Rate, Stepper, Tait};
 
 /// What the energy of a particle depends on.
 #[derive(Clone, Copy, Debug)]

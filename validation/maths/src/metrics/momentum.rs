@@ -1,7 +1,7 @@
 //! Momentum of particles.
 
 use nalgebra::Vector2;
-use solver::{Particle, Role};
+use touchstone_solver::{Particle, Role};
 
 /// Total momentum of the fluid per unit depth \[kg/s\], summed in the order given.
 pub fn momentum<X>(particles: &[Particle<X>]) -> Vector2<f64> {

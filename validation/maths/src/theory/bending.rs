@@ -8,9 +8,9 @@
 //! sum of squares, λ (tr H)²/2 + μ H:H + ¼ c Σ_b g |E|² a particle, whose least value is half of the bending
 //! stiffness. Frequencies go with its root, and deflections under a load with its inverse.
 
-use lagrangian::body::hourglass;
 use nalgebra::{DMatrix, DVector, Vector2};
-use solver::kernel::Kernel;
+use touchstone_lagrangian::body::hourglass;
+use touchstone_solver::kernel::Kernel;
 
 use super::{
     lagrangian::HOURGLASS,
@@ -99,7 +99,7 @@ struct Neighbour {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solver::kernel::{CubicSpline, WendlandC2};
+    use touchstone_solver::kernel::{CubicSpline, WendlandC2};
 
     /// By an independent program, which eliminates in another order.
     #[test]

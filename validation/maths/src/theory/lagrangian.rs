@@ -9,10 +9,10 @@
 //! than any wave inside, at a corner by a factor of 1.4 with Poisson's ratio 0.4 and of 1.8 with 0.4999.
 //! [`fastest_of_block`] finds them by power iteration.
 
-use base::functions::sin;
-use lagrangian::body::hourglass;
 use nalgebra::{Matrix2, Vector2};
-use solver::{
+use touchstone_base::functions::sin;
+use touchstone_lagrangian::body::hourglass;
+use touchstone_solver::{
     inverse::{Inverse, of_two},
     kernel::{Kernel, Smoothing},
 };
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use crate::theory::lattice::wave_vectors;
     use approx::assert_relative_eq;
-    use solver::kernel::WendlandC2;
+    use touchstone_solver::kernel::WendlandC2;
 
     const H_OVER_DX: f64 = 1.0;
 

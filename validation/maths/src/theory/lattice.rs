@@ -12,10 +12,10 @@
 //!
 //! All numbers are dimensionless: in units of the spacing inside, of h at the surface.
 
-use base::functions::sin;
 use nalgebra::{Matrix2, Vector2};
-use solver::kernel::{Kernel, Smoothing};
 use std::{f64::consts::PI, iter::Sum};
+use touchstone_base::functions::sin;
+use touchstone_solver::kernel::{Kernel, Smoothing};
 
 /// A lattice point other than the origin, in units of dx.
 struct Site {
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use crate::theory::tests::assert_rounds_to;
     use approx::assert_relative_eq;
-    use solver::kernel::{CubicSpline, QuinticSpline, WendlandC2};
+    use touchstone_solver::kernel::{CubicSpline, QuinticSpline, WendlandC2};
 
     /// The largest values of the symbols over a set of wave vectors, made dimensionless with h.
     struct Maxima {

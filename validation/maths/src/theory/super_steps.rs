@@ -24,7 +24,7 @@ pub fn factor(stages: u32, z: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use solver::integrator::stages;
+    use touchstone_solver::integrator::stages;
 
     /// The polynomial at many z up to the limit of s stages.
     fn sampled(s: u32) -> Vec<f64> {
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn the_factor_is_an_exponential_up_to_second_order() {
         for s in [3, 5, 11] {
-            let error = |z: f64| (factor(s, z) - base::functions::exp(-z)).abs();
+            let error = |z: f64| (factor(s, z) - touchstone_base::functions::exp(-z)).abs();
             let ratio = error(2e-2) / error(1e-2);
             assert!((7.5..8.5).contains(&ratio), "{s} stages: {ratio}");
         }
@@ -69,8 +69,8 @@ mod tests {
     /// to each of 0.02, 0.05 and 0.1: waves decay by the factors of their kicks in place of exponentials. At
     /// each of these times velocities are brought up to it, by half a kick before and half a one after.
     fn error_of_start_up(rows: usize, steps: i32) -> f64 {
-        use base::functions::{exp, sin};
         use std::f64::consts::PI;
+        use touchstone_base::functions::{exp, sin};
         let stiffest = 3.84 * (rows * rows) as f64;
         let explicit = 2.0 / (1.1 * stiffest);
         let kick = |dt: f64, rate: f64| factor(stages(dt / explicit), rate * dt);

@@ -16,9 +16,11 @@ use super::{
     super_steps,
 };
 use crate::halved;
-use base::functions::{ln, modulus};
 use nalgebra::{Complex, Matrix3, SMatrix, Vector2};
-use solver::{Euler, Leapfrog, PredictorCorrector, SingleSweep, SuperSteps, integrator::stages};
+use touchstone_base::functions::{ln, modulus};
+use touchstone_solver::{
+    Euler, Leapfrog, PredictorCorrector, SingleSweep, SuperSteps, integrator::stages,
+};
 
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
 /// positive.
@@ -381,7 +383,7 @@ mod tests {
     use super::*;
     use crate::theory::tests::assert_rounds_to;
     use approx::assert_relative_eq;
-    use solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
+    use touchstone_solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
     const WATER: Medium = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
     use Integrator::{Euler, Leapfrog, PredictorCorrector, SingleSweep};

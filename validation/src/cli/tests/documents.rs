@@ -4,15 +4,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, atomic::AtomicBool};
 
-use base::{record::Status, spec::RunSpec};
 use clap::{Parser, error::ErrorKind};
-use harness::{
+use rayon::prelude::*;
+use touchstone_base::{record::Status, spec::RunSpec};
+use touchstone_harness::{
     case::{self, Case, Planned, Tier},
     make::{self, Job, Making},
     plan,
     runner::Context,
 };
-use rayon::prelude::*;
 
 use super::super::{
     World,
@@ -66,7 +66,7 @@ fn is_placeholder(name: &str) -> bool {
 }
 
 fn find(name: &str) -> Result<&'static dyn Case, String> {
-    cases::find(name).map_err(|error| error.to_string())
+    touchstone_cases::find(name).map_err(|error| error.to_string())
 }
 
 /// Does the first of these variants have these settings, the first of several values each?
@@ -80,7 +80,7 @@ fn check_run(name: &str, variant: Option<&String>, set: &[String]) -> Result<(),
 
 /// Names of the gates of both plans.
 static GATES: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let of = |tier| cases::CASES.iter().flat_map(move |case| plan::of_case(*case, tier));
+    let of = |tier| touchstone_cases::CASES.iter().flat_map(move |case| plan::of_case(*case, tier));
     let gates = [Tier::Quick, Tier::Full].into_iter().flat_map(of).flat_map(|run| run.gates);
     gates.map(|gate| gate.id).collect()
 });
@@ -144,7 +144,7 @@ const SHORT: f64 = 1.0;
 fn run_of(line: &str) -> Option<RunSpec> {
     let arguments = Arguments::try_parse_from(line.split_whitespace()).ok()?;
     let Command::Run(run) = arguments.command else { return None };
-    let case = cases::find(&run.case.filter(|name| !is_placeholder(name))?).ok()?;
+    let case = touchstone_cases::find(&run.case.filter(|name| !is_placeholder(name))?).ok()?;
     let variant = run.variant.unwrap_or_else(|| case.recommended().variant.to_string());
     let set: Vec<String> =
         run.set.into_iter().chain(run.rows.map(|rows| format!("rows={rows}"))).collect();
@@ -160,7 +160,7 @@ fn short_runs_in_documents_end_as_documents_say() {
     let mut jobs: Vec<(Job, bool, String)> = Vec::new();
     for (line, comment) in texts.flat_map(|text| commented(&text)) {
         let Some(spec) = run_of(&line) else { continue };
-        let case = cases::find(&spec.case).expect("a case");
+        let case = touchstone_cases::find(&spec.case).expect("a case");
         let job = Job { case, planned: Planned::new(spec) };
         jobs.push((job, comment.contains("diverges"), line));
     }
@@ -189,7 +189,12 @@ fn problems_in_documents_can_be_exported() {
     let (mut count, folder) = (0, tempfile::tempdir().expect("a folder"));
     static NEVER: AtomicBool = AtomicBool::new(false);
     let sources = |_: &str| String::from("staged");
-    let world = World { cases: cases::CASES, sources, references: |_| vec![], interrupt: &NEVER };
+    let world = World {
+        cases: touchstone_cases::CASES,
+        sources,
+        references: |_| vec![],
+        interrupt: &NEVER,
+    };
     for line in texts.flat_map(|text| commands(&text)) {
         let Ok(arguments) = Arguments::try_parse_from(line.split_whitespace()) else { continue };
         let Command::Export(mut export) = arguments.command else { continue };
@@ -219,7 +224,7 @@ fn gates_that_documents_explain_are_of_variants_that_they_run() {
             run.extend(run_of(&line).map(|spec| (spec.case, spec.variant)));
             let gate = line.strip_prefix("touchstone explain ").unwrap_or_default();
             let Some((name, rest)) = gate.split_once('.') else { continue };
-            let Ok(case) = cases::find(name) else { continue };
+            let Ok(case) = touchstone_cases::find(name) else { continue };
             let variant = rest.split('.').next().unwrap_or_default();
             let is_variant = case.variants().iter().any(|of| of.name == variant);
             let mut of_case = run.iter().filter(|(of, _)| of == name).peekable();

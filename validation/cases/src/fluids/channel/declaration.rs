@@ -6,10 +6,10 @@
 use super::{
     ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,
 };
-use base::{gate::*, mutation::Constant, record::*, spec::*};
-use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
 use nalgebra::Vector2;
-use report::Axis;
+use touchstone_base::{gate::*, mutation::Constant, record::*, spec::*};
+use touchstone_harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
+use touchstone_report::Axis;
 
 /// What a flow declares.
 pub fn declaration(flow: Flow, tier: Tier) -> Declaration {

@@ -5,9 +5,9 @@
 
 use std::cmp::Ordering;
 
-use base::{gate::*, record::*, spec::RunSpec};
-use harness::{declare::*, runs::Runs, study::Study};
-use report::{Colour, percent, sig};
+use touchstone_base::{gate::*, record::*, spec::RunSpec};
+use touchstone_harness::{declare::*, runs::Runs, study::Study};
+use touchstone_report::{Colour, percent, sig};
 
 use super::{ChannelSettings, ChannelTable, For, measure::L2_WORST};
 

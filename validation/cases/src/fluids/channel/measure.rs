@@ -1,17 +1,17 @@
 //! What is measured in a channel flow, each norm with its formula.
 
-use solver::{EquationOfState, Particle, Stepper};
+use touchstone_solver::{EquationOfState, Particle, Stepper};
 
 use super::Setup;
-use base::functions::cos;
-use base::record::{Profile, Record};
-use maths::metrics::norms::{l2, linf};
+use touchstone_base::functions::cos;
+use touchstone_base::record::{Profile, Record};
+use touchstone_maths::metrics::norms::{l2, linf};
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
 /// than a few spacings.
 const WORST_FROM: f64 = 0.1;
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     // Relative error of the velocity; at a νt/L².
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles";
@@ -145,17 +145,17 @@ pub fn last_of_mode(setup: &Setup, series: &[[f64; 2]], end: f64) -> Option<Prof
 
 #[cfg(test)]
 mod tests {
-    use harness::method::Method;
     use nalgebra::Vector2;
-    use solver::Role;
+    use touchstone_harness::method::Method;
+    use touchstone_solver::Role;
 
-    use base::record::{MetricName, Record};
+    use touchstone_base::record::{MetricName, Record};
 
     use super::*;
     use crate::fluids::channel::{ChannelSettings, Flow};
 
     fn method() -> Method {
-        schemes::flow::couette().seed
+        touchstone_schemes::flow::couette().seed
     }
 
     fn setup(flow: Flow) -> Setup {

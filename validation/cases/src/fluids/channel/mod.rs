@@ -15,7 +15,7 @@ use declaration::declaration;
 pub use plan::{GHOSTS, ladder};
 pub use setup::{ChannelSettings, Flow, Setup};
 
-use harness::{composed::*, table::Table};
+use touchstone_harness::{composed::*, table::Table};
 
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];

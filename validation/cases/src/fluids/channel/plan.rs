@@ -1,9 +1,9 @@
 //! The runs of the channel flows, stated once, and their gates.
 
 use super::{ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff, waves};
-use base::{gate::*, record::MetricName};
-use harness::case::Tier;
-use harness::table::{Row, Table};
+use touchstone_base::{gate::*, record::MetricName};
+use touchstone_harness::case::Tier;
+use touchstone_harness::table::{Row, Table};
 
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
 /// `plain`.

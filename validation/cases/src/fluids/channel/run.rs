@@ -1,12 +1,12 @@
 //! One run of a channel flow: what is measured, and when.
 
-use base::record::{Record, Status};
-use harness::{
+use touchstone_base::record::{Record, Status};
+use touchstone_harness::{
     case::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
 };
-use solver::{Flow as Going, Particle, Role, Stepper};
+use touchstone_solver::{Flow as Going, Particle, Role, Stepper};
 
 use super::measure::{self, MODE};
 use super::{Setup, setup::DECISIVE};

@@ -1,17 +1,17 @@
 //! The settings of the channel flows, and from them to numbers: the rules for sound speed, time step and
 //! arrangement, each stated once.
 
-use base::random::Random;
-use harness::{case::*, method::*};
-use maths::exact::StartUp;
 use nalgebra::Vector2;
-use solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
+use touchstone_base::random::Random;
+use touchstone_harness::{case::*, method::*};
+use touchstone_maths::exact::StartUp;
+use touchstone_solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
 
 use crate::fluids::unit_flow::LIMIT_BOX;
 
 use super::{COUETTE, ChannelCase, POISEUILLE, TIMES};
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of a flow between two plates. Lengths by the width L, times by L²/ν.
     pub struct ChannelSettings {
         /// Reynolds number V L/ν, V the speed of the plate or of the centre line
@@ -280,7 +280,7 @@ impl Setup {
     /// Particles of the section, `count` rows from height `first` \[m\] up, at rest.
     pub fn rows(&self, first: f64, count: usize) -> Vec<Particle> {
         let dx = self.medium.dx;
-        solver::lattice(Vector2::new(0.5 * dx, first), dx, self.columns, count)
+        touchstone_solver::lattice(Vector2::new(0.5 * dx, first), dx, self.columns, count)
             .map(|x| Particle::fluid(x, Vector2::zeros(), self.settings.rho, dx * dx))
             .collect()
     }

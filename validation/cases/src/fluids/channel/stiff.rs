@@ -2,8 +2,8 @@
 //! over the Reynolds number.
 
 use super::{ChannelSettings, ChannelTable, Flow, For, measure::L2};
-use base::{gate::*, record::Record};
-use harness::{runs::Runs, study::Study};
+use touchstone_base::{gate::*, record::Record};
+use touchstone_harness::{runs::Runs, study::Study};
 
 /// Reynolds numbers, and the share of the pair interactions of `modern` that is allowed. At the lower one
 /// sound limits no step any more, so that the cost is that of accuracy.

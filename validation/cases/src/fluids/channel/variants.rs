@@ -1,7 +1,7 @@
 //! The variants of the channel flows: methods, and the settings that go with them.
 
-use harness::{composed::*, method::Method};
-use schemes::flow::{self, OfChannels};
+use touchstone_harness::{composed::*, method::Method};
+use touchstone_schemes::flow::{self, OfChannels};
 
 use super::{ChannelSettings, Flow, Setup};
 

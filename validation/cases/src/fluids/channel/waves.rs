@@ -2,10 +2,10 @@
 //! with the period 2L/c0 of a wave that bounces between them, whatever c0.
 
 use super::{ChannelTable, For, measure::MODE};
-use base::functions::{cos, hypot, powf, sin};
-use base::{gate::*, record::Record};
-use harness::{runs::Runs, study::Study, table::Row};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
+use touchstone_base::functions::{cos, hypot, powf, sin};
+use touchstone_base::{gate::*, record::Record};
+use touchstone_harness::{runs::Runs, study::Study, table::Row};
 
 /// Adds the runs at Re 20, to νt/L² = 1.5, for waves are judged by the end of a run: two sound speeds \[V\].
 /// The instability grows from the disorder of the start, 1e-4 dx, or from round-off if there is none.

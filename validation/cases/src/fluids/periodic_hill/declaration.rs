@@ -7,10 +7,10 @@ use nalgebra::Vector2;
 use super::{
     CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*, setup::FLUX,
 };
-use base::{gate::*, mutation::Constant, record::*};
-use harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
-use maths::metrics::norms::rms;
-use report::{Axis, ColourMap, percent};
+use touchstone_base::{gate::*, mutation::Constant, record::*};
+use touchstone_harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
+use touchstone_maths::metrics::norms::rms;
+use touchstone_report::{Axis, ColourMap, percent};
 
 /// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.
 const SEALED: Draws = Draws {
@@ -131,7 +131,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
 /// of the flow: transients decay by 0.11 U_b/H at Re 50, and five times as fast at Re 10.
 fn left_of_start(settings: &serde_json::Value) -> String {
     let [re, end] = ["re", "end"].map(|name| settings[name].as_f64().unwrap_or(f64::NAN));
-    let left = base::functions::exp(-5.5 * end / re);
+    let left = touchstone_base::functions::exp(-5.5 * end / re);
     match settings["from_reference"].as_bool() {
         Some(false) if left > 0.05 => {
             format!(" (not steady: about {} of the start from rest is left)", percent(left, 1))

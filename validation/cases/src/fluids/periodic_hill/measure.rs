@@ -1,16 +1,16 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
-use solver::{
+use touchstone_solver::{
     EquationOfState, Particle, Role, Stepper,
     inverse::{Inverse, of_three},
 };
 
 use super::{Setup, reference::KNOWN_SETTINGS};
-use base::functions::hypot;
-use base::record::{MetricKey, Profile, Record};
-use harness::pictures;
-use maths::metrics::norms::{largest, rms};
+use touchstone_base::functions::hypot;
+use touchstone_base::record::{MetricKey, Profile, Record};
+use touchstone_harness::pictures;
+use touchstone_maths::metrics::norms::{largest, rms};
 
 /// Points across a section.
 pub const POINTS: usize = 200;
@@ -19,7 +19,7 @@ pub const STATIONS: [f64; 10] = [0.05, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8
 /// Points along a wall, 0.025 H apart.
 pub const WALL: usize = 361;
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     FORCE = "force" ["U_b^2/H"] "mean body force of the last window";
     FLUX = "flux" ["-"] "mean flux over the flux wanted, minus 1, from the particles' volumes";
@@ -159,7 +159,7 @@ pub struct Window {
     samples: usize,
 }
 
-harness::observed! { Window: changes(sections, wall, forces, samples), stays() }
+touchstone_harness::observed! { Window: changes(sections, wall, forces, samples), stays() }
 
 /// The places of the stations: x, y, weight of the section's height.
 fn places(setup: &Setup) -> Vec<[f64; 2]> {
@@ -190,7 +190,7 @@ impl Window {
     /// Adds a sample.
     pub fn sample(&mut self, setup: &Setup, s: &dyn Stepper<()>) {
         let eos = setup.flow.medium.eos;
-        let point = |c: &solver::particles::Column| {
+        let point = |c: &touchstone_solver::particles::Column| {
             let p = eos.pressure(c.common.density) - eos.background;
             [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
         };
@@ -368,19 +368,19 @@ pub fn particles(setup: &Setup, s: &dyn Stepper<()>, is_kept: bool, record: &mut
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::random::Random;
-    use maths::geometry::Hill;
-    use solver::{QuinticSpline, Smoothing};
+    use touchstone_base::random::Random;
+    use touchstone_maths::geometry::Hill;
+    use touchstone_solver::{QuinticSpline, Smoothing};
 
     use crate::fluids::periodic_hill::{HillSettings, setup::FLUX as BULK};
-    use base::functions::{cos, sin};
     use std::f64::consts::TAU;
+    use touchstone_base::functions::{cos, sin};
 
     /// The scene of some settings, its kernel, and the viscosity 1/50.
-    fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn schemes::hill::Driving>) {
+    fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn touchstone_schemes::hill::Driving>) {
         let mut settings = HillSettings::default();
         set(&mut settings);
-        let method = schemes::hill::carried();
+        let method = touchstone_schemes::hill::carried();
         let setup = Setup::new(&method, &settings).expect("sound settings");
         let simulation = (method.build)(setup.parts()).expect("a scene");
         (setup, simulation)
@@ -537,7 +537,7 @@ mod tests {
     #[test]
     fn the_mean_velocity_is_that_of_the_volumes() {
         let (setup, _) = scene(|_| {});
-        let method = schemes::hill::carried();
+        let method = touchstone_schemes::hill::carried();
         let mut parts = setup.parts();
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
@@ -568,7 +568,7 @@ mod tests {
         // The crest 2 % of H too high, a fifth of a spacing.
         let [offset, _] = seen(&setup, &*scene(|s| s.crest = 1.02).1);
         assert!((offset - 0.2).abs() < 0.02, "{offset}");
-        let method = schemes::hill::carried();
+        let method = touchstone_schemes::hill::carried();
         let mut parts = setup.parts();
         let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
         for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {
@@ -586,7 +586,9 @@ mod tests {
         let across = Vector2::new(-along.y, along.x);
         let kernel = Smoothing::<QuinticSpline>::new(dx);
         let mut points = Vec::new();
-        for place in solver::lattice(Vector2::new(-1.0, 0.5 * dx), dx, 2 * n as usize, n as usize) {
+        for place in
+            touchstone_solver::lattice(Vector2::new(-1.0, 0.5 * dx), dx, 2 * n as usize, n as usize)
+        {
             let mut moved = || 0.4 * dx * (random.uniform() - 0.5);
             let (s, g) = (place.x + moved(), place.y + moved());
             let v = along * u(s, g);

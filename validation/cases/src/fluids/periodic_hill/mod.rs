@@ -11,8 +11,8 @@ mod reference;
 mod run;
 mod setup;
 
-use harness::composed::*;
-use schemes::hill;
+use touchstone_harness::composed::*;
+use touchstone_schemes::hill;
 
 use crate::fluids::unit_flow::unit_settings;
 

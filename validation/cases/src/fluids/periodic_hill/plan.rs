@@ -1,8 +1,8 @@
 //! The runs of the case and their gates.
 
 use super::{CASE, HillSettings, RECOMMENDED, measure::*};
-use base::gate::*;
-use harness::{case::Tier, table};
+use touchstone_base::gate::*;
+use touchstone_harness::{case::Tier, table};
 
 /// What a run is for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,9 +5,9 @@ use std::sync::LazyLock;
 use nalgebra::Vector2;
 
 use super::HillSettings;
-use base::record::MetricKey;
-use base::reference::{Reference as Package, ReferenceError};
-use maths::{geometry::Hill, metrics::norms::rms};
+use touchstone_base::record::MetricKey;
+use touchstone_base::reference::{Reference as Package, ReferenceError};
+use touchstone_maths::{geometry::Hill, metrics::norms::rms};
 
 /// Reynolds numbers that have a reference.
 pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];

@@ -1,15 +1,15 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
-use base::{functions::exp, record::*};
-use harness::{
+use touchstone_base::{functions::exp, record::*};
+use touchstone_harness::{
     case::RunError,
     method::Parts,
     problem::{Asked, Brief, Calls, Problem},
 };
-use schemes::hill::{Driving, HillMethod};
+use touchstone_schemes::hill::{Driving, HillMethod};
 
 use super::{HillSettings, Setup, measure::*};
-use solver::Particle;
+use touchstone_solver::Particle;
 
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;
@@ -48,7 +48,7 @@ pub struct Controller {
     last: f64,
 }
 
-harness::observed! { Controller: changes(wanted, response, force, last), stays() }
+touchstone_harness::observed! { Controller: changes(wanted, response, force, last), stays() }
 
 impl Controller {
     /// Looks at the mean velocity after `dt` \[s\].
@@ -79,7 +79,7 @@ pub struct Monitor {
     has_acted: bool,
 }
 
-harness::observed! {
+touchstone_harness::observed! {
     Monitor: changes(controller, window, series, mean, has_acted), stays(area, stretch)
 }
 

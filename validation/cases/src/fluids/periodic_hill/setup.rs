@@ -1,10 +1,10 @@
 //! From settings to numbers and particles.
 
-use harness::{case::RunError, method::Parts};
-use maths::geometry::{Curve, Hill};
 use nalgebra::Vector2;
-use schemes::hill::HillMethod;
-use solver::{Domain, Particle, Role};
+use touchstone_harness::{case::RunError, method::Parts};
+use touchstone_maths::geometry::{Curve, Hill};
+use touchstone_schemes::hill::HillMethod;
+use touchstone_solver::{Domain, Particle, Role};
 
 use super::{HillSettings, reference::*};
 use crate::fluids::unit_flow::{Scales, UnitFlow};
@@ -139,7 +139,7 @@ impl Setup {
 mod tests {
     use super::*;
     use crate::fluids::periodic_hill::CASE;
-    use harness::case::Case;
+    use touchstone_harness::case::Case;
 
     /// Runs that have no reference started from rest without a word.
     #[test]

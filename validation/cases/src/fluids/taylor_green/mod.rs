@@ -3,10 +3,10 @@
 
 mod run;
 
-use base::{functions::log10, gate::*, record::Record};
-use harness::{case::*, composed::*, declare::*, table};
-use report::{Axis, ColourMap};
-use schemes::flow;
+use touchstone_base::{functions::log10, gate::*, record::Record};
+use touchstone_harness::{case::*, composed::*, declare::*, table};
+use touchstone_report::{Axis, ColourMap};
+use touchstone_schemes::flow;
 
 use crate::fluids::unit_flow::unit_settings;
 use run::*;

@@ -1,19 +1,19 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
-use solver::{Domain, EquationOfState, Particle, Stepper};
+use touchstone_solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
 use crate::fluids::unit_flow::{Scales, UnitFlow};
-use base::{functions::hypot, random::Random, record::*};
-use harness::{
+use touchstone_base::{functions::hypot, random::Random, record::*};
+use touchstone_harness::{
     case::RunError,
     method::{Method, Parts},
     pictures,
     problem::{Asked, Brief, Calls, Problem},
     rules,
 };
-use maths::{exact::TaylorGreen, metrics::norms::largest};
+use touchstone_maths::{exact::TaylorGreen, metrics::norms::largest};
 
 /// The numbers of one run, L = U = ρ = 1.
 pub struct Setup {
@@ -24,7 +24,7 @@ pub struct Setup {
     pub flow: UnitFlow,
 }
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
     L2_WORST = "l2_worst" ["-"] "largest l2 over 40 times, while 1 % of the speed of the start is left";
@@ -49,7 +49,7 @@ impl Setup {
         let (s, dx, eos) = (&self.settings, self.flow.medium.dx, self.flow.medium.eos);
         let mut random = Random::new(s.seed as u64);
         let mut shake = || s.perturb * dx * (2.0 * random.uniform() - 1.0);
-        solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n)
+        touchstone_solver::lattice(Vector2::repeat(0.5 * dx), dx, s.n, s.n)
             .map(|x| x + Vector2::new(shake(), shake()))
             .map(|x| {
                 let density = eos.density(self.exact.pressure(x, 0.0) + eos.background);
@@ -97,7 +97,7 @@ pub struct Series {
     errors: Vec<[f64; 2]>,
 }
 
-harness::observed! { Series: changes(errors), stays(start) }
+touchstone_harness::observed! { Series: changes(errors), stays(start) }
 
 impl Problem for Setup {
     type Extra = ();
@@ -169,7 +169,7 @@ fn measure(
     let is_left = |[time, _]: &&[f64; 2]| setup.exact.decay(*time) >= DECAYED;
     record.put(L2_WORST, largest(series.iter().filter(is_left).map(|s| s[1])));
     let momentum = |particles: &[Particle]| {
-        maths::metrics::momentum::momentum(particles)
+        touchstone_maths::metrics::momentum::momentum(particles)
             / particles.iter().map(|p| p.mass).sum::<f64>()
     };
     record.put(MOMENTUM_ADDED, (momentum(end) - momentum(start)).norm());
@@ -212,11 +212,11 @@ fn nearest(particles: &[Particle]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use base::record::Record;
+    use touchstone_base::record::Record;
 
     fn setup() -> Setup {
         let settings = VortexSettings { n: 40, ..VortexSettings::default() };
-        Setup::new(&schemes::flow::vortices_modern(), &settings)
+        Setup::new(&touchstone_schemes::flow::vortices_modern(), &settings)
     }
 
     /// The record of particles that have the exact velocity times `1 + error`, a uniform velocity and the
@@ -240,7 +240,12 @@ mod tests {
         record
     }
 
-    fn assert_near(record: &Record, metric: base::record::MetricKey, exact: f64, tolerance: f64) {
+    fn assert_near(
+        record: &Record,
+        metric: touchstone_base::record::MetricKey,
+        exact: f64,
+        tolerance: f64,
+    ) {
         let found = record.value(metric).expect("measured");
         assert!(
             (found - exact).abs() < tolerance,

@@ -13,14 +13,14 @@ mod study;
 #[cfg(test)]
 mod tests;
 
-use harness::{
+use touchstone_harness::{
     composed::*,
     declare::{Declaration, Drawn, Draws, Posed},
     method::*,
 };
-use schemes::lattice;
+use touchstone_schemes::lattice;
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of an operator on particles in a periodic square, whose side, density and sound speed are 1.
     pub struct OperatorSettings {
         /// particles along each side

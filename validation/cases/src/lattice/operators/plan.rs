@@ -1,7 +1,7 @@
 //! The runs of the case and the gates of each.
 
-use base::gate::*;
-use harness::{
+use touchstone_base::gate::*;
+use touchstone_harness::{
     case::{Planned, Tier},
     table,
 };

@@ -2,25 +2,25 @@
 
 use std::f64::consts::TAU;
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     functions::{cos, sin},
     random::Random,
     record::*,
 };
-use harness::{
+use touchstone_harness::{
     case::*,
     declare::Fact,
     method::*,
     problem::{Brief, Problem},
 };
-use maths::theory::time_step::{self, Mode};
-use nalgebra::Vector2;
-use schemes::lattice::summing_step;
-use solver::{Domain, EquationOfState, Particle, Stepper, Tait};
+use touchstone_maths::theory::time_step::{self, Mode};
+use touchstone_schemes::lattice::summing_step;
+use touchstone_solver::{Domain, EquationOfState, Particle, Stepper, Tait};
 
 use super::{Operator, OperatorSettings, Subject};
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     ERROR = "error" ["-"] "(sum |o - o_exact|^2/sum |o_exact|^2)^(1/2) over particles, o the operator";
     GAIN = "gain" ["-"] "sum o o_exact/sum o_exact^2";
@@ -233,7 +233,7 @@ pub(super) struct Start {
     particles: Vec<Particle>,
 }
 
-harness::observed! { Start: changes(), stays(particles) }
+touchstone_harness::observed! { Start: changes(), stays(particles) }
 
 impl Problem for Sampled {
     type Extra = ();
@@ -259,9 +259,10 @@ impl Problem for Sampled {
         let (s, medium) = (&self.settings, self.medium);
         let mut random = Random::new(s.seed as u64);
         let mut shake = || s.disorder * medium.dx * (2.0 * random.uniform() - 1.0);
-        let particles = solver::lattice(Vector2::repeat(0.5 * medium.dx), medium.dx, s.n, s.n)
-            .map(|x| self.of.operator.particle(x + Vector2::new(shake(), shake()), &medium))
-            .collect();
+        let particles =
+            touchstone_solver::lattice(Vector2::repeat(0.5 * medium.dx), medium.dx, s.n, s.n)
+                .map(|x| self.of.operator.particle(x + Vector2::new(shake(), shake()), &medium))
+                .collect();
         Ok(Parts::new(medium, Domain::torus(1.0, 1.0), particles))
     }
 

@@ -1,7 +1,7 @@
 //! The orders of the operators, in h, in the number of neighbours and in disorder.
 
-use base::{gate::*, record::MetricKey};
-use harness::{
+use touchstone_base::{gate::*, record::MetricKey};
+use touchstone_harness::{
     case::Tier,
     convergence::Level,
     orders::{self, Line, Refinement},

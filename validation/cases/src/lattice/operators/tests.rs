@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use approx::assert_relative_eq;
-use base::mutation::{Constant, Mutation};
-use harness::case::Case;
-use solver::{QuinticSpline, Smoothing};
+use touchstone_base::mutation::{Constant, Mutation};
+use touchstone_harness::case::Case;
+use touchstone_solver::{QuinticSpline, Smoothing};
 
-use harness::context::Context;
+use touchstone_harness::context::Context;
 
 use super::{
     run::{NOISE, SUM_ERROR, SYMBOL_ERROR},
@@ -16,7 +16,7 @@ use super::{
 
 fn value(
     variant: &str,
-    metric: base::record::MetricKey,
+    metric: touchstone_base::record::MetricKey,
     set: impl FnOnce(&mut OperatorSettings),
 ) -> f64 {
     let record = OPERATORS.run(&OPERATORS.spec(variant, set), &Context::default()).expect("a run");

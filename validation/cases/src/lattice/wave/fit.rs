@@ -13,8 +13,8 @@
 
 use nalgebra::{Complex, Matrix2, Vector2};
 
-use base::functions::complex_sqrt;
-use maths::theory::time_step::Integrator;
+use touchstone_base::functions::complex_sqrt;
+use touchstone_maths::theory::time_step::Integrator;
 
 /// Angular frequency and damping of a mode.
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +110,7 @@ mod tests {
     use super::*;
     use Integrator::{Leapfrog, PredictorCorrector};
     use approx::assert_relative_eq;
-    use base::functions::{cos, exp, sin};
+    use touchstone_base::functions::{cos, exp, sin};
 
     /// States of exact steps give back ω and γ: under- and overdamped, for each integrator.
     #[test]

@@ -1,11 +1,11 @@
 //! One Fourier mode on a periodic lattice: the cases of the sound wave and of the shear wave.
 //!
 //! Particles are labelled by where they start, and amplitudes are projections over the labels: that
-//! is the linear problem that [`maths::theory::lattice`] solves exactly. Without background pressure
-//! a displacement meets a pressure of the same order, so moving particles are second order in the
-//! amplitude; products of one wave number with itself have wave numbers 0 and 2k, so the mode k
-//! itself is disturbed only to third order, relative to itself by amplitude² (unless 3k is a whole
-//! number of turns from one particle to the next, where 2k looks like -k).
+//! is the linear problem that [`touchstone_maths::theory::lattice`] solves exactly. Without background
+//! pressure a displacement meets a pressure of the same order, so moving particles are second order in the
+//! amplitude; products of one wave number with itself have wave numbers 0 and 2k, so the mode k itself is
+//! disturbed only to third order, relative to itself by amplitude² (unless 3k is a whole number of turns from
+//! one particle to the next, where 2k looks like -k).
 //!
 //! Time error is not subtracted but divided out: the amplitudes of one step follow from those of the
 //! last by a matrix that is known in closed form for each integrator, and the inverse of that form
@@ -14,15 +14,15 @@
 mod fit;
 mod run;
 
-use base::{gate::*, record::MetricKey};
-use harness::{
+use touchstone_base::{gate::*, record::MetricKey};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::{Declaration, Posed},
     table::{Row, Table},
 };
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of one mode in a periodic square box.
     pub struct WaveSettings {
         /// particles along each side
@@ -107,7 +107,7 @@ const RECOMMENDED: Recommended = Recommended {
     papers: None,
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     // Error of the frequency of a sound wave.
     FREQUENCY_ERROR = "frequency_error" ["-"]
@@ -145,11 +145,13 @@ fn variants(of: Polarisation) -> Compositions<WaveSettings> {
         "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";
     let of_diffusion = "does density diffusion decay as its symbol says? else as cubic-leapfrog";
     Variants::of(move |m, s| run::Wave::new(of, s, m))
-        .with(CUBIC, of_kernel, schemes::lattice::cubic(), |_| ())
-        .with(MIDPOINT, of_step, schemes::lattice::midpoint(), |_| ())
-        .with(QUINTIC, of_kernel, schemes::lattice::quintic(), |_| ())
-        .with(WENDLAND, of_kernel, schemes::lattice::wendland(), |_| ())
-        .with(DIFFUSIVE, of_diffusion, schemes::lattice::diffusive(), |s| s.diffusion = 0.1)
+        .with(CUBIC, of_kernel, touchstone_schemes::lattice::cubic(), |_| ())
+        .with(MIDPOINT, of_step, touchstone_schemes::lattice::midpoint(), |_| ())
+        .with(QUINTIC, of_kernel, touchstone_schemes::lattice::quintic(), |_| ())
+        .with(WENDLAND, of_kernel, touchstone_schemes::lattice::wendland(), |_| ())
+        .with(DIFFUSIVE, of_diffusion, touchstone_schemes::lattice::diffusive(), |s| {
+            s.diffusion = 0.1
+        })
         .all
 }
 
@@ -291,9 +293,9 @@ fn gates(
 mod tests {
     use super::*;
     use crate::lattice::tests::judged;
-    use base::functions::ln;
-    use harness::case::{Case, RunError};
-    use harness::context::Context;
+    use touchstone_base::functions::ln;
+    use touchstone_harness::case::{Case, RunError};
+    use touchstone_harness::context::Context;
 
     /// Every kernel, integrator and smoothing length of the quick tier has the lattice's symbols.
     #[test]

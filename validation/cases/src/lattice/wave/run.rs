@@ -2,20 +2,20 @@
 
 use std::iter::once;
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     functions::{cos, sin},
     random::Random,
     record::*,
 };
-use harness::{
+use touchstone_harness::{
     case::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
 };
-use maths::metrics::norms::largest;
-use maths::theory::time_step::{self, Mode, modes};
-use nalgebra::Vector2;
-use solver::{EquationOfState, Flow, Particle, Stepper, Tait};
+use touchstone_maths::metrics::norms::largest;
+use touchstone_maths::theory::time_step::{self, Mode, modes};
+use touchstone_solver::{EquationOfState, Flow, Particle, Stepper, Tait};
 
 use super::{
     fit::{self, DampedMode},
@@ -49,7 +49,7 @@ pub(super) struct Projection {
     momentum: Option<[[f64; 2]; 2]>,
 }
 
-harness::observed! { Projection: changes(series, momentum), stays(basis) }
+touchstone_harness::observed! { Projection: changes(series, momentum), stays(basis) }
 
 impl Wave {
     /// A wave of these settings in the lattice of a method.
@@ -105,7 +105,7 @@ impl Wave {
     /// Phase of each label, in the order of the scene.
     fn phases(&self) -> impl Iterator<Item = f64> {
         let (n, theta) = (self.settings.n, self.theta);
-        solver::lattice(Vector2::zeros(), 1.0, n, n).map(move |label| theta.dot(&label))
+        touchstone_solver::lattice(Vector2::zeros(), 1.0, n, n).map(move |label| theta.dot(&label))
     }
 
     fn across(&self) -> Vector2<f64> {
@@ -170,7 +170,8 @@ impl Projection {
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
-        let momentum = maths::metrics::momentum::momentum(&simulation.particles()).into();
+        let momentum =
+            touchstone_maths::metrics::momentum::momentum(&simulation.particles()).into();
         self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
         Flow::Continue
     }
@@ -248,7 +249,7 @@ impl Problem for Wave {
     }
 }
 
-base::metrics! {
+touchstone_base::metrics! {
     all FACTORS;
     SOUND_FACTOR = "sound_factor" ["-"] "omega/(c0 k), 1 in the continuum";
     VISCOUS_FACTOR = "viscous_factor" ["-"] "gamma/(nu k^2)";
@@ -292,7 +293,7 @@ mod tests {
 
     /// A damped wave and its method.
     fn wave(polarisation: Polarisation) -> (Wave, Method) {
-        let method = schemes::lattice::cubic();
+        let method = touchstone_schemes::lattice::cubic();
         let settings = WaveSettings { kx: 2, ky: 1, nu: 1e-3, ..WaveSettings::default() };
         let wave = Wave::new(polarisation, &settings, &method);
         (wave.expect("a wave"), method)
@@ -323,7 +324,7 @@ mod tests {
     }
 
     /// The metric of a record.
-    fn value(record: &Record, metric: base::record::MetricKey) -> f64 {
+    fn value(record: &Record, metric: touchstone_base::record::MetricKey) -> f64 {
         record.value(metric).expect("a metric")
     }
 

@@ -1,7 +1,7 @@
 //! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
 
 use super::*;
-use base::absent::Absent;
+use touchstone_base::absent::Absent;
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
 const SAMPLES: f64 = 1600.0;
@@ -22,7 +22,7 @@ pub struct End {
     pub energies: Vec<[f64; 3]>,
 }
 
-harness::observed! { End: changes(until, path, energies), stays(settings) }
+touchstone_harness::observed! { End: changes(until, path, energies), stays(settings) }
 
 impl End {
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use crate::solids::solid::Body;
     use approx::assert_relative_eq;
-    use harness::method::Parts;
+    use touchstone_harness::method::Parts;
 
     /// The frequency goes with the root of the stiffness, the sag with its inverse.
     #[test]
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn the_end_is_half_a_spacing_beyond_the_last_column() {
         let s = CantileverSettings { n: 4, ..CantileverSettings::default() };
-        let method = schemes::total::hencky();
+        let method = touchstone_schemes::total::hencky();
         let (medium, domain) = (solid::medium(&s, &method.properties), Domain::open());
         let parts = Parts::new(medium, domain, s.particles());
         let mut simulation =

@@ -4,13 +4,13 @@ mod end;
 mod path;
 mod plan;
 
-use ::lagrangian::*;
-use base::{gate::*, mutation::Constant, record::*};
-use harness::{case::*, composed::*, declare::*, table::*};
 use nalgebra::Vector2;
-use schemes::total;
-use solver::*;
 use std::f64::consts::TAU;
+use touchstone_base::{gate::*, mutation::Constant, record::*};
+use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_lagrangian::*;
+use touchstone_schemes::total;
+use touchstone_solver::*;
 
 use crate::solids::{
     causes::*,
@@ -54,7 +54,7 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
     plan: |tier| plan::table(tier).plan(),
 };
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     ENERGY_CHANGE = "energy_change" ["-"]
         "kinetic and strain energy and that of the weight: the greatest change from the start, over the \
@@ -109,7 +109,7 @@ fn variants() -> Compositions<CantileverSettings> {
     let law = "the same with the stored energy of St. Venant and Kirchhoff, the law of the test CSM3: does \
                the law matter?";
     solid::no_variants()
-        .with("seed", papers, schemes::solid::heavy_seed(), |_| {})
+        .with("seed", papers, touchstone_schemes::solid::heavy_seed(), |_| {})
         .with(LAGRANGIAN, TOTAL, total::hencky(), |s| lagrangian::choose(s))
         .with(SAINT_VENANT, law, total::saint_venant_kirchhoff(), |s| lagrangian::choose(s))
         .all

@@ -1,11 +1,11 @@
 //! What is measured of the path of the end of a bar, as finite elements are measured.
 
-use base::functions::{cos, sin};
-use maths::metrics::history::passes;
+use touchstone_base::functions::{cos, sin};
+use touchstone_maths::metrics::history::passes;
 
 use super::*;
 
-base::metrics! {
+touchstone_base::metrics! {
     all OF_PATH;
     MEAN_X = "mean_x" ["m"]
         "half the sum of the greatest and the least displacement of the end along the bar";

@@ -2,13 +2,13 @@
 
 mod plan;
 
-use ::lagrangian::{Hencky, Law as _};
-use base::{functions::*, gate::*, record::*};
-use harness::{case::*, composed::*, declare::*, table::*};
-use maths::metrics::history::passes;
 use nalgebra::Vector2;
-use solver::*;
 use std::f64::consts::TAU;
+use touchstone_base::{functions::*, gate::*, record::*};
+use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_lagrangian::{Hencky, Law as _};
+use touchstone_maths::metrics::history::passes;
+use touchstone_solver::*;
 
 use super::{
     causes::*,
@@ -52,12 +52,14 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
 
 fn variants() -> Compositions<PlateSettings> {
     let of = "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?";
-    solid::variants(schemes::solid::clamped())
-        .with(PLAIN, of, schemes::solid::clamped_plain(), |s| solid::leave_out(s, &["xsph"]))
+    solid::variants(touchstone_schemes::solid::clamped())
+        .with(PLAIN, of, touchstone_schemes::solid::clamped_plain(), |s| {
+            solid::leave_out(s, &["xsph"])
+        })
         .all
 }
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     PERIOD = "period" ["s"]
         "time to the second passage of the tip through its height of rest, twice that to the first if \
@@ -80,10 +82,10 @@ base::metrics! {
 }
 
 /// What is read from the path of the tip through all steps.
-const STEPWISE: &[base::record::MetricKey] =
+const STEPWISE: &[touchstone_base::record::MetricKey] =
     &[PERIOD, PERIOD_EXCESS, AMPLITUDE_RATIO, PERIOD_ERROR, AMPLITUDE_ERROR, PATH_RMS];
 /// What compares with the theory of our own method.
-const OF_METHODS: &[base::record::MetricKey] = &[BENDING_PERIOD_ERROR];
+const OF_METHODS: &[touchstone_base::record::MetricKey] = &[BENDING_PERIOD_ERROR];
 
 /// The paper's terms with the leapfrog.
 const PLAIN: &str = "plain";
@@ -122,8 +124,8 @@ impl Body for PlateSettings {
         let first =
             |columns: usize| Vector2::new((0.5 - columns as f64) * dx, 0.5 * (dx - self.thickness));
         let at = |x, v| Particle::fluid(x, Vector2::new(0.0, v), self.rho, dx * dx);
-        let free = solver::lattice(first(0), dx, self.columns(), self.n);
-        let held = solver::lattice(first(held), dx, held, self.n);
+        let free = touchstone_solver::lattice(first(0), dx, self.columns(), self.n);
+        let held = touchstone_solver::lattice(first(held), dx, held, self.n);
         let free = free.map(|x| at(x, speed * mode(x.x / self.length)));
         free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
     }
@@ -143,7 +145,7 @@ pub struct Tip {
     series: Vec<[f64; 3]>,
 }
 
-harness::observed! { Tip: changes(until, series), stays(settings, energy) }
+touchstone_harness::observed! { Tip: changes(until, series), stays(settings, energy) }
 
 impl Tip {
     fn new(s: &PlateSettings, start: &[Particle<Symmetric>]) -> Self {
@@ -233,7 +235,7 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::{case::Case, context::Context, method::Parts};
+    use touchstone_harness::{case::Case, context::Context, method::Parts};
 
     /// A tip at a sin(2 pi t/T), at times that do not divide the period.
     fn swing(s: &PlateSettings, periods: f64) -> Record {
@@ -273,7 +275,7 @@ mod tests {
         for p in particles.iter_mut().filter(|p| p.position.x > end - 1e-6) {
             p.position.y = 1.5 * p.position.y + 0.001;
         }
-        let method = schemes::solid::clamped_bare();
+        let method = touchstone_schemes::solid::clamped_bare();
         let mut tip = Tip::new(&s, &particles);
         let parts = Parts::new(solid::medium(&s, &method.properties), Domain::open(), particles);
         let simulation = (method.build)(parts).expect("a scene");

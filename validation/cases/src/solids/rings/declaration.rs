@@ -1,7 +1,7 @@
 //! What the studies that every case has are made of: histories over finite elements, errors over spacing and
 //! cost, an error budget, step limits, maps, errors of constants that the gates must detect.
 
-use report::{Colour, ColourMap, sig};
+use touchstone_report::{Colour, ColourMap, sig};
 
 use super::*;
 
@@ -34,7 +34,7 @@ fn path_and_extents() -> Curve {
         least: 0,
         rows: |_| 1,
         place: |settings, at, starts| {
-            let Ok(settings) = base::settings::of_json::<RingSettings>(settings) else {
+            let Ok(settings) = touchstone_base::settings::of_json::<RingSettings>(settings) else {
                 return Vec::new();
             };
             let (to, dx) = (settings.to_flight(), settings.dx());
@@ -160,7 +160,7 @@ fn card(accuracy: &Accuracy) -> Card {
         picture: "rubber-rings-pictures",
         metric: HISTORIES.into(),
         stated: |settings| {
-            let of: Option<RingSettings> = base::settings::of_json(settings).ok();
+            let of: Option<RingSettings> = touchstone_base::settings::of_json(settings).ok();
             Stated {
                 name: format!(
                     "centre, width and height over time at {} c0 each, spacing {} L, in outer diameters",
@@ -414,14 +414,14 @@ fn sensitivity(tier: Tier) -> Sensitivity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::runs::Runs;
+    use touchstone_harness::runs::Runs;
 
     /// It was left out with its gate, so that a report passed without them.
     #[test]
     fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
         let limits = StepLimits { about: String::new(), of: vec![step_limit("no such variant")] };
         let declared = Declaration { limits, ..Declaration::default() };
-        let studies = harness::studies::of("rubber_rings", &declared, &Runs::default());
+        let studies = touchstone_harness::studies::of("rubber_rings", &declared, &Runs::default());
         let judged: Vec<_> = studies.iter().flat_map(|study| &study.judged).collect();
         assert_eq!(judged.len(), 1);
         assert!(judged[0].judgement.verdict.is_failure());

@@ -1,6 +1,6 @@
 //! What is measured of the rings, sample by sample and at the end.
 
-use maths::geometry::{Bonds, Topology};
+use touchstone_maths::geometry::{Bonds, Topology};
 
 use super::*;
 
@@ -64,7 +64,7 @@ pub struct Series {
     rows: Vec<[f64; COLUMNS]>,
 }
 
-harness::observed! { Series: changes(next, rows), stays(settings, bonds) }
+touchstone_harness::observed! { Series: changes(next, rows), stays(settings, bonds) }
 
 const COLUMNS: usize = 11;
 const NAMES: [(&str, &str); COLUMNS] = [
@@ -267,7 +267,7 @@ impl Watch for Series {
             self.put(record);
             let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
             let of_ring = 0.5 * mass * self.settings.speed().max(f64::MIN_POSITIVE);
-            let momentum = maths::metrics::momentum::momentum(&particles);
+            let momentum = touchstone_maths::metrics::momentum::momentum(&particles);
             record.put(MOMENTUM, momentum.norm() / of_ring);
         }
         record.profiles.insert("series".into(), Profile::of_rows(&NAMES, &self.rows));
@@ -278,8 +278,8 @@ impl Watch for Series {
 mod tests {
     use super::*;
     use crate::solids::rings::RUBBER_RINGS;
-    use harness::case::Case;
-    use harness::context::Context;
+    use touchstone_harness::case::Case;
+    use touchstone_harness::context::Context;
 
     #[test]
     fn centre_velocity_and_extents_are_those_of_the_ring() {

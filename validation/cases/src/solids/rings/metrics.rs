@@ -2,7 +2,7 @@
 
 use super::*;
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     RESTITUTION = "restitution" ["-"]
         "velocity of the centre of mass at the end/V, of rings that have touched and parted";

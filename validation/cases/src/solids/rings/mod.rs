@@ -13,13 +13,13 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
-use base::{functions::*, gate::*, mutation::Constant, record::*};
-use harness::{
+use nalgebra::{Rotation2, Vector2};
+use std::f64::consts::TAU;
+use touchstone_base::{functions::*, gate::*, mutation::Constant, record::*};
+use touchstone_harness::{
     case::*, composed::*, declare::*, method::Properties, pictures, studies::causes::*, table,
 };
-use nalgebra::{Rotation2, Vector2};
-use solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};
-use std::f64::consts::TAU;
+use touchstone_solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};
 
 use crate::solids::{
     causes::*,
@@ -30,7 +30,7 @@ use metrics::*;
 use plan::*;
 use reference::Reference;
 
-base::settings! {
+touchstone_base::settings! {
     /// Settings of the collision of two rings; L is 1 m.
     pub struct RingSettings {
         /// inner radius
@@ -85,7 +85,7 @@ pub const CORRECTED: &str = "corrected";
 const LONG_STEPS: f64 = 0.8;
 
 fn variants() -> Compositions<RingSettings> {
-    use schemes::solid::{componentwise, corrected, leapfrog, seed};
+    use touchstone_schemes::solid::{componentwise, corrected, leapfrog, seed};
     let papers = "the paper's: cubic spline, predictor-corrector, artificial viscosity, XSPH, artificial \
                   stress in principal axes";
     let by_components = "the seed with artificial stress component by component, as the paper writes it: \
@@ -99,7 +99,7 @@ fn variants() -> Compositions<RingSettings> {
         .with(COMPONENTWISE, by_components, componentwise(), |_| {})
         .with("leapfrog", staggered, leapfrog(), |s| s.courant = LONG_STEPS)
         .with(CORRECTED, conjugate, corrected(), |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0))
-        .with(LAGRANGIAN, TOTAL, schemes::total::hencky(), |s| {
+        .with(LAGRANGIAN, TOTAL, touchstone_schemes::total::hencky(), |s| {
             total::choose(s);
             s.courant = total::COURANT_OF_FOLDS;
         })

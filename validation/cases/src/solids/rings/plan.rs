@@ -1,6 +1,6 @@
 //! The table of the runs, and what a run is judged by.
 
-use harness::table::Table;
+use touchstone_harness::table::Table;
 
 use super::*;
 

@@ -1,8 +1,8 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
-use ::lagrangian::{Hencky, Law as _};
-use base::reference::Reference as Package;
-use maths::metrics::{history, norms::rms};
+use touchstone_base::reference::Reference as Package;
+use touchstone_lagrangian::{Hencky, Law as _};
+use touchstone_maths::metrics::{history, norms::rms};
 
 use super::*;
 

@@ -8,11 +8,11 @@ use super::{
 };
 use crate::solids::solid::Body;
 use approx::assert_abs_diff_eq;
-use base::{
+use touchstone_base::{
     functions::exp,
     record::{MetricName, Record, Status},
 };
-use harness::{case::Case, context::Context};
+use touchstone_harness::{case::Case, context::Context};
 
 /// Coarse rings that fly at 0.06 c0.
 fn settings() -> RingSettings {

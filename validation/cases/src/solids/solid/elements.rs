@@ -2,11 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use base::{
+use nalgebra::Vector2;
+use touchstone_base::{
     record::{MetricKey, Record},
     reference::Reference,
 };
-use nalgebra::Vector2;
 
 /// Columns of a table with the texts that rows have in them.
 type Texts<'a> = &'a [(&'a str, &'a str)];

@@ -1,8 +1,8 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
-use base::functions::ln_1p;
 use nalgebra::Vector2;
-use solver::{Evolved, Numbers, Particle, Potential, Stepper, Symmetric};
+use touchstone_base::functions::ln_1p;
+use touchstone_solver::{Evolved, Numbers, Particle, Potential, Stepper, Symmetric};
 
 use super::Material;
 

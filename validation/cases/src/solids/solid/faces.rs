@@ -1,7 +1,7 @@
 //! What free faces take from the stiffness of an elastic body in bending.
 
-use base::gate::{Bound, Gate};
-use solver::{CubicSpline, kernel::Smoothing};
+use touchstone_base::gate::{Bound, Gate};
+use touchstone_solver::{CubicSpline, kernel::Smoothing};
 
 use crate::solids::causes::FREE_FACES;
 
@@ -45,7 +45,7 @@ pub fn soft(gate: Gate, known: Bound) -> Gate {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use maths::theory::lattice::SquareLattice;
+    use touchstone_maths::theory::lattice::SquareLattice;
 
     /// By an independent sum: 30, 15 and 7 %; far from faces there is the factor of the lattice squared.
     #[test]

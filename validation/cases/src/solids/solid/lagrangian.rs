@@ -1,8 +1,8 @@
 //! What the total Lagrangian solid is used with.
 
-use base::settings::{self, Values};
-use schemes::total::H_OVER_DX;
-pub use schemes::total::{bending, displace, limit_in_contact};
+use touchstone_base::settings::{self, Values};
+use touchstone_schemes::total::H_OVER_DX;
+pub use touchstone_schemes::total::{bending, displace, limit_in_contact};
 
 use super::leave_out;
 

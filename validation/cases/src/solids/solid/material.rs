@@ -1,11 +1,11 @@
 //! The elastic material, and the medium that it is at a spacing.
 
-use harness::{
+use touchstone_harness::{
     limits::{Limits, Mechanism},
     method::{Medium, Properties},
 };
-use maths::theory::time_step;
-use solver::{Linear, Tait};
+use touchstone_maths::theory::time_step;
+use touchstone_solver::{Linear, Tait};
 
 use super::lagrangian;
 
@@ -98,15 +98,15 @@ pub fn limits(
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
-    use harness::method::Parts;
     use nalgebra::Vector2;
-    use schemes::solid::{bare, corrected};
-    use solver::{Domain, Outcome, Particle};
+    use touchstone_harness::method::Parts;
+    use touchstone_schemes::solid::{bare, corrected};
+    use touchstone_solver::{Domain, Outcome, Particle};
 
     /// Rings took α c0/c_p and bars α itself. The viscosity is α h c0, whatever c_p is.
     #[test]
     fn the_step_limit_has_the_viscosity_of_the_bulk_sound_speed() {
-        let method = schemes::solid::clamped_plain();
+        let method = touchstone_schemes::solid::clamped_plain();
         let limit = |shear: f64, alpha: f64| {
             let material = Material { density: 1.0, bulk: 1.0, shear };
             let medium = Medium { alpha, ..material.medium(&method.properties, [1.0, 1.5]) };
@@ -148,7 +148,7 @@ mod tests {
         let medium = RUBBER.medium(&method.properties, [1.0, 1.5]);
         let dt = of_limit * limits(&method.properties, &RUBBER, &medium, 1.5, 0.0).together;
         let noise = |k: usize| 1e-12 * ((k as f64 * 0.618_033_988_749_895).fract() - 0.5);
-        let places = solver::lattice(Vector2::repeat(0.5), 1.0, SIDE, SIDE).enumerate();
+        let places = touchstone_solver::lattice(Vector2::repeat(0.5), 1.0, SIDE, SIDE).enumerate();
         let particles = places
             .map(|(k, x)| Particle::fluid(x, Vector2::new(noise(3 * k), noise(7 * k)), 1.0, 1.0))
             .collect();

@@ -15,9 +15,9 @@ pub use elements::{Elements, Path, Quantities, compare, quantities};
 pub use energy::{Energy, angular_momentum, norm_squared};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
-pub use maths::{geometry::corners, metrics::norms::largest};
 pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};
 pub use problem::{Body, Scales, SharedSettings, Watch, leave_out, medium, no_variants, variants};
+pub use touchstone_maths::{geometry::corners, metrics::norms::largest};
 
 /// Declares the settings of a solid case: its own, then those that every solid case has, which are its
 /// [`SharedSettings`]. The material has this Young's modulus \[Pa\] and Poisson's ratio.
@@ -27,7 +27,7 @@ macro_rules! solid_settings {
         $(#[doc = $doc:literal])+
         pub struct $Struct:ident of [$young:literal, $poisson:literal] { $($own:tt)* }
     ) => {
-        base::settings! {
+        touchstone_base::settings! {
             $(#[doc = $doc])+
             pub struct $Struct {
                 $($own)*

@@ -1,8 +1,8 @@
 //! What clamped plates have in common.
 
 use nalgebra::Vector2;
-use solver::PlaneWall;
 use std::f64::consts::TAU;
+use touchstone_solver::PlaneWall;
 
 use super::Scales;
 

@@ -1,23 +1,23 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use nalgebra::Vector2;
-use solver::{Domain, Flow, Particle, Role, Stepper, Symmetric};
+use touchstone_solver::{Domain, Flow, Particle, Role, Stepper, Symmetric};
 
 use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
-use base::{
+use touchstone_base::{
     bits::{Bits, OtherBits},
     record::Record,
     settings::{self, Settings, Values},
 };
-use harness::{
+use touchstone_harness::{
     case::{Rules, RunError, Step},
     composed::Variants,
     method::{Medium, Method, Parts, Properties},
     problem::{Asked, Brief, Calls, Problem},
     relation::View,
 };
-use maths::theory::time_step::Integrator;
+use touchstone_maths::theory::time_step::Integrator;
 
 /// What every problem is set by, as [`solid_settings!`](crate::solid_settings!) has it.
 pub trait SharedSettings: Values {
@@ -54,7 +54,7 @@ pub struct Scales {
     /// Open, unless a case has a period.
     pub domain: Domain,
     /// Densities and speeds beyond which a run counts as diverged.
-    pub bounds: solver::Limits,
+    pub bounds: touchstone_solver::Limits,
 }
 
 /// Elastic bodies, stated by the settings of a case: what differs between cases of solids.
@@ -128,7 +128,7 @@ pub fn variants<B: Body + Settings + Clone>([seed, bare]: [Method<Symmetric>; 2]
     no_variants()
         .with("seed", papers, seed, |_| {})
         .with("bare", alone, bare, |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]))
-        .with(LAGRANGIAN, TOTAL, schemes::total::hencky(), |s| lagrangian::choose(s))
+        .with(LAGRANGIAN, TOTAL, touchstone_schemes::total::hencky(), |s| lagrangian::choose(s))
 }
 
 /// Sets the strengths of terms that a method lacks to 0.

@@ -1,6 +1,6 @@
 //! What the tests of several cases need.
 
-use harness::{
+use touchstone_harness::{
     case::{self, Case, RunError},
     context::Context,
 };

@@ -1,7 +1,7 @@
 //! Histories of both experiments over what was measured and over the same model by volume of fluid.
 
-use report::{Axis, sig};
 use std::f64::consts::FRAC_1_SQRT_2;
+use touchstone_report::{Axis, sig};
 
 use super::{
     measure::{PROBES, SENSORS},

@@ -2,9 +2,9 @@
 //! resolutions, what its error is made of, the longest stable time steps, and the errors of constants that
 //! the gates must detect.
 
-use base::reference::Reference;
-use report::{ColourMap, sig};
 use serde_json::Value;
+use touchstone_base::reference::Reference;
+use touchstone_report::{ColourMap, sig};
 
 use super::{run::COSTLY, *};
 
@@ -89,7 +89,7 @@ fn card(accuracy: &Accuracy) -> Card {
 
 /// The experiment whose scene the settings of a record are.
 fn scene(settings: &Value) -> Option<Scene> {
-    base::settings::of_json::<DamSettings>(settings).ok()?.scene()
+    touchstone_base::settings::of_json::<DamSettings>(settings).ok()?.scene()
 }
 
 /// The distance of the front from that of the experiment whose tank the settings are.

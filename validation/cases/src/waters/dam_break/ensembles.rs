@@ -141,17 +141,17 @@ fn judged(id: String, metric: &str, [[median, scatter], [more, less]]: Known) ->
 
 #[cfg(test)]
 mod tests {
-    use base::{
+    use std::thread;
+    use touchstone_base::{
         mutation::{Constant, Disorder, Mutation},
         spec::RunSpec,
     };
-    use harness::{
+    use touchstone_harness::{
         case::{self, Case},
         context::Context,
         runs::{JudgedRun, Planned, Runs},
         studies,
     };
-    use std::thread;
 
     use super::*;
     use crate::waters::dam_break::{DAM_BREAK, declared};

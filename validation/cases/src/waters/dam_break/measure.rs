@@ -79,7 +79,7 @@ pub struct Samples {
     spilled: BTreeSet<usize>,
 }
 
-harness::observed! { Samples: changes(start, rows, released, outside, fastest, spilled), stays() }
+touchstone_harness::observed! { Samples: changes(start, rows, released, outside, fastest, spilled), stays() }
 
 impl Samples {
     /// None yet.
@@ -294,15 +294,15 @@ fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
         .fold(0.0, |sum, (x, y)| sum + cell * cell * weight(x * x + y * y))
 }
 
-harness::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
+touchstone_harness::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::waters::dam_break::lobovsky;
-    use harness::method::Parts;
-    use maths::metrics::budget::Metered;
-    use solver::{Particle, Smoothing, WendlandC2};
+    use touchstone_harness::method::Parts;
+    use touchstone_maths::metrics::budget::Metered;
+    use touchstone_solver::{Particle, Smoothing, WendlandC2};
 
     impl Samples {
         /// Samples with these t, front, residual height, levels \[s, m\] and potential energy \[M g H/2\].
@@ -330,14 +330,18 @@ mod tests {
     fn water(dam: &Dam, from: usize, to: usize, rows: usize, v: Vector2<f64>) -> Vec<Particle> {
         let dx = dam.medium.dx;
         let first = Vector2::new(from as f64 + 0.5, 0.5) * dx;
-        solver::lattice(first, dx, to - from, rows)
+        touchstone_solver::lattice(first, dx, to - from, rows)
             .map(|x| Particle::fluid(x, v, dam.settings.rho, dx * dx))
             .collect()
     }
 
     fn record(dam: &Dam, measure: impl Fn(&mut Record)) -> Record {
-        let mut record =
-            Record::new("dam_break", "modern", base::settings::to_json(&dam.settings), 1);
+        let mut record = Record::new(
+            "dam_break",
+            "modern",
+            touchstone_base::settings::to_json(&dam.settings),
+            1,
+        );
         measure(&mut record);
         record
     }
@@ -485,7 +489,7 @@ mod tests {
                     ..Particle::fluid(x, Vector2::zeros(), density, 1.0)
                 }
             };
-            simulation(&tank, solver::lattice(first, dx, 10, 60).map(at).collect())
+            simulation(&tank, touchstone_solver::lattice(first, dx, 10, 60).map(at).collect())
         };
         let full = wall(1.0);
         let gauge = Gauge::new(&tank, 2.0 * tank.medium.h, &|r2| full.weight(r2));
@@ -530,8 +534,9 @@ mod tests {
     #[test]
     fn depth_is_exact_for_a_lattice_wherever_the_probe_is() {
         let dx = 0.1;
-        let water: Vec<_> =
-            solver::lattice(Vector2::new(0.05, 0.05), dx, 20, 7).map(|p| still(p.x, p.y)).collect();
+        let water: Vec<_> = touchstone_solver::lattice(Vector2::new(0.05, 0.05), dx, 20, 7)
+            .map(|p| still(p.x, p.y))
+            .collect();
         let all = || water.iter().map(|p| (1000.0 * dx * dx, p));
         for x in [0.2, 0.73, 1.111, 1.8] {
             assert!((depth(all(), x, 2.0 * dx) - 0.7).abs() < 1e-12);
@@ -552,8 +557,9 @@ mod tests {
             let (place, w) = probe(HEIGHT_AT, (HEIGHT_OVER / dx).round().max(2.0), dx, 8.5);
             for first in [0.5, 1.0] {
                 let corner = Vector2::new(first * dx, 0.5 * dx);
-                let water: Vec<_> =
-                    solver::lattice(corner, dx, 3 * n, 2 * n).map(|p| still(p.x, p.y)).collect();
+                let water: Vec<_> = touchstone_solver::lattice(corner, dx, 3 * n, 2 * n)
+                    .map(|p| still(p.x, p.y))
+                    .collect();
                 let height = depth(water.iter().map(|p| (1000.0 * dx * dx, p)), place, w);
                 assert!(
                     (height - 2.0).abs() < 1e-12,

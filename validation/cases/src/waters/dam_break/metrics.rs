@@ -33,7 +33,7 @@ pub const HEIGHT: Distance = distance!("height");
 /// Of the levels.
 pub const LEVELS: Distance = distance!("levels");
 
-base::metrics! {
+touchstone_base::metrics! {
     all ALL;
     REACHED = "reached" ["-"] "time at which the run ended over that at which it was to end";
     OUTSIDE = "outside" ["1"]

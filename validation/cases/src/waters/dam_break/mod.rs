@@ -15,8 +15,9 @@ mod reference;
 mod run;
 mod setup;
 
-use base::{gate::*, mutation::*, record::*};
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::{gate::*, mutation::*, record::*};
+use touchstone_harness::{
     case::*,
     composed::*,
     declare::*,
@@ -26,9 +27,8 @@ use harness::{
     studies::causes::*,
     table,
 };
-use nalgebra::Vector2;
-use schemes::water::WaterMethod;
-use solver::*;
+use touchstone_schemes::water::WaterMethod;
+use touchstone_solver::*;
 
 use crate::waters::{
     causes::*,
@@ -119,7 +119,7 @@ fn modern(s: &mut DamSettings) {
 
 /// The variants, each with the question that it answers.
 fn variants() -> Compositions<DamSettings> {
-    use schemes::water;
+    use touchstone_schemes::water;
     let paper = "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
                  stress, predictor-corrector";
     let ghosts = "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \

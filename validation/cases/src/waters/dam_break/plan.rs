@@ -328,11 +328,11 @@ const FAST: Why = (
 mod tests {
     use super::*;
     use crate::waters::dam_break::DAM_BREAK;
-    use base::{
+    use touchstone_base::{
         mutation::{Constant, Mutation},
         spec::{Measure, RunSpec},
     };
-    use harness::{case::Case, context::Context, plan, runs::JudgedRun};
+    use touchstone_harness::{case::Case, context::Context, plan, runs::JudgedRun};
 
     /// Gravity that was 3 % too large passed all gates that read particles.
     #[test]

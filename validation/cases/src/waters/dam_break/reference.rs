@@ -1,8 +1,8 @@
 //! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
 //! them: from the model it is an error of the method.
 
-use base::reference::Reference as Package;
 use std::{f64::consts::SQRT_2, sync::LazyLock};
+use touchstone_base::reference::Reference as Package;
 
 use super::*;
 
@@ -393,8 +393,12 @@ mod tests {
         samples: impl Iterator<Item = [f64; 8]>,
         pressures: Vec<[f64; 5]>,
     ) -> Box<dyn Fn(MetricName) -> f64> {
-        let mut record =
-            Record::new("dam_break", "modern", base::settings::to_json(&dam.settings), 1);
+        let mut record = Record::new(
+            "dam_break",
+            "modern",
+            touchstone_base::settings::to_json(&dam.settings),
+            1,
+        );
         Samples::made_up(samples).measure(dam, &mut record);
         Gauge::made_up(dam, pressures).measure(dam, &mut record);
         compare(dam, &mut record);

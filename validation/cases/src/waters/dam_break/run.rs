@@ -1,8 +1,8 @@
 //! One run of the collapse: scene, stepping, record.
 
-use base::absent::NOT_ASKED;
+use touchstone_base::absent::NOT_ASKED;
 
-use maths::metrics::budget::Metered;
+use touchstone_maths::metrics::budget::Metered;
 
 use super::{
     measure::{Gauge, Samples},
@@ -42,7 +42,7 @@ pub struct Watch {
     pictured: usize,
 }
 
-harness::observed! { Watch: changes(gauge, samples, ledger), stays(filled, pictured) }
+touchstone_harness::observed! { Watch: changes(gauge, samples, ledger), stays(filled, pictured) }
 
 /// Keeps the particles with their pressure for a picture.
 fn picture(dam: &Dam, simulation: &dyn Metered<()>, record: &mut Record) {
@@ -151,11 +151,11 @@ fn stops(dam: &Dam) -> (Vec<f64>, usize) {
 mod tests {
     use super::*;
     use crate::waters::{dam_break::DAM_BREAK, water::ledger::WORK_VISCOSITY};
-    use base::{
+    use touchstone_base::{
         absent::Absent,
         spec::{Measure, RunSpec},
     };
-    use harness::{case::Case, context::Context};
+    use touchstone_harness::{case::Case, context::Context};
 
     /// Two fifths of a run were an energy ledger that nobody had asked for.
     #[test]
@@ -199,7 +199,8 @@ mod tests {
     fn a_run_is_measured_in_the_units_of_its_column() {
         let spec = DAM_BREAK.spec("modern", |s| (s.n, s.end) = (6, 0.5)).measure_all();
         let record = DAM_BREAK.run(&spec, &Context::default()).expect("a run");
-        let value = |metric: base::record::MetricKey| record.value(metric).expect("a metric");
+        let value =
+            |metric: touchstone_base::record::MetricKey| record.value(metric).expect("a metric");
         assert_eq!((value(metrics::REACHED), value(metrics::MASS_ERROR)), (1.0, 0.0));
         let (a, g) = (0.05715_f64, 9.81);
         let fall = 0.5 * (2000.0 * a * a) * g * (2.0 * a);

@@ -1,6 +1,6 @@
 //! From settings to a scene: spacing, time step, tank, column.
 
-use maths::geometry::Tank;
+use touchstone_maths::geometry::Tank;
 
 use super::*;
 
@@ -98,7 +98,7 @@ impl Dam {
         let (first, dx) = (walls.fluid(), self.medium.dx);
         let surface = (first - 0.5 + rows as f64) * dx;
         let offset = Vector2::repeat(s.offset * dx);
-        solver::lattice(Vector2::repeat(first * dx), dx, columns, rows)
+        touchstone_solver::lattice(Vector2::repeat(first * dx), dx, columns, rows)
             .map(|x| {
                 let density = self.medium.eos.density(s.rho * s.gravity * (surface - x.y));
                 Particle::fluid(x - offset, Vector2::zeros(), density, dx * dx)
@@ -127,7 +127,7 @@ impl Dam {
         // the rim: nothing stops its fall.
         let falling = speed + self.settings.gravity * self.rules.end;
         let fastest = c0.max(2.0 * speed).max(falling);
-        let limits = solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: fastest };
+        let limits = touchstone_solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: fastest };
         let parts = Parts::new(*medium, Domain::open(), particles);
         Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }
@@ -135,12 +135,12 @@ impl Dam {
 
 #[cfg(test)]
 mod tests {
-    use base::spec::RunSpec;
-    use harness::{case::Case, context::Context, problem::Steps};
+    use touchstone_base::spec::RunSpec;
+    use touchstone_harness::{case::Case, context::Context, problem::Steps};
 
     use super::*;
     use crate::waters::dam_break::{DAM_BREAK, lobovsky};
-    use schemes::water;
+    use touchstone_schemes::water;
 
     impl Dam {
         /// The numbers of a run of `modern` with settings changed.
@@ -156,7 +156,7 @@ mod tests {
         let refused = |variant, spec: RunSpec| {
             let settings = DAM_BREAK.chosen(variant, |_| {});
             let spec = RunSpec { variant: variant.into(), ..spec };
-            let spec = RunSpec { settings: base::settings::to_json(&settings), ..spec };
+            let spec = RunSpec { settings: touchstone_base::settings::to_json(&settings), ..spec };
             let posed = DAM_BREAK.pose(&spec).expect("a run");
             posed.size(&spec, Steps::All, true).err().map(|error| error.to_string())
         };

@@ -1,16 +1,16 @@
 //! The balances of a run of water: its energy through time against what each term has done to it, and its
 //! momentum against the impulse of walls and gravity.
 
-use base::record::{MetricKey, Profile, Record};
-use harness::method::Medium;
-use maths::metrics::{
+use nalgebra::Vector2;
+use touchstone_base::record::{MetricKey, Profile, Record};
+use touchstone_harness::method::Medium;
+use touchstone_maths::metrics::{
     budget::{Metered, Powers},
     energy::{Energy, Water, water_slope},
 };
-use nalgebra::Vector2;
-use solver::Stepper;
+use touchstone_solver::Stepper;
 
-base::metrics! {
+touchstone_base::metrics! {
     ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/{}";
     WORK_VISCOSITY = "work_viscosity" ["-"]
         "energy that artificial viscosity has added until the end/{}";
@@ -43,7 +43,7 @@ pub struct Ledger {
     rows: Vec<[f64; 9]>,
 }
 
-harness::observed! {
+touchstone_harness::observed! {
     Ledger: changes(powers, start, force, impulse, unexplained, rows), stays(water)
 }
 
@@ -133,9 +133,9 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use harness::method::Parts;
-    use schemes::water::modern;
-    use solver::{Domain, Particle, Tait};
+    use touchstone_harness::method::Parts;
+    use touchstone_schemes::water::modern;
+    use touchstone_solver::{Domain, Particle, Tait};
 
     /// Water of three particles that do not see each other, raised and moving.
     fn particles(medium: &Medium, height: f64, v: Vector2<f64>) -> Box<dyn Metered<()>> {

@@ -3,15 +3,15 @@
 
 pub mod ledger;
 
-use base::settings::SettingError;
-use harness::{
+use nalgebra::Vector2;
+use touchstone_base::settings::SettingError;
+use touchstone_harness::{
     case::RunError,
     limits::Limits,
     method::{FirstRow, Medium, Properties},
 };
-use maths::{exact, geometry::Tank};
-use nalgebra::Vector2;
-use solver::{Particle, Role};
+use touchstone_maths::{exact, geometry::Tank};
+use touchstone_solver::{Particle, Role};
 
 pub use ledger::Ledger;
 
@@ -21,7 +21,7 @@ const ETA2: f64 = 0.01;
 /// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every
 /// pair and the terms of the method. `c0` is the largest sound speed \[m/s\].
 pub fn limits(method: &Properties, medium: &Medium, [h_over_dx, c0]: [f64; 2], n: usize) -> Limits {
-    let waves = maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
+    let waves = touchstone_maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
     method.limits([h_over_dx, ETA2], n, &waves)
 }
 
@@ -71,7 +71,7 @@ macro_rules! water_settings {
         $(#[doc = $doc:literal])+
         pub struct $Struct:ident { $($own:tt)* }
     ) => {
-        base::settings! {
+        touchstone_base::settings! {
             $(#[doc = $doc])+
             pub struct $Struct {
                 $($own)*
@@ -104,22 +104,22 @@ macro_rules! water_settings {
             /// choose; `speed` is the largest speed expected \[m/s\], `end` the end \[s\].
             pub fn medium(
                 &self,
-                method: &schemes::water::WaterMethod,
+                method: &touchstone_schemes::water::WaterMethod,
                 [dx, c0, gravity, speed, end]: [f64; 5],
-            ) -> (harness::method::Medium, harness::case::Rules) {
-                let (h, eos) = (self.h_over_dx * dx, solver::Tait::new(self.rho, c0));
+            ) -> (touchstone_harness::method::Medium, touchstone_harness::case::Rules) {
+                let (h, eos) = (self.h_over_dx * dx, touchstone_solver::Tait::new(self.rho, c0));
                 let down = nalgebra::Vector2::new(0.0, -gravity);
-                let medium = harness::method::Medium {
+                let medium = touchstone_harness::method::Medium {
                     acceleration: down,
                     wall_acceleration: down,
                     ..method.properties.medium(eos, [dx, h]).set_by(self)
                 };
-                let step = harness::case::Step::courant(self.courant, h, [c0, speed]);
+                let step = touchstone_harness::case::Step::courant(self.courant, h, [c0, speed]);
                 let lattice = [self.h_over_dx, c0];
                 let limits =
                     $crate::waters::water::limits(&method.properties, &medium, lattice, 24);
                 let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
-                (medium, harness::case::Rules { step, limits, sound_speed: c0, end })
+                (medium, touchstone_harness::case::Rules { step, limits, sound_speed: c0, end })
             }
         }
     };
