@@ -597,7 +597,7 @@ fn settings_are_as_they_were() {
             .map(|f| {
                 let field = json!({
                     "unit": f.unit, "doc": f.doc, "kind": f.kind.to_string(), "range": f.range,
-                    "default": Value::from((f.default)()),
+                    "default": Value::from(f.default),
                 });
                 (f.name.to_string(), field)
             })

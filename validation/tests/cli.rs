@@ -1061,7 +1061,7 @@ fn is_begun(case: &dyn Case, variant: &str, set: &[String]) -> bool {
 /// Settings that make a run small and short, but for the one that is set.
 fn small_but(case: &dyn Case, variant: &str, set: &str) -> Vec<String> {
     let end = case.fields().iter().find(|field| field.name == "end").and_then(|field| {
-        let default = (field.default)().to_string().parse::<f64>().ok()?;
+        let default = field.default.to_string().parse::<f64>().ok()?;
         Some(format!("end={}", (0.01 * default).max(field.limits[0])))
     });
     let key = |text: &str| text.split('=').next().map(String::from);

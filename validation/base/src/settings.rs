@@ -108,7 +108,7 @@ pub struct Field {
     /// its ends, of a number
     pub limits: [f64; 2],
     /// the value unless it is set
-    pub default: fn() -> Value,
+    pub default: Value,
 }
 
 /// Why a setting was refused: in words that name it, its value, and what is allowed.
@@ -137,12 +137,26 @@ pub trait Values {
 }
 
 /// A settings struct; implemented by [`settings!`](crate::settings!).
-pub trait Settings: Values + Clone + Default + PartialEq + fmt::Debug + 'static {
-    /// All settings in the order of declaration.
-    const FIELDS: &'static [Field];
+pub trait Settings: SettingType + Clone + Default + PartialEq + fmt::Debug + 'static {
+    /// All settings in the order of declaration, those of groups in the place of the group.
+    fn all() -> &'static [Field];
 
     /// The path of the module that declares them, which begins with the name of its crate.
     const MODULE: &'static str;
+}
+
+impl<S: Settings> Values for S {
+    fn fields(&self) -> &'static [Field] {
+        S::all()
+    }
+
+    fn values(&self) -> Vec<Value> {
+        self.append_to(Vec::new())
+    }
+
+    fn put(&mut self, values: &[Value]) {
+        self.take(&mut values.iter());
+    }
 }
 
 /// Sets one setting from text; on error nothing changes.
@@ -238,6 +252,17 @@ fn edit_distance(name: &str, written: &str) -> usize {
 }
 
 impl Field {
+    /// A flag without a name.
+    pub const FLAG: Self = Self {
+        name: "",
+        unit: "-",
+        doc: "",
+        kind: Kind::Flag,
+        range: "true or false",
+        limits: [0.0; 2],
+        default: Value::Flag(false),
+    };
+
     /// Reads a value. One that is not finite, or outside of the range, is refused.
     fn read(&self, text: &str) -> Result<Value, SettingError> {
         let Self { name, kind, range, limits: [low, high], .. } = self;
@@ -263,51 +288,102 @@ fn count(text: &str) -> Option<u64> {
     text.parse().ok().or_else(real)
 }
 
-/// A type that a setting may have.
-pub trait SettingType: Copy {
+/// A type that a setting may have: a [`Scalar`], or another settings struct, a group, whose settings then
+/// stand in its place.
+pub trait SettingType {
+    /// The fields that a setting of this type declares, with this value as default: `declared` with its kind
+    /// and default, or the fields of the group.
+    fn expand(&self, declared: Field) -> Vec<Field>;
+
+    /// Appends their values.
+    fn append_to(&self, values: Vec<Value>) -> Vec<Value>;
+
+    /// Takes the next value for each of them; one of another kind changes nothing.
+    fn take(&mut self, values: &mut std::slice::Iter<'_, Value>);
+}
+
+/// A number or a flag.
+pub trait Scalar: Copy {
     /// The kind that errors and listings name.
     const KIND: Kind;
 
     /// The value without its type.
     fn value(self) -> Value;
 
-    /// Puts a value; one of another kind changes nothing.
-    fn put(&mut self, value: Value);
+    /// The value with its type, if it is of this kind.
+    fn of(value: Value) -> Option<Self>;
 }
 
-/// Implements [`SettingType`] for types: their kinds, how they become a value, and how one makes them.
-macro_rules! setting_types {
-    ($($Type:ty: $kind:ident, |$to:ident| $value:expr, $($from:pat => $of:expr),+;)+) => {$(
-        impl SettingType for $Type {
-            const KIND: Kind = Kind::$kind;
+impl<T: Scalar> SettingType for T {
+    fn expand(&self, declared: Field) -> Vec<Field> {
+        vec![Field { kind: T::KIND, default: self.value(), ..declared }]
+    }
 
-            fn value(self) -> Value {
-                let $to = self;
-                $value
-            }
+    fn append_to(&self, mut values: Vec<Value>) -> Vec<Value> {
+        values.push(self.value());
+        values
+    }
 
-            fn put(&mut self, value: Value) {
-                match value {
-                    $($from => *self = $of,)+
-                    _ => {}
-                }
-            }
+    fn take(&mut self, values: &mut std::slice::Iter<'_, Value>) {
+        if let Some(value) = values.next().and_then(|value| T::of(*value)) {
+            *self = value;
         }
-    )+};
+    }
 }
 
-setting_types! {
-    f64: Real, |real| Value::Real(real), Value::Real(real) => real;
-    usize: Count, |count| Value::Count(count as u64), Value::Count(count) => count as usize;
-    bool: Flag, |flag| Value::Flag(flag), Value::Flag(flag) => flag;
-    Option<f64>: RealOrAuto, |real| real.map_or(Value::Auto, Value::Real),
-        Value::Real(real) => Some(real), Value::Auto => None;
+impl Scalar for f64 {
+    const KIND: Kind = Kind::Real;
+
+    fn value(self) -> Value {
+        Value::Real(self)
+    }
+
+    fn of(value: Value) -> Option<Self> {
+        if let Value::Real(real) = value { Some(real) } else { None }
+    }
+}
+
+impl Scalar for Option<f64> {
+    const KIND: Kind = Kind::RealOrAuto;
+
+    fn value(self) -> Value {
+        self.map_or(Value::Auto, Value::Real)
+    }
+
+    fn of(value: Value) -> Option<Self> {
+        if value == Value::Auto { Some(None) } else { f64::of(value).map(Some) }
+    }
+}
+
+impl Scalar for usize {
+    const KIND: Kind = Kind::Count;
+
+    fn value(self) -> Value {
+        Value::Count(self as u64)
+    }
+
+    fn of(value: Value) -> Option<Self> {
+        if let Value::Count(count) = value { Some(count as usize) } else { None }
+    }
+}
+
+impl Scalar for bool {
+    const KIND: Kind = Kind::Flag;
+
+    fn value(self) -> Value {
+        Value::Flag(self)
+    }
+
+    fn of(value: Value) -> Option<Self> {
+        if let Value::Flag(flag) = value { Some(flag) } else { None }
+    }
 }
 
 /// Declares a settings struct; see the module [`settings`](mod@crate::settings) for an example.
 ///
 /// `name: type ["unit"] in low..=high = default`, with literals as limits and
-/// `f64`, `Option<f64>`, `usize` as types; `name: bool = default` has no unit nor range.
+/// `f64`, `Option<f64>`, `usize` as types; `name: bool = default` has no unit nor range;
+/// `name: Struct = default` is a group: the settings of another settings struct.
 #[macro_export]
 macro_rules! settings {
     (
@@ -336,36 +412,42 @@ macro_rules! settings {
             }
         }
 
+        impl $crate::settings::SettingType for $Struct {
+            fn expand(&self, _: $crate::settings::Field) -> Vec<$crate::settings::Field> {
+                let fields = [$($crate::settings::SettingType::expand(
+                    &self.$name,
+                    $crate::settings::Field {
+                        name: stringify!($name),
+                        doc: concat!($($doc),+).trim_ascii(),
+                        $(
+                            unit: $unit,
+                            range: concat!(stringify!($low), " to ", stringify!($high), " [", $unit, "]"),
+                            limits: [$low as f64, $high as f64],
+                        )?
+                        ..$crate::settings::Field::FLAG
+                    },
+                )),+];
+                fields.concat()
+            }
+
+            fn append_to(&self, values: Vec<$crate::settings::Value>) -> Vec<$crate::settings::Value> {
+                $(let values = $crate::settings::SettingType::append_to(&self.$name, values);)+
+                values
+            }
+
+            fn take(&mut self, values: &mut std::slice::Iter<'_, $crate::settings::Value>) {
+                $($crate::settings::SettingType::take(&mut self.$name, values);)+
+            }
+        }
+
         impl $crate::settings::Settings for $Struct {
             const MODULE: &'static str = module_path!();
 
-            // The unit and the range of a flag are the last of their lists, those of a number the first.
-            const FIELDS: &'static [$crate::settings::Field] = &[$($crate::settings::Field {
-                name: stringify!($name),
-                unit: [$($unit,)? "-"][0],
-                doc: concat!($($doc),+).trim_ascii(),
-                kind: <$kind as $crate::settings::SettingType>::KIND,
-                range: [
-                    $(concat!(stringify!($low), " to ", stringify!($high), " [", $unit, "]"),)?
-                    "true or false",
-                ][0],
-                limits: [$([$low as f64, $high as f64],)? [0.0; 2]][0],
-                default: || <$kind as $crate::settings::SettingType>::value($default),
-            }),+];
-        }
-
-        impl $crate::settings::Values for $Struct {
-            fn fields(&self) -> &'static [$crate::settings::Field] {
-                <Self as $crate::settings::Settings>::FIELDS
-            }
-
-            fn values(&self) -> Vec<$crate::settings::Value> {
-                vec![$($crate::settings::SettingType::value(self.$name)),+]
-            }
-
-            fn put(&mut self, values: &[$crate::settings::Value]) {
-                let [$($name),+] = values else { return };
-                $($crate::settings::SettingType::put(&mut self.$name, *$name);)+
+            fn all() -> &'static [$crate::settings::Field] {
+                use $crate::settings::{Field, SettingType};
+                static ALL: std::sync::LazyLock<Vec<Field>> =
+                    std::sync::LazyLock::new(|| $Struct::default().expand(Field::FLAG));
+                &ALL
             }
         }
     };
@@ -396,6 +478,38 @@ mod tests {
         }
     }
 
+    crate::settings! {
+        /// Two plates and a channel of ten rows between them.
+        pub struct Plates {
+            /// speed of a plate
+            speed: f64 ["m/s"] in 0.0..=1.0 = 0.1,
+            /// the channel
+            channel: Channel = Channel { rows: 10, ..Channel::default() },
+            /// steady plates
+            steady: bool = true,
+        }
+    }
+
+    #[test]
+    fn settings_of_a_group_stand_in_its_place_and_have_the_defaults_of_the_whole() {
+        let fields = Plates::all();
+        let names: Vec<_> = fields.iter().map(|field| field.name).collect();
+        assert_eq!(names.join(" "), "speed re rows seed c0 shift verbose steady");
+        assert_eq!((fields[2].default, fields[2].range), (Value::Count(10), "4 to 2000 [-]"));
+        assert_eq!(Channel::all()[1].default, Value::Count(20));
+        let mut plates = Plates::default();
+        apply(&mut plates, &["c0=2", "steady=false", "speed=0.5"]).unwrap();
+        let channel = Channel { rows: 10, c0: Some(2.0), ..Channel::default() };
+        assert_eq!(plates, Plates { speed: 0.5, channel, steady: false });
+        let refused = set(&mut plates, "rows", "3").unwrap_err();
+        assert_eq!(refused.0, "setting rows is \"3\"; allowed is a whole number, 4 to 2000 [-]");
+        let json = to_json(&plates);
+        assert_eq!(json["c0"], 2.0);
+        assert_eq!(of_json::<Plates>(&json).unwrap(), plates);
+        plates.channel.re = -1.0;
+        assert!(validate(&plates).is_err());
+    }
+
     fn channel(assignments: &[&str]) -> Result<Channel, SettingError> {
         let mut channel = Channel::default();
         apply(&mut channel, assignments)?;
@@ -404,10 +518,10 @@ mod tests {
 
     #[test]
     fn fields_carry_what_the_declaration_says() {
-        let re = &Channel::FIELDS[0];
+        let re = &Channel::all()[0];
         assert_eq!((re.name, re.unit, re.kind), ("re", "-", Kind::Real));
         assert_eq!((re.doc, re.range), ("Reynolds number V L / nu", "1e-9 to 1e6 [-]"));
-        assert_eq!((re.default)(), Value::Real(0.5));
+        assert_eq!(re.default, Value::Real(0.5));
         let printed: Vec<_> = Channel::default()
             .fields()
             .iter()
@@ -521,7 +635,7 @@ mod tests {
         fn printed_values_read_back_equal(re in 1e-9..=1e6f64, rows in 4..=2000usize, auto: bool) {
             let set = Channel { re, rows, c0: (!auto).then_some(re.min(1e5)), ..Channel::default() };
             let mut back = Channel::default();
-            for (field, value) in Channel::FIELDS.iter().zip(set.values()) {
+            for (field, value) in Channel::all().iter().zip(set.values()) {
                 super::set(&mut back, field.name, &value.to_string()).unwrap();
             }
             prop_assert_eq!(set, back);

@@ -6,6 +6,7 @@ pub mod limitations;
 pub mod page;
 pub mod peers;
 pub mod solids;
+pub mod stabilisation;
 pub mod stiffness;
 mod time;
 pub mod waters;

@@ -109,7 +109,7 @@ impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
         method: Method<X, D>,
         adjust: fn(&mut T),
     ) -> Self {
-        let lacks = Knob::others(&method.properties.uses, T::FIELDS);
+        let lacks = Knob::others(&method.properties.uses, T::all());
         self.lacking([name, about], method, lacks, adjust)
     }
 }
@@ -279,7 +279,7 @@ impl<T: Settings> Case for Composed<T> {
     }
 
     fn fields(&self) -> &'static [Field] {
-        T::FIELDS
+        T::all()
     }
 
     fn settings(&self, variant: &str, set: &[String]) -> Result<serde_json::Value, RunError> {

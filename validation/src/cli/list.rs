@@ -55,7 +55,7 @@ fn details(case: &dyn Case) -> String {
         format!("`{variant}` is recommended and runs by default{papers}. The reason: {reason}");
     text += &output::wrap(&words, "  ");
     let row = |field: &Field| {
-        vec![field.name.into(), (field.default)().to_string(), field.range.into(), field.doc.into()]
+        vec![field.name.into(), field.default.to_string(), field.range.into(), field.doc.into()]
     };
     let heads = ["settings", "default", "range [unit]", ""];
     text + "\n" + &output::table(&heads, case.fields().iter().map(row))
@@ -66,7 +66,7 @@ fn differences(case: &dyn Case, variant: &str) -> Vec<String> {
     let Ok(settings) = case.settings(variant, &[]) else { return Vec::new() };
     let default = |name: &str| {
         let field = case.fields().iter().find(|field| field.name == name);
-        field.map(|field| Value::from((field.default)()))
+        field.map(|field| Value::from(field.default))
     };
     let differs = |(name, value): &(&String, &Value)| default(name).as_ref() != Some(*value);
     let text = |(name, value): (&String, &Value)| format!("{name}={value}");
@@ -81,7 +81,7 @@ fn json(case: &dyn Case) -> Value {
     let setting = |field: &Field| {
         json!({
             "name": field.name, "unit": field.unit, "doc": field.doc,
-            "kind": field.kind.to_string(), "range": field.range, "default": Value::from((field.default)()),
+            "kind": field.kind.to_string(), "range": field.range, "default": Value::from(field.default),
         })
     };
     let recommended = case.recommended();

@@ -17,9 +17,9 @@ use touchstone_report::ColourMap;
 use touchstone_schemes::flow;
 use touchstone_solver::*;
 
-use crate::fluids::unit_flow::{Scales, UnitFlow, unit_settings};
+use crate::fluids::unit_flow::{Numerics, Scales, UnitFlow};
 
-unit_settings! {
+touchstone_base::settings! {
     /// Settings of the cavity. L = U = ρ = 1.
     pub struct Cavity {
         /// Reynolds number U L/ν
@@ -32,6 +32,8 @@ unit_settings! {
         h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.0,
         /// sound speed
         c0: f64 ["U"] in 2.0..=1e4 = 10.0,
+        /// numerical settings
+        numerics: Numerics = Numerics::default(),
     }
 }
 
@@ -55,8 +57,9 @@ fn variants() -> Compositions<Cavity> {
     let modern = "extrapolating walls, density diffusion, shifting: as good as in channels?";
     let carried = "modern with stronger shifting that takes the velocity of the new place";
     let consistent = "carried with sums that are exact for linear fields, as in the vortices";
-    let strong: fn(&mut Cavity) = |s| s.shift = 3.0;
-    let old: fn(&mut Cavity) = |s| (s.h_over_dx, s.eta2_over_h2, s.courant) = (1.2, 0.01, 0.25);
+    let strong: fn(&mut Cavity) = |s| s.numerics.shift = 3.0;
+    let old: fn(&mut Cavity) =
+        |s| (s.h_over_dx, s.numerics.eta2_over_h2, s.numerics.courant) = (1.2, 0.01, 0.25);
     Variants::of(Closed::new)
         .with("seed", seed, flow::cavity_seed(), old)
         .with("modern", modern, flow::cavity_modern(), |_| {})
@@ -95,8 +98,10 @@ struct Closed {
 
 impl Closed {
     fn new(method: &Method, s: &Cavity) -> Result<Self, RunError> {
-        let flow =
-            s.flow(&method.properties, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: None });
+        let Cavity { re, n, end, h_over_dx, c0, .. } = *s;
+        let scales =
+            Scales { re, n, h_over_dx, c0, end, speed: 1.0, force: 0.0, area: 1.0, dt: None };
+        let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
         Ok(Self { settings: s.clone(), method: method.clone(), flow, places })
     }

@@ -12,9 +12,9 @@ use touchstone_maths::{exact::manufactured, metrics::norms::rms};
 use touchstone_schemes::flow;
 use touchstone_solver::*;
 
-use crate::fluids::unit_flow::{DECISIVE, Scales, UnitFlow, unit_settings};
+use crate::fluids::unit_flow::{DECISIVE, Numerics, Scales, UnitFlow};
 
-unit_settings! {
+touchstone_base::settings! {
     /// Settings of the manufactured flow. L = U = ρ = 1.
     pub struct ManufacturedSettings {
         /// Reynolds number U L/ν
@@ -27,17 +27,19 @@ unit_settings! {
         h_over_dx: f64 ["-"] in 0.5..=5.0 = 1.0,
         /// sound speed
         c0: f64 ["U"] in 2.0..=1e4 = 100.0,
+        /// numerical settings
+        numerics: Numerics = Numerics::default(),
     }
 }
 
 /// As in the channels: h/dx 1.2, η² = 0.01 h², and a step short enough for the predictor-corrector.
 fn seed(s: &mut ManufacturedSettings) {
-    (s.h_over_dx, s.eta2_over_h2, s.courant) = (1.2, 0.01, 0.25);
+    (s.h_over_dx, s.numerics.eta2_over_h2, s.numerics.courant) = (1.2, 0.01, 0.25);
 }
 
 /// As in the vortices.
 fn strong(s: &mut ManufacturedSettings) {
-    s.shift = 3.0;
+    s.numerics.shift = 3.0;
 }
 
 /// Variants by method: with ghosts, and with interface and wall particles.
@@ -96,7 +98,9 @@ const MOST: [f64; 2] = [7.0, 80.0];
 fn flow(s: &ManufacturedSettings, m: &Method) -> UnitFlow {
     let nu = 1.0 / s.re;
     let force = MOST[0] + MOST[1] * nu;
-    let mut flow = s.flow(&m.properties, Scales { speed: 1.0, force, area: 1.0, dt: None });
+    let ManufacturedSettings { re, n, end, h_over_dx, c0, .. } = *s;
+    let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.0, force, area: 1.0, dt: None };
+    let mut flow = UnitFlow::new(&m.properties, &s.numerics, scales);
     flow.medium.acceleration = Vector2::new(1.0, nu);
     flow
 }

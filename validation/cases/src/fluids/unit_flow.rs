@@ -6,14 +6,46 @@ use touchstone_solver::{Domain, Limits, Particle, Tait};
 
 use touchstone_harness::{case::*, method::*, problem::Brief};
 
-/// What a case adds to its settings.
+touchstone_base::settings! {
+    /// The numerical settings that all these flows have.
+    pub struct Numerics {
+        /// guard against 0/0 in the viscous term
+        eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 1e-6,
+        /// exponent of the Tait equation
+        gamma: usize ["-"] in 1..=20 = 7,
+        /// background pressure p0
+        background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
+        /// Courant number of the time step: two thirds of the theoretical limit
+        courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
+        /// viscous number of the time step
+        viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
+        /// density diffusion δ
+        diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
+        /// particle shifting, amplitude
+        shift: f64 ["-"] in 0.0..=10.0 = 0.5,
+        /// Verlet skin: reach of neighbour lists beyond the support radius
+        skin: f64 ["h"] in 0.0..=2.0 = 0.6,
+    }
+}
+
+/// The scales of a flow: what a case adds to the numerical settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales {
+    /// Reynolds number, 1/ν.
+    pub re: f64,
+    /// Spacings per unit length.
+    pub n: usize,
+    /// Smoothing length over spacing.
+    pub h_over_dx: f64,
+    /// Sound speed \[m/s\].
+    pub c0: f64,
+    /// End of the run \[s\].
+    pub end: f64,
     /// Largest speed of the flow \[m/s\].
     pub speed: f64,
     /// Body force along x \[m/s²\].
     pub force: f64,
-    /// Area of the flow, of which the number of particles follows \[m²\].
+    /// Area of the flow, which gives the number of particles \[m²\].
     pub area: f64,
     /// Time step, unless it follows from the settings \[s\].
     pub dt: Option<f64>,
@@ -42,22 +74,22 @@ pub const DECISIVE: &str = "end, courant, c0 or n";
 pub const LIMIT_BOX: usize = 32;
 
 impl UnitFlow {
-    /// A medium with Courant and viscous number of the time step, skin \[h\] and end \[s\].
-    pub fn new(
-        method: &Properties,
-        medium: Medium,
-        [h_over_dx, courant, viscous, skin, end]: [f64; 5],
-        Scales { speed, force, area, dt }: Scales,
-    ) -> Self {
-        let Medium { h, dx, nu, eta2_over_h2, eos: Tait { sound_speed, .. }, .. } = medium;
-        let step = Step::courant(courant, h, [sound_speed, speed]).viscous(viscous, h, nu);
+    /// Follows the rules for a method.
+    pub fn new(method: &Properties, numerics: &Numerics, scales: Scales) -> Self {
+        let Scales { re, n, h_over_dx, c0, end, speed, force, area, dt } = scales;
+        let (dx, nu) = (1.0 / n as f64, 1.0 / re);
+        let h = h_over_dx * dx;
+        let background = numerics.background * c0 * c0;
+        let eos = Tait { gamma: numerics.gamma as i32, background, ..Tait::new(1.0, c0) };
+        let acceleration = Vector2::new(force, 0.0);
+        let medium = Medium { nu, acceleration, ..method.medium(eos, [dx, h]).set_by(numerics) };
+        let step = Step::courant(numerics.courant, h, [c0, speed]).viscous(numerics.viscous, h, nu);
         let waves = medium.waves(&method.uses);
-        let limits = method.limits([h / dx, eta2_over_h2], LIMIT_BOX, &waves);
+        let limits = method.limits([h / dx, medium.eta2_over_h2], LIMIT_BOX, &waves);
         let (step, limits) = (step.or_given(dt), limits.moving(h, speed, force));
-        let rules = Rules { step, limits, sound_speed, end };
-        let medium = Medium { acceleration: Vector2::new(force, 0.0), ..medium };
+        let rules = Rules { step, limits, sound_speed: c0, end };
         let particles = area / (dx * dx);
-        let (support, skin) = (method.support * h, skin * h);
+        let (support, skin) = (method.support * h, numerics.skin * h);
         Self { medium, support, rules, particles, h_over_dx, speed, skin }
     }
 
@@ -77,55 +109,3 @@ impl UnitFlow {
         Parts { skin: Some(self.skin), limits, ..parts }
     }
 }
-
-/// Declares the settings of a case: its own, among them `re`, `n`, `end`, `h_over_dx` and `c0`, and those
-/// that all these flows have.
-macro_rules! unit_settings {
-    ($(#[doc = $doc:literal])+ pub struct $Struct:ident { $($own:tt)+ }) => {
-        touchstone_base::settings! {
-            $(#[doc = $doc])+
-            pub struct $Struct {
-                $($own)+
-                /// guard against 0/0 in the viscous term
-                eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 1e-6,
-                /// exponent of the Tait equation
-                gamma: usize ["-"] in 1..=20 = 7,
-                /// background pressure p0
-                background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
-                /// Courant number of the time step: two thirds of the theoretical limit
-                courant: f64 ["-"] in 1e-6..=100.0 = 1.5,
-                /// viscous number of the time step
-                viscous: f64 ["-"] in 1e-6..=100.0 = 0.25,
-                /// density diffusion δ
-                diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
-                /// particle shifting, amplitude
-                shift: f64 ["-"] in 0.0..=10.0 = 0.5,
-                /// Verlet skin: reach of neighbour lists beyond the support radius
-                skin: f64 ["h"] in 0.0..=2.0 = 0.6,
-            }
-        }
-
-        impl $Struct {
-            /// Follows the rules for a method.
-            fn flow(
-                &self,
-                method: &touchstone_harness::method::Properties,
-                scales: $crate::fluids::unit_flow::Scales,
-            ) -> $crate::fluids::unit_flow::UnitFlow {
-                let (dx, nu) = (1.0 / self.n as f64, 1.0 / self.re);
-                let h = self.h_over_dx * dx;
-                let eos = touchstone_solver::Tait {
-                    gamma: self.gamma as i32,
-                    background: self.background * self.c0 * self.c0,
-                    ..touchstone_solver::Tait::new(1.0, self.c0)
-                };
-                let medium = method.medium(eos, [dx, h]).set_by(self);
-                let medium = touchstone_harness::method::Medium { nu, ..medium };
-                let numbers =
-                    [self.h_over_dx, self.courant, self.viscous, self.skin, self.end];
-                $crate::fluids::unit_flow::UnitFlow::new(method, medium, numbers, scales)
-            }
-        }
-    };
-}
-pub(crate) use unit_settings;

@@ -14,9 +14,9 @@ use super::{
     solid::{self, *},
 };
 
-crate::solid_settings! {
+touchstone_base::settings! {
     /// Settings of bars along x that are periodic in y, so that nothing strains across.
-    pub struct BarSettings of [2e6, 0.3975] {
+    pub struct BarSettings {
         /// particles along a bar
         n: usize ["-"] in 8..=10000 = 40,
         /// length of a bar
@@ -31,6 +31,8 @@ crate::solid_settings! {
         width: f64 ["L"] in 0.01..=0.2 = 0.0625,
         /// end of the run; auto: 0.3 for the pulse, 1.3 for bars in touch, 3 for others
         end: Option<f64> ["2 L/c_p"] in 1e-3..=1e5 = None,
+        /// settings of solids
+        solid: SolidSettings = SolidSettings::default(),
     }
 }
 
@@ -95,7 +97,7 @@ impl BarSettings {
 
     /// Rows of particles in a period that every support fits into twice.
     fn rows(&self) -> usize {
-        (2.0 * CubicSpline::SUPPORT * self.h_over_dx - 1e-9).ceil() as usize
+        (2.0 * CubicSpline::SUPPORT * self.solid.h_over_dx - 1e-9).ceil() as usize
     }
 
     /// The pulse: v at x, that is −σ/(ρ c_p), for a wave to the right alone \[m/s\].
@@ -106,6 +108,10 @@ impl BarSettings {
 }
 
 impl Body for BarSettings {
+    fn common(&self) -> Common {
+        self.solid.common()
+    }
+
     fn scales(&self) -> Scales {
         let (dx, rows) = (self.length / self.n as f64, self.rows());
         let (bodies, auto) = match (self.collide, self.gap > 0.0) {
@@ -226,7 +232,7 @@ impl Motion {
         let s = &self.settings;
         let [from, to] = STATIONS.map(|x| self.passes(1, x * s.length));
         let span = (STATIONS[1] - STATIONS[0]) * s.length / s.wave();
-        let lattice = SquareLattice::of::<CubicSpline>(s.h_over_dx, 0.01);
+        let lattice = SquareLattice::of::<CubicSpline>(s.solid.h_over_dx, 0.01);
         let factor = lattice.gradient_factor();
         let time = Some((to - from) / span).filter(|time| time.is_finite());
         let lacks = "the pulse has not passed both places at the end of the run";

@@ -11,9 +11,9 @@ use super::{
     causes::FREE_FACES,
     solid::{self, *},
 };
-crate::solid_settings! {
+touchstone_base::settings! {
     /// Settings of a disk cut from a square lattice.
-    pub struct DiskSettings of [2e6, 0.3975] {
+    pub struct DiskSettings {
         /// spacings along the radius
         n: usize ["-"] in 3..=1000 = 8,
         /// radius
@@ -22,6 +22,8 @@ crate::solid_settings! {
         speed: f64 ["c0"] in 1e-6..=0.5 = 0.05,
         /// end of the run, of a rigid disk
         end: f64 ["revolutions"] in 1e-4..=1e4 = 1.0,
+        /// settings of solids
+        solid: SolidSettings = SolidSettings::default(),
     }
 }
 
@@ -63,6 +65,10 @@ const SAMPLES: f64 = 200.0;
 const TENTH: f64 = 0.1;
 
 impl Body for DiskSettings {
+    fn common(&self) -> Common {
+        self.solid.common()
+    }
+
     fn scales(&self) -> Scales {
         let speed = self.speed * self.material().sound_speed();
         Scales {
@@ -150,7 +156,7 @@ impl Watch for History {
         let s = &self.settings;
         if self.first.is_none() {
             // One support for the gradient, one for the neighbours that XSPH has moved before it.
-            let interior = s.radius - 4.0 * (s.h_over_dx * s.dx()) - s.dx();
+            let interior = s.radius - 4.0 * (s.solid.h_over_dx * s.dx()) - s.dx();
             self.first = Some((mistaken(simulation, interior), simulation.dt()));
         }
         if simulation.time() >= self.until {
@@ -226,7 +232,7 @@ fn table(tier: Tier) -> Table<DiskSettings, For> {
     table.over(For::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
     table.over(For::Kept, &[LAGRANGIAN], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
     table.over(For::Steps, &["bare"], [&[0.4, 0.1, 0.8], &[0.4, 0.1, 0.8]], |s, courant| {
-        (s.n, s.end, s.courant) = (8, 0.1, Some(courant));
+        (s.n, s.end, s.solid.courant) = (8, 0.1, Some(courant));
     });
     table.judge(gates);
     table

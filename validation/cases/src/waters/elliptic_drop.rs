@@ -23,10 +23,10 @@ use touchstone_solver::*;
 
 use super::{
     causes::{NOISY_DENSITY, SHORT_KERNEL},
-    water::{Ledger, ledger},
+    water::{Ledger, Scales, WaterSettings, ledger},
 };
 
-crate::water_settings! {
+touchstone_base::settings! {
     /// Settings of a drop that is cut from a square lattice.
     pub struct DropSettings {
         /// particles across the drop
@@ -41,6 +41,8 @@ crate::water_settings! {
         c0: f64 ["A R"] in 1.0..=1e4 = 14.0,
         /// end of the run; at 0.8 the drop is four times as long as wide
         end: f64 ["1/A"] in 1e-6..=10.0 = 0.8,
+        /// settings of water
+        water: WaterSettings = WaterSettings::default(),
     }
 }
 
@@ -68,7 +70,7 @@ const SAMPLES: usize = 80;
 /// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of 1.2 at least for
 /// its sums to be those of a continuum: 2.5 leaves 1.25 at the end.
 fn modern(s: &mut DropSettings) {
-    (s.h_over_dx, s.alpha, s.courant) = (2.5, 0.02, 0.6);
+    (s.water.h_over_dx, s.water.alpha, s.water.courant) = (2.5, 0.02, 0.6);
 }
 
 fn variants() -> Compositions<DropSettings> {
@@ -98,14 +100,15 @@ impl Drop {
         let gravity = s.gravity * s.strain * rate;
         let fall = gravity * s.end / s.strain;
         let speed = (tip.strain * tip.b).max(rate) + fall;
-        let (medium, rules) = s.medium(method, [dx, s.c0 * rate, gravity, speed, s.end / s.strain]);
+        let scales = Scales { dx, c0: s.c0 * rate, gravity, speed, end: s.end / s.strain };
+        let (medium, rules) = s.water.medium(method, scales);
         Self { settings: s.clone(), method: method.clone(), medium, rules }
     }
 
     fn particles(&self) -> Vec<Particle> {
         let (s, Medium { dx, eos, .. }) = (&self.settings, self.medium);
         let corner = Vector2::repeat(0.5 * dx - s.radius);
-        let centre = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
+        let centre = s.water.rho * Exact::circle(s.radius, s.strain).central_pressure();
         touchstone_solver::lattice(corner, dx, s.n, s.n)
             .filter(|x| x.norm() <= s.radius)
             .map(|x| {
@@ -225,14 +228,14 @@ impl Problem for Drop {
     }
 
     fn brief(&self) -> Brief {
-        let DropSettings { n, h_over_dx, .. } = self.settings;
+        let (n, h_over_dx) = (self.settings.n, self.settings.water.h_over_dx);
         let [_, numbers @ ..] = self.rules.numbers([h_over_dx, self.medium.dx]);
         let (particles, decisive) = (FRAC_PI_4 * (n * n) as f64, "end, dt, courant, c0 or n");
         Brief::new(self.medium, self.rules, particles, decisive).numbers(&numbers)
     }
 
     fn times(&self) -> Vec<f64> {
-        let samples = rules::samples(self.rules.end, SAMPLES, self.settings.dt);
+        let samples = rules::samples(self.rules.end, SAMPLES, self.settings.water.dt);
         [0.0].into_iter().chain(samples).collect()
     }
 
@@ -267,7 +270,7 @@ impl Problem for Drop {
         if Asked::of(&record.run).particles {
             let (s, particles) = (&self.settings, end.particles());
             let centre = shape(&particles).centre;
-            let scale = s.rho * Exact::circle(s.radius, s.strain).central_pressure();
+            let scale = s.water.rho * Exact::circle(s.radius, s.strain).central_pressure();
             let pressure = |p: &Particle| self.medium.eos.pressure(p.density) / scale;
             let pressures =
                 particles.iter().map(|p| ((p.position - centre) / s.radius, pressure(p)));
@@ -321,7 +324,7 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
     table.over(Group::Judged, &["plain"], [&[20], &[20, 40, 80]], across);
     table.over(Group::Ladder, &["seed"], [&[14], &[28, 40, 56, 80]], across);
     table.over(Group::Ladder, &["modern", "plain"], [&[14], &[28, 56]], across);
-    table.over(Group::Narrow, &["modern"], [&[], &[1.5]], |s, h: f64| s.h_over_dx = h);
+    table.over(Group::Narrow, &["modern"], [&[], &[1.5]], |s, h: f64| s.water.h_over_dx = h);
     for variant in ["seed", "modern"] {
         table.one(Group::Falling, variant, |s| (s.n, s.gravity) = (20, 1.0));
     }
@@ -395,7 +398,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     let run = match row.group {
         Group::Ladder => return Vec::new(),
         Group::Judged => format!("{variant}.{n}"),
-        Group::Narrow => format!("{variant}.h{}", row.settings.h_over_dx),
+        Group::Narrow => format!("{variant}.h{}", row.settings.water.h_over_dx),
         Group::Falling => format!("{variant}.falling"),
     };
     let gate = |metric, bound, evidence, because| {
@@ -444,7 +447,7 @@ mod tests {
     #[test]
     fn a_given_step_is_the_one_that_is_taken() {
         for (n, dt) in [(20, 2.7e-4), (20, 6.1e-5), (8, 6e-4)] {
-            let record = run("modern", |s| (s.n, s.dt) = (n, Some(dt))).expect("a run");
+            let record = run("modern", |s| (s.n, s.water.dt) = (n, Some(dt))).expect("a run");
             let taken = record.cost.largest_dt_s;
             assert!((taken / dt - 1.0).abs() < 1e-9, "{taken} s of {dt} s");
         }
@@ -489,8 +492,8 @@ mod tests {
     #[test]
     fn a_drop_that_makes_no_sense_is_refused() {
         assert!(matches!(run("modern", |s| s.n = 2), Err(RunError::Settings { .. })));
-        assert!(matches!(run("modern", |s| s.xsph = 0.1), Err(RunError::Unused { .. })));
-        assert!(matches!(run("modern", |s| s.courant = 3.0), Err(RunError::TimeStep { .. })));
+        assert!(matches!(run("modern", |s| s.water.xsph = 0.1), Err(RunError::Unused { .. })));
+        assert!(matches!(run("modern", |s| s.water.courant = 3.0), Err(RunError::TimeStep { .. })));
         assert!(matches!(run("modrn", |_| {}), Err(RunError::Unknown { .. })));
     }
 

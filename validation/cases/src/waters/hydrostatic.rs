@@ -21,7 +21,10 @@ use touchstone_maths::{
 use touchstone_schemes::water::WaterMethod;
 use touchstone_solver::*;
 
-use crate::waters::{causes::MIRRORED_PRESSURE, water};
+use crate::{
+    stabilisation::Stabilisation,
+    waters::{causes::MIRRORED_PRESSURE, water},
+};
 
 touchstone_base::settings! {
     /// Settings of water at rest in an open tank.
@@ -50,16 +53,8 @@ touchstone_base::settings! {
         jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
         /// start with the density of the surface everywhere, instead of with the exact one
         uniform: bool = false,
-        /// linear artificial viscosity
-        alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
-        /// quadratic artificial viscosity
-        beta: f64 ["-"] in 0.0..=10.0 = 0.0,
-        /// XSPH: ε
-        xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
-        /// strength of the artificial stress
-        xi: f64 ["-"] in 0.0..=10.0 = 0.3,
-        /// exponent of the artificial stress
-        exponent: usize ["-"] in 1..=16 = 4,
+        /// stabilising terms
+        stabilisation: Stabilisation = Stabilisation::default(),
         /// density diffusion delta
         diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
         /// share of gravity in the extrapolation of a wall; less than 1 only to show its effect
@@ -88,7 +83,7 @@ touchstone_base::metrics! {
 /// Wendland C2 at h = 1.5 dx, long steps, and a fifth of the artificial viscosity: in water at rest there
 /// is little to damp.
 fn modern(s: &mut HydrostaticSettings) {
-    (s.h_over_dx, s.courant, s.alpha) = (1.5, 0.8, 0.02);
+    (s.h_over_dx, s.courant, s.stabilisation.alpha) = (1.5, 0.8, 0.02);
 }
 
 fn variants() -> Compositions<HydrostaticSettings> {

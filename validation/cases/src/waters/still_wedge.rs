@@ -16,9 +16,9 @@ use touchstone_report::ColourMap;
 use touchstone_schemes::water::WaterMethod;
 use touchstone_solver::*;
 
-use super::water;
+use super::water::{self, WaterSettings};
 
-crate::water_settings! {
+touchstone_base::settings! {
     /// Settings of still water over a wedge; its depth H is 1 m.
     pub struct Wedge {
         /// spacings along the depth
@@ -31,6 +31,8 @@ crate::water_settings! {
         c0: f64 ["(g H)^(1/2)"] in 1.0..=1e3 = 10.0,
         /// end of the run
         end: f64 ["4 H/c0"] in 1e-3..=1e5 = 20.0,
+        /// settings of water
+        water: WaterSettings = WaterSettings::default(),
     }
 }
 
@@ -52,9 +54,9 @@ fn variants() -> Compositions<Wedge> {
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
                   pressure: do they bear water at corners too?";
     Variants::of(|m, s| Ok(Still::new(m, s)))
-        .with("seed", seed, touchstone_schemes::water::seed(), |s| s.courant = 0.4)
+        .with("seed", seed, touchstone_schemes::water::seed(), |s| s.water.courant = 0.4)
         .with("modern", modern, touchstone_schemes::water::modern(), |s| {
-            (s.alpha, s.courant) = (0.02, 0.8)
+            (s.water.alpha, s.water.courant) = (0.02, 0.8)
         })
         .all
 }
@@ -97,7 +99,8 @@ impl Still {
     fn new(m: &WaterMethod, s: &Wedge) -> Self {
         let (dx, fall) = (1.0 / s.n as f64, s.gravity.sqrt());
         let end = s.end * 4.0 / (s.c0 * fall);
-        let (medium, rules) = s.medium(m, [dx, s.c0 * fall, s.gravity, 0.0, end]);
+        let scales = water::Scales { dx, c0: s.c0 * fall, gravity: s.gravity, speed: 0.0, end };
+        let (medium, rules) = s.water.medium(m, scales);
         Self { settings: s.clone(), method: m.clone(), medium, rules }
     }
 }
@@ -185,7 +188,7 @@ const SAMPLES: f64 = 8.0;
 /// p − p_exact at the place of a particle \[ρ g H\].
 fn error(s: &Wedge, medium: &Medium, p: &Particle) -> f64 {
     let exact = water::at_rest(medium).pressure(1.0 - p.position.y);
-    (medium.eos.pressure(p.density) - exact) / (s.rho * s.gravity)
+    (medium.eos.pressure(p.density) - exact) / (s.water.rho * s.gravity)
 }
 
 impl Moments {
@@ -243,7 +246,7 @@ impl Problem for Still {
         let dx = self.medium.dx;
         let decisive = "end, courant, c0 or n";
         Brief::new(self.medium, self.rules, 2.0 * HALF / (dx * dx), decisive)
-            .numbers(&self.rules.numbers([self.settings.h_over_dx, dx]))
+            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, dx]))
     }
 
     fn times(&self) -> Vec<f64> {
@@ -397,7 +400,7 @@ mod tests {
         let exact = water::at_rest(medium);
         let mut half = 0.0;
         for p in all.iter_mut().filter(|p| p.role == Role::Fluid && p.position.x < HALF) {
-            let pressure = exact.pressure(1.0 - p.position.y) + 0.01 * s.rho * s.gravity;
+            let pressure = exact.pressure(1.0 - p.position.y) + 0.01 * s.water.rho * s.gravity;
             p.density = medium.eos.density(pressure);
             p.velocity = Vector2::new(0.012, -0.016) * s.gravity.sqrt();
             half += p.mass;

@@ -181,11 +181,11 @@ fn budgets() -> Budgets {
     let mut changes = vec![
         change("none", "none", RECOMMENDED, |_| {}),
         change("finer spacing", "spacing", RECOMMENDED, |s| s.n = 20),
-        change("dt/2", "time", RECOMMENDED, |s| s.courant = 0.75),
+        change("dt/2", "time", RECOMMENDED, |s| s.numerics.courant = 0.75),
         change("c0=30", "sound speed", RECOMMENDED, |s| s.c0 = 30.0),
         change("h_over_dx=1.2", "h/dx", RECOMMENDED, |s| s.h_over_dx = 1.2),
-        change("diffusion=0.05", "density diffusion", RECOMMENDED, |s| s.diffusion = 0.05),
-        change("shift=1.5", "shifting", RECOMMENDED, |s| s.shift = 1.5),
+        change("diffusion=0.05", "density diffusion", RECOMMENDED, |s| s.numerics.diffusion = 0.05),
+        change("shift=1.5", "shifting", RECOMMENDED, |s| s.numerics.shift = 1.5),
         change("from the reference", "start", RECOMMENDED, |s| s.from_reference = true),
         change("`consistent`: sums exact for linear fields", "sums", "consistent", |_| {}),
         change("`modern`: weaker shifting, no velocities", "shifting", "modern", |_| {}),
@@ -277,7 +277,7 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
     let rules = CASE.rules(&spec).unwrap_or(Rules::REFUSED);
     // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
     let default = rules.dt() / rules.dt_limit();
-    let at_limit = ("courant", HillSettings::default().courant / default);
+    let at_limit = ("courant", HillSettings::default().numerics.courant / default);
     let scene = format!("Re 50, H/dx = {n}");
     let theory = "The default step is stable, and disorder makes neither sound slower nor the stencil \
                   softer by a fifth.";

@@ -14,11 +14,11 @@ mod setup;
 use touchstone_harness::composed::*;
 use touchstone_schemes::hill;
 
-use crate::fluids::unit_flow::unit_settings;
+use crate::fluids::unit_flow::Numerics;
 
 pub use setup::Setup;
 
-unit_settings! {
+touchstone_base::settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.
     pub struct HillSettings {
         /// Reynolds number U_b H/ν
@@ -43,12 +43,14 @@ unit_settings! {
         h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.0,
         /// sound speed; the largest speed of the flow is 1.6 U_b at most
         c0: f64 ["U_b"] in 2.0..=1e4 = 15.0,
+        /// numerical settings
+        numerics: Numerics = Numerics::default(),
     }
 }
 
 /// The amplitude of the vortices' `strong`, for the same reason.
 fn strong(s: &mut HillSettings) {
-    s.shift = 3.0;
+    s.numerics.shift = 3.0;
 }
 
 fn variants() -> Compositions<HillSettings> {

@@ -35,8 +35,9 @@ impl Setup {
     /// If the settings make no run, or the reference cannot be read.
     pub fn new(method: &HillMethod, s: &HillSettings) -> Result<Self, RunError> {
         // The largest speed, over the crest, is below 1.6 U_b.
-        let scales = Scales { speed: 1.6, force: s.force, area: 27.0, dt: None };
-        let flow = s.flow(&method.properties, scales);
+        let HillSettings { re, n, h_over_dx, c0, end, force, .. } = *s;
+        let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.6, force, area: 27.0, dt: None };
+        let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let hill = Hill::new(1.0).map_err(|e| RunError::Reference(e.to_string()))?;
         let reference = Reference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;
         if s.from_reference && reference.is_none() {

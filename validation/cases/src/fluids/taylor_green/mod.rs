@@ -8,10 +8,10 @@ use touchstone_harness::{case::*, composed::*, declare::*, table};
 use touchstone_report::{Axis, ColourMap};
 use touchstone_schemes::flow;
 
-use crate::fluids::unit_flow::unit_settings;
+use crate::fluids::unit_flow::Numerics;
 use run::*;
 
-unit_settings! {
+touchstone_base::settings! {
     /// Settings of the vortices. L = U = ρ = 1.
     pub struct VortexSettings {
         /// Reynolds number U L/ν
@@ -30,6 +30,8 @@ unit_settings! {
         c0: f64 ["U"] in 2.0..=1e4 = 10.0,
         /// time step; auto: the least of courant h/(c0 + U) and viscous h²/ν
         dt: Option<f64> ["s"] in 1e-15..=1e3 = None,
+        /// numerical settings
+        numerics: Numerics = Numerics::default(),
     }
 }
 
@@ -41,7 +43,7 @@ unit_settings! {
 /// and that this crowds no pair is for the gate `nearest` to say. At dt = h/(c0 + U) the bounds are 7 and
 /// 2.7.
 fn strong(s: &mut VortexSettings) {
-    s.shift = 3.0;
+    s.numerics.shift = 3.0;
 }
 
 fn variants() -> Compositions<VortexSettings> {
@@ -238,11 +240,11 @@ fn budgets() -> Budgets {
     let changes = vec![
         Change::new("none", "none", pictured),
         changed("dx/2", "spacing", |s| s.n = 100),
-        changed("dt/3 (courant=0.5)", "time", |s| s.courant = 0.5),
+        changed("dt/3 (courant=0.5)", "time", |s| s.numerics.courant = 0.5),
         changed("c0=20", "sound speed", |s| s.c0 = 20.0),
         changed("h_over_dx=1.2", "h/dx", |s| s.h_over_dx = 1.2),
-        changed("diffusion=0.05", "density diffusion", |s| s.diffusion = 0.05),
-        changed("shift=2", "shifting", |s| s.shift = 2.0),
+        changed("diffusion=0.05", "density diffusion", |s| s.numerics.diffusion = 0.05),
+        changed("shift=2", "shifting", |s| s.numerics.shift = 2.0),
         changed("seed=2", "disorder", |s| s.seed = 2),
     ];
     let about = "Runs have 50 x 50 particles from the disturbed lattice at Re 100, to t = 2 L/U. The last \

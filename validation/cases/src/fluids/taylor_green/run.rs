@@ -38,8 +38,9 @@ touchstone_base::metrics! {
 impl Setup {
     /// Follows the rules for a method.
     pub fn new(method: &Method, s: &VortexSettings) -> Self {
-        let flow =
-            s.flow(&method.properties, Scales { speed: 1.0, force: 0.0, area: 1.0, dt: s.dt });
+        let VortexSettings { re, n, h_over_dx, c0, end, dt, .. } = *s;
+        let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.0, force: 0.0, area: 1.0, dt };
+        let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let exact = TaylorGreen { nu: flow.medium.nu };
         Self { settings: s.clone(), method: method.clone(), exact, flow }
     }

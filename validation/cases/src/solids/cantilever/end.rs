@@ -108,7 +108,7 @@ fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
         OF_METHODS.iter().for_each(|of| record.leave_out(*of, format!("there is {lacks}")));
         return;
     };
-    let stiffness = lagrangian::bending(settings.n, settings.poisson);
+    let stiffness = lagrangian::bending(settings.n, settings.solid.poisson);
     record.put(BENDING_FREQUENCY_ERROR, (1.0 + frequency) / stiffness.sqrt() - 1.0);
     record.put(BENDING_SAG_ERROR, (1.0 + sag) * stiffness - 1.0);
 }
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn a_bar_of_the_stiffness_of_theory_has_no_distance_from_theory() {
         let s = CantileverSettings { n: 5, ..CantileverSettings::default() };
-        let stiffness = lagrangian::bending(5, s.poisson);
+        let stiffness = lagrangian::bending(5, s.solid.poisson);
         assert!((stiffness - 1.0).abs() > 1e-3, "5 layers have the stiffness of a bar");
         for (more, frequency, sag) in [(1.0, 0.0, 0.0), (1.21, 0.1, -0.21 / 1.21)] {
             let mut record =

@@ -19,9 +19,9 @@ use crate::solids::{
 use end::End;
 use path::*;
 
-crate::solid_settings! {
+touchstone_base::settings! {
     /// Settings of a bar that is held at x = 0 and has weight from t = 0 on.
-    pub struct CantileverSettings of [1.4e6, 0.4] {
+    pub struct CantileverSettings {
         /// particles through the thickness
         n: usize ["-"] in 2..=1000 = 10,
         /// length outside of the clamp
@@ -32,6 +32,9 @@ crate::solid_settings! {
         gravity: f64 ["m/s^2"] in 1e-9..=1e9 = 2.0,
         /// end of the run
         end: f64 ["s"] in 1e-9..=1e9 = 4.0,
+        /// settings of solids
+        solid: SolidSettings
+            = SolidSettings { young: 1.4e6, poisson: 0.4, ..SolidSettings::default() },
     }
 }
 
@@ -119,7 +122,9 @@ fn variants() -> Compositions<CantileverSettings> {
 /// Those of the paper solve (10) to (12), of which there is no table: of the laws it is nearest to that
 /// of Hencky, which has the same pressure. The path is empty under the small load.
 fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
-    let bar = |s: &CantileverSettings| (s.length, s.thickness, s.young, s.poisson, s.rho);
+    let bar = |s: &CantileverSettings| {
+        (s.length, s.thickness, s.solid.young, s.solid.poisson, s.solid.rho)
+    };
     if bar(s) != bar(&CantileverSettings::default()) {
         return None;
     }
@@ -134,10 +139,15 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
 }
 
 impl Body for CantileverSettings {
+    fn common(&self) -> Common {
+        self.solid.common()
+    }
+
     /// The speed is that of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to
     /// either side; at most that of a rigid bar that falls to the vertical.
     fn scales(&self) -> Scales {
-        let Self { length, thickness, young, poisson, rho, gravity, .. } = *self;
+        let Self { length, thickness, gravity, .. } = *self;
+        let SolidSettings { young, poisson, rho, .. } = self.solid;
         let modulus = young / (1.0 - poisson * poisson);
         let slenderness = length * length / thickness;
         let period = solid::thin_plate_period([length, thickness], [young, poisson, rho]);
@@ -155,13 +165,13 @@ impl Body for CantileverSettings {
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (columns, dy) = (self.columns(), self.dx());
         let dx = self.length / columns as f64;
-        let held = (2.0 * self.h_over_dx).ceil() as usize;
+        let held = (2.0 * self.solid.h_over_dx).ceil() as usize;
         let row = |first: f64, columns: usize| {
             let place = move |row: usize, column: usize| {
                 let x = (first + column as f64 + 0.5) * dx;
                 Vector2::new(x, (row as f64 + 0.5) * dy - 0.5 * self.thickness)
             };
-            let at = move |x| Particle::fluid(x, Vector2::zeros(), self.rho, dx * dy);
+            let at = move |x| Particle::fluid(x, Vector2::zeros(), self.solid.rho, dx * dy);
             (0..self.n).flat_map(move |row| (0..columns).map(move |column| at(place(row, column))))
         };
         let held = row(-(held as f64), held).map(|p| p.with_role(Role::Wall));
@@ -204,7 +214,8 @@ mod tests {
     fn the_speed_is_that_of_a_thin_bar_or_of_one_that_falls() {
         let s = CantileverSettings::default();
         assert_relative_eq!(s.speed(), 0.46, max_relative = 0.02);
-        let soft = CantileverSettings { young: 1.0, ..s };
+        let solid = SolidSettings { young: 1.0, ..s.solid };
+        let soft = CantileverSettings { solid, ..s };
         assert_relative_eq!(soft.speed(), (3.0_f64 * 2.0 * 0.35).sqrt(), max_relative = 1e-12);
     }
 

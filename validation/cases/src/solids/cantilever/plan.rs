@@ -72,7 +72,7 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
         ],
         First => vec![fall(), energy()],
         Paper => {
-            let longer = 1.0 + faces::known_excess(n, row.settings.h_over_dx);
+            let longer = 1.0 + faces::known_excess(n, row.settings.solid.h_over_dx);
             let nothing =
                 "Nothing elastic dissipates, and the weight has a potential, so all energy stays.";
             let loses = "Artificial viscosity brakes the swing. The bound: a bar that has come to rest, at \

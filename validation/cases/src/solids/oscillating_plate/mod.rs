@@ -15,9 +15,9 @@ use super::{
     solid::{self, *},
 };
 
-crate::solid_settings! {
+touchstone_base::settings! {
     /// Settings of a plate that is held at x = 0.
-    pub struct PlateSettings of [2e6, 0.3975] {
+    pub struct PlateSettings {
         /// particles through the thickness
         n: usize ["-"] in 2..=1000 = 10,
         /// length outside of the clamp
@@ -28,6 +28,8 @@ crate::solid_settings! {
         speed: f64 ["c0"] in 1e-9..=0.1 = 0.01,
         /// end of the run: periods of thin-plate theory
         end: f64 ["periods"] in 0.01..=1e3 = 0.75,
+        /// settings of solids
+        solid: SolidSettings = SolidSettings::default(),
     }
 }
 
@@ -95,7 +97,7 @@ const EVERY: u64 = 8;
 
 /// The period of a thin plate \[s\].
 fn thin_plate_period(s: &PlateSettings) -> f64 {
-    solid::thin_plate_period([s.length, s.thickness], [s.young, s.poisson, s.rho])
+    solid::thin_plate_period([s.length, s.thickness], [s.solid.young, s.solid.poisson, s.solid.rho])
 }
 
 /// The first mode at x/L, 1 at the tip.
@@ -109,6 +111,10 @@ fn mode(x: f64) -> f64 {
 }
 
 impl Body for PlateSettings {
+    fn common(&self) -> Common {
+        self.solid.common()
+    }
+
     fn scales(&self) -> Scales {
         Scales {
             speed: self.speed * self.material().sound_speed(),
@@ -120,10 +126,10 @@ impl Body for PlateSettings {
     /// Free particles, column by column from the clamp, then those of the clamp.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, speed) = (self.dx(), self.speed());
-        let held = (2.0 * self.h_over_dx).ceil() as usize;
+        let held = (2.0 * self.solid.h_over_dx).ceil() as usize;
         let first =
             |columns: usize| Vector2::new((0.5 - columns as f64) * dx, 0.5 * (dx - self.thickness));
-        let at = |x, v| Particle::fluid(x, Vector2::new(0.0, v), self.rho, dx * dx);
+        let at = |x, v| Particle::fluid(x, Vector2::new(0.0, v), self.solid.rho, dx * dx);
         let free = touchstone_solver::lattice(first(0), dx, self.columns(), self.n);
         let held = touchstone_solver::lattice(first(held), dx, held, self.n);
         let free = free.map(|x| at(x, speed * mode(x.x / self.length)));
@@ -207,7 +213,7 @@ impl Watch for Tip {
         let of_path = (PATH_RMS, "extreme_1");
         solid::compare(exact.as_ref(), &errors, of_path, (&path, lacks), record);
         let error = record.value(PERIOD_ERROR).filter(|_| record.run.variant == LAGRANGIAN);
-        let stiffness = || solid::lagrangian::bending(s.n, s.poisson);
+        let stiffness = || solid::lagrangian::bending(s.n, s.solid.poisson);
         let bent = error.map(|error| (1.0 + error) * stiffness().sqrt() - 1.0);
         record.put_or(BENDING_PERIOD_ERROR, bent, "no error, or no theory of its layers");
         let columns = [("t", "s"), ("along", "m"), ("tip", "m")];
@@ -218,7 +224,9 @@ impl Watch for Tip {
 /// Finite elements of the last column of particles of a plate, for the law that the variant solves: that of
 /// the paper is (10) to (12). `None` where nothing was computed.
 fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
-    let plate = |s: &PlateSettings| (s.length, s.thickness, s.young, s.poisson, s.rho, s.speed);
+    let plate = |s: &PlateSettings| {
+        (s.length, s.thickness, s.solid.young, s.solid.poisson, s.solid.rho, s.speed)
+    };
     if plate(s) != plate(&PlateSettings::default()) || ![5, 10, 20].contains(&s.n) {
         return None;
     }
@@ -343,7 +351,8 @@ mod tests {
         let spec = OSCILLATING_PLATE.spec(LAGRANGIAN, |s| (s.n, s.end) = (5, 0.5));
         let limit = OSCILLATING_PLATE.rules(&spec).expect("sound settings").dt_limit();
         for (share, is_stable) in [(0.97, true), (1.03, false)] {
-            let set = |s: &mut PlateSettings| (s.n, s.end, s.dt) = (5, 0.5, Some(share * limit));
+            let set =
+                |s: &mut PlateSettings| (s.n, s.end, s.solid.dt) = (5, 0.5, Some(share * limit));
             let spec = OSCILLATING_PLATE.spec(LAGRANGIAN, set).allow_unstable();
             let record = OSCILLATING_PLATE.run(&spec, &Context::default()).expect("a run");
             assert_eq!(record.status == Status::Completed, is_stable, "{share} of the limit");

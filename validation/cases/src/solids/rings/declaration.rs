@@ -249,10 +249,11 @@ fn budgets() -> Budgets {
         change("dt/2", "time", |s| s.courant *= 0.5),
         change("spacing 0.1 L", "space", |s| s.spacing = 0.1),
         change("α/4, β/4", "artificial viscosity", |s| {
-            (s.alpha, s.beta) = (0.25 * s.alpha, 0.25 * s.beta);
+            (s.stabilisation.alpha, s.stabilisation.beta) =
+                (0.25 * s.stabilisation.alpha, 0.25 * s.stabilisation.beta);
         }),
-        change("no XSPH", "XSPH", |s| s.xsph = 0.0),
-        change("ξ = 0", "artificial stress", |s| s.xi = 0.0),
+        change("no XSPH", "XSPH", |s| s.stabilisation.xsph = 0.0),
+        change("ξ = 0", "artificial stress", |s| s.stabilisation.xi = 0.0),
     ];
     Budgets { about: "Rings collide at 0.059 c0 each at spacing 0.25 L.".into(), of: vec![changes] }
 }

@@ -21,6 +21,8 @@ use touchstone_harness::{
 };
 use touchstone_solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};
 
+use crate::stabilisation::Stabilisation;
+
 use crate::solids::{
     causes::*,
     solid::{self, lagrangian as total, *},
@@ -59,16 +61,9 @@ touchstone_base::settings! {
         dt: Option<f64> ["s"] in 1e-15..=1e6 = None,
         /// Courant number of the time step: half the theoretical limit
         courant: f64 ["-"] in 1e-6..=10.0 = 0.6,
-        /// linear artificial viscosity
-        alpha: f64 ["-"] in 0.0..=10.0 = 1.0,
-        /// quadratic artificial viscosity
-        beta: f64 ["-"] in 0.0..=10.0 = 2.0,
-        /// XSPH: ε
-        xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
-        /// strength of the artificial stress
-        xi: f64 ["-"] in 0.0..=10.0 = 0.3,
-        /// exponent of the artificial stress
-        exponent: usize ["-"] in 1..=16 = 4,
+        /// stabilising terms
+        stabilisation: Stabilisation
+            = Stabilisation { alpha: 1.0, beta: 2.0, ..Stabilisation::default() },
         /// samples of energy and shape; no time step is longer than the interval between them
         samples: usize ["-"] in 1..=100000 = 200,
     }
@@ -98,7 +93,9 @@ fn variants() -> Compositions<RingSettings> {
         .with("seed", papers, seed(), |_| {})
         .with(COMPONENTWISE, by_components, componentwise(), |_| {})
         .with("leapfrog", staggered, leapfrog(), |s| s.courant = LONG_STEPS)
-        .with(CORRECTED, conjugate, corrected(), |s| (s.courant, s.xsph) = (LONG_STEPS, 0.0))
+        .with(CORRECTED, conjugate, corrected(), |s| {
+            (s.courant, s.stabilisation.xsph) = (LONG_STEPS, 0.0)
+        })
         .with(LAGRANGIAN, TOTAL, touchstone_schemes::total::hencky(), |s| {
             total::choose(s);
             s.courant = total::COURANT_OF_FOLDS;

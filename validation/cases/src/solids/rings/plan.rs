@@ -45,7 +45,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
         [(0.2, 0.03), (0.1, 0.03), (0.05, 0.03), (0.1, 0.12), (0.1, 0.2), (0.2, 0.3), (0.1, 0.25)];
     table.over(Speed, &[LAGRANGIAN], [&[(0.2, 0.03), (0.2, 0.3)], &full], at);
     let unstressed = |s: &mut RingSettings, (dx, speed)| {
-        (s.spacing, s.speed, s.xi) = (dx, speed, 0.0);
+        (s.spacing, s.speed, s.stabilisation.xi) = (dx, speed, 0.0);
     };
     let all = [(0.2, 0.12), (0.2, SPEED), (0.1, SPEED), (0.1, 0.12)];
     table.over(Unstressed, &["seed"], [&all[..1], &all], unstressed);
@@ -92,7 +92,8 @@ fn gates(row: &Row) -> Vec<Gate> {
 
 /// What the names of the gates of a run have in the middle.
 fn id(row: &Row) -> String {
-    let RingSettings { spacing, speed, xi, .. } = row.settings;
+    let RingSettings { spacing, speed, .. } = row.settings;
+    let xi = row.settings.stabilisation.xi;
     let speed = if speed == SPEED { String::new() } else { format!(".v{speed}") };
     let xi = if row.group == Group::Unstressed { format!(".xi{xi}") } else { String::new() };
     format!("{}.s{spacing}{speed}{xi}", row.variant)

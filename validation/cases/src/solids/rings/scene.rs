@@ -6,21 +6,6 @@ use super::*;
 /// tear at the inner face (docs/limits.md).
 const MOST_CORRECTED: f64 = 10.0;
 
-impl SharedSettings for RingSettings {
-    fn material(&self) -> Material {
-        let shear = self.shear_modulus * self.bulk_modulus;
-        Material { density: self.rho, bulk: self.bulk_modulus, shear }
-    }
-
-    fn h_over_dx(&self) -> f64 {
-        self.h_over_dx
-    }
-
-    fn given_step(&self) -> [Option<f64>; 2] {
-        [self.dt, Some(self.courant)]
-    }
-}
-
 impl RingSettings {
     /// Bulk sound speed c₀ \[m/s\].
     pub fn c0(&self) -> f64 {
@@ -39,6 +24,12 @@ impl RingSettings {
 }
 
 impl Body for RingSettings {
+    fn common(&self) -> Common {
+        let shear = self.shear_modulus * self.bulk_modulus;
+        let material = Material { density: self.rho, bulk: self.bulk_modulus, shear };
+        Common { material, h_over_dx: self.h_over_dx, dt: self.dt, courant: Some(self.courant) }
+    }
+
     /// Twice the density or twice the speed of sound is no rubber any more.
     fn scales(&self) -> Scales {
         let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());

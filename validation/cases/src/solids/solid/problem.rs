@@ -19,14 +19,17 @@ use touchstone_harness::{
 };
 use touchstone_maths::theory::time_step::Integrator;
 
-/// What every problem is set by, as [`solid_settings!`](crate::solid_settings!) has it.
-pub trait SharedSettings: Values {
+/// The numbers that the settings of every solid state.
+#[derive(Clone, Copy, Debug)]
+pub struct Common {
     /// The material.
-    fn material(&self) -> Material;
+    pub material: Material,
     /// h/dx.
-    fn h_over_dx(&self) -> f64;
-    /// Time step \[s\] and Courant number dt (c_p + V)/h, if they are given.
-    fn given_step(&self) -> [Option<f64>; 2];
+    pub h_over_dx: f64,
+    /// Time step, if it is given \[s\].
+    pub dt: Option<f64>,
+    /// Courant number dt (c_p + V)/h, if it is given.
+    pub courant: Option<f64>,
 }
 
 /// What follows from the settings of a problem before its particles are made.
@@ -58,7 +61,13 @@ pub struct Scales {
 }
 
 /// Elastic bodies, stated by the settings of a case: what differs between cases of solids.
-pub trait Body: SharedSettings {
+pub trait Body: Values {
+    /// Material, h/dx and time step.
+    fn common(&self) -> Common;
+    /// The material.
+    fn material(&self) -> Material {
+        self.common().material
+    }
     /// Spacing, speed, end and the like.
     fn scales(&self) -> Scales;
     /// Spacing \[m\].
@@ -141,7 +150,8 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 /// What terms are made from.
 pub fn medium(settings: &dyn Body, method: &Properties) -> Medium {
     let Scales { dx, gravity, .. } = settings.scales();
-    let medium = settings.material().medium(method, [dx, settings.h_over_dx() * dx]);
+    let Common { material, h_over_dx, .. } = settings.common();
+    let medium = material.medium(method, [dx, h_over_dx * dx]);
     Medium { acceleration: gravity, ..medium }.set_by(settings)
 }
 
@@ -151,16 +161,15 @@ const FORCED: f64 = 0.25;
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
 fn rules(method: &Properties, settings: &dyn Body) -> Rules {
     let Scales { speed, end, meet, gravity, .. } = settings.scales();
-    let (material, medium) = (settings.material(), medium(settings, method));
+    let Common { material, h_over_dx, dt, courant } = settings.common();
+    let medium = medium(settings, method);
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
-    let [dt, courant] = settings.given_step();
     let courant = courant.unwrap_or(usual);
     let (h, force) = (medium.h, gravity.norm());
     let step = Step::courant(courant, h, [material.p_wave_speed(), speed]);
     let step = step.forced(FORCED, h, force).or_given(dt);
     let approach = if meet { 2.0 * speed } else { 0.0 };
-    let limits =
-        limits(method, &material, &medium, settings.h_over_dx(), approach).moving(h, speed, force);
+    let limits = limits(method, &material, &medium, h_over_dx, approach).moving(h, speed, force);
     Rules { step, limits, sound_speed: material.sound_speed(), end }
 }
 
@@ -208,9 +217,10 @@ impl Problem for Solid {
     }
 
     fn brief(&self) -> Brief {
-        let (Self { medium, rules, scales, .. }, material) = (self, self.body.material());
+        let Self { medium, rules, scales, .. } = self;
+        let Common { material, h_over_dx, .. } = self.body.common();
         let brief = Brief::new(*medium, *rules, scales.count, scales.decisive)
-            .numbers(&rules.numbers([self.body.h_over_dx(), medium.dx]))
+            .numbers(&rules.numbers([h_over_dx, medium.dx]))
             .numbers(&[
                 ("K [Pa]", material.bulk),
                 ("mu [Pa]", material.shear),

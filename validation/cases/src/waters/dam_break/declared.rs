@@ -267,14 +267,14 @@ type Set = fn(&mut DamSettings);
 /// What is changed, the part of the error that this changes, how, and the only variant that has it.
 const CHANGES: [(&str, &str, Set, Option<&str>); 9] = [
     ("none", "all", |_| (), None),
-    ("dt/2", "time", |s| s.courant *= 0.5, None),
+    ("dt/2", "time", |s| s.water.courant *= 0.5, None),
     ("dx/2", "spacing", |s| s.n *= 2, None),
     ("2 c0", "compressibility", |s| s.c0 *= 2.0, None),
-    ("alpha/2", "artificial viscosity", |s| s.alpha *= 0.5, None),
-    ("h/dx 2", "smoothing", |s| s.h_over_dx = 2.0, None),
-    ("delta/2", "density diffusion", |s| s.diffusion *= 0.5, Some("modern")),
-    ("no artificial stress", "artificial stress", |s| s.xi = 0.0, Some("seed")),
-    ("no XSPH", "XSPH", |s| s.xsph = 0.0, Some("seed")),
+    ("alpha/2", "artificial viscosity", |s| s.water.alpha *= 0.5, None),
+    ("h/dx 2", "smoothing", |s| s.water.h_over_dx = 2.0, None),
+    ("delta/2", "density diffusion", |s| s.water.diffusion *= 0.5, Some("modern")),
+    ("no artificial stress", "artificial stress", |s| s.water.xi = 0.0, Some("seed")),
+    ("no XSPH", "XSPH", |s| s.water.xsph = 0.0, Some("seed")),
 ];
 
 fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {

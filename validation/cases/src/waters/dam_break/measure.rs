@@ -331,7 +331,7 @@ mod tests {
         let dx = dam.medium.dx;
         let first = Vector2::new(from as f64 + 0.5, 0.5) * dx;
         touchstone_solver::lattice(first, dx, to - from, rows)
-            .map(|x| Particle::fluid(x, v, dam.settings.rho, dx * dx))
+            .map(|x| Particle::fluid(x, v, dam.settings.water.rho, dx * dx))
             .collect()
     }
 

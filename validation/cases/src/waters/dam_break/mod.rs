@@ -33,7 +33,7 @@ use touchstone_solver::*;
 use crate::waters::{
     causes::*,
     water::{
-        self, Ledger,
+        self, Ledger, WaterSettings,
         ledger::{self, *},
     },
 };
@@ -42,7 +42,7 @@ use plan::*;
 use reference::*;
 pub use setup::Dam;
 
-crate::water_settings! {
+touchstone_base::settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
     pub struct DamSettings {
         /// spacings along the shorter side of the column; with fewer than 5 no particle is below a quarter of
@@ -64,6 +64,8 @@ crate::water_settings! {
         end: f64 ["(H/g)^(1/2)"] in 1e-6..=100.0 = 1.8,
         /// the column starts this far to the left of its place and below it, with the densities of its place
         offset: f64 ["dx"] in 0.0..=0.5 = 0.0,
+        /// settings of water
+        water: WaterSettings = WaterSettings::default(),
     }
 }
 
@@ -109,12 +111,12 @@ pub const NAME: &str = "dam_break";
 /// The seed's step: at Courant number 0.4 the predictor-corrector needs α = 0.03 on every pair, and
 /// α = 0.1 on approaching ones is more than that.
 fn seed(s: &mut DamSettings) {
-    s.courant = 0.4;
+    s.water.courant = 0.4;
 }
 
 /// 24 neighbours, α as customary with density diffusion, and half of the leapfrog's limit.
 fn modern(s: &mut DamSettings) {
-    (s.alpha, s.courant) = (0.02, 1.0);
+    (s.water.alpha, s.water.courant) = (0.02, 1.0);
 }
 
 /// The variants, each with the question that it answers.

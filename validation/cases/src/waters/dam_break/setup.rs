@@ -49,7 +49,8 @@ impl Dam {
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
         let speed = 2.0 * fall;
         let end = s.end * s.height / fall;
-        let (medium, rules) = s.medium(method, [dx, s.c0 * fall, s.gravity, speed, end]);
+        let scales = water::Scales { dx, c0: s.c0 * fall, gravity: s.gravity, speed, end };
+        let (medium, rules) = s.water.medium(method, scales);
         let (settings, method) = (s.clone(), method.clone());
         Ok(Self { settings, method, medium, tank, rim, counts, speed, rules })
     }
@@ -69,13 +70,13 @@ impl Dam {
         }
         });
         let brief = Brief::new(*medium, self.rules, all, DECISIVE)
-            .numbers(&self.rules.numbers([self.settings.h_over_dx, medium.dx]));
+            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, medium.dx]));
         Brief { unstable, ..brief }
     }
 
     /// ρ g H \[Pa\], the unit of pressure.
     pub fn unit_pressure(&self) -> f64 {
-        self.settings.rho * self.settings.gravity * self.settings.height
+        self.settings.water.rho * self.settings.gravity * self.settings.height
     }
 
     /// Whether the scene is that of Martin & Moyce.
@@ -100,7 +101,7 @@ impl Dam {
         let offset = Vector2::repeat(s.offset * dx);
         touchstone_solver::lattice(Vector2::repeat(first * dx), dx, columns, rows)
             .map(|x| {
-                let density = self.medium.eos.density(s.rho * s.gravity * (surface - x.y));
+                let density = self.medium.eos.density(s.water.rho * s.gravity * (surface - x.y));
                 Particle::fluid(x - offset, Vector2::zeros(), density, dx * dx)
             })
             .collect()
@@ -109,7 +110,7 @@ impl Dam {
     /// The scene.
     pub fn parts(&self) -> Parts {
         let Self { method, medium, tank, speed, .. } = self;
-        let (rho, c0, dx) = (self.settings.rho, medium.eos.sound_speed, medium.dx);
+        let (rho, c0, dx) = (self.settings.water.rho, medium.eos.sound_speed, medium.dx);
         let mut particles = self.water(method.properties.first_row);
         let walls = water::wall_particles(
             method.properties.first_row,
@@ -203,7 +204,8 @@ mod tests {
     /// particles.
     #[test]
     fn a_step_far_beyond_the_limit_does_not_widen_the_lists_without_end() {
-        let settings = DamSettings { dt: Some(167.0), ..DamSettings::default() };
+        let water = WaterSettings { dt: Some(167.0), ..WaterSettings::default() };
+        let settings = DamSettings { water, ..DamSettings::default() };
         let dam = Dam::new(&water::modern(), &settings).unwrap();
         assert_eq!(dam.parts().skin, Some(dam.medium.h));
     }
@@ -230,16 +232,16 @@ mod tests {
         let is_too_much = |set| matches!(refused("modern", set), Err(RunError::TooLong { .. }));
         assert!(matches!(Dam::changed(|s| s.tank = 0.05), Err(RunError::TooMuch { .. })));
         assert!(is_too_much(|s| (s.n, s.tank) = (2000, 100.0)));
-        assert!(is_too_much(|s| s.courant = 1e-6));
-        let unstable = refused("modern", |s| s.courant = 2.0);
+        assert!(is_too_much(|s| s.water.courant = 1e-6));
+        let unstable = refused("modern", |s| s.water.courant = 2.0);
         assert!(matches!(unstable, Err(RunError::TimeStep { .. })));
-        let unused = DAM_BREAK.spec("modern", |s| s.xsph = 0.25);
+        let unused = DAM_BREAK.spec("modern", |s| s.water.xsph = 0.25);
         assert!(matches!(
             DAM_BREAK.run(&unused, &Context::default()),
             Err(RunError::Unused { .. })
         ));
         // Without viscosity the predictor-corrector has no stable step.
-        let inviscid = refused("seed", |s| s.alpha = 0.0);
+        let inviscid = refused("seed", |s| s.water.alpha = 0.0);
         assert!(matches!(inviscid, Err(RunError::TimeStep { .. })));
     }
 }

@@ -6,12 +6,13 @@ pub mod ledger;
 use nalgebra::Vector2;
 use touchstone_base::settings::SettingError;
 use touchstone_harness::{
-    case::RunError,
+    case::{Rules, RunError, Step},
     limits::Limits,
     method::{FirstRow, Medium, Properties},
 };
 use touchstone_maths::{exact, geometry::Tank};
-use touchstone_solver::{Particle, Role};
+use touchstone_schemes::water::WaterMethod;
+use touchstone_solver::{Particle, Role, Tait};
 
 pub use ledger::Ledger;
 
@@ -63,64 +64,62 @@ pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector
     }
 }
 
-/// Declares the settings of a case of water: its own, then those that every such case has, and what follows
-/// from the latter.
-#[macro_export]
-macro_rules! water_settings {
-    (
-        $(#[doc = $doc:literal])+
-        pub struct $Struct:ident { $($own:tt)* }
-    ) => {
-        touchstone_base::settings! {
-            $(#[doc = $doc])+
-            pub struct $Struct {
-                $($own)*
-                /// density at rest
-                rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
-                /// smoothing length over spacing: 1.5 as in the rings; at 1.2 artificial stress adds more
-                /// energy than viscosity can take
-                h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
-                /// artificial viscosity: linear part
-                alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
-                /// artificial viscosity: quadratic part
-                beta: f64 ["-"] in 0.0..=20.0 = 0.0,
-                /// XSPH: share of the neighbours' mean
-                xsph: f64 ["-"] in -0.99..=0.99 = 0.5,
-                /// artificial stress: strength
-                xi: f64 ["-"] in 0.0..=10.0 = 0.3,
-                /// artificial stress: exponent
-                exponent: usize ["-"] in 1..=12 = 4,
-                /// density diffusion, in h c0
-                diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
-                /// Courant number dt (c0 + v)/h, v the largest speed expected
-                courant: f64 ["-"] in 1e-6..=10.0 = 0.25,
-                /// time step; auto: by the Courant number
-                dt: Option<f64> ["s"] in 1e-15..=1e6 = None,
-            }
-        }
+touchstone_base::settings! {
+    /// The settings that cases of water have in common.
+    pub struct WaterSettings {
+        /// density at rest
+        rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
+        /// smoothing length over spacing: 1.5 as in the rings; at 1.2 artificial stress adds more
+        /// energy than viscosity can take
+        h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
+        /// artificial viscosity: linear part
+        alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
+        /// artificial viscosity: quadratic part
+        beta: f64 ["-"] in 0.0..=20.0 = 0.0,
+        /// XSPH: share of the neighbours' mean
+        xsph: f64 ["-"] in -0.99..=0.99 = 0.5,
+        /// artificial stress: strength
+        xi: f64 ["-"] in 0.0..=10.0 = 0.3,
+        /// artificial stress: exponent
+        exponent: usize ["-"] in 1..=12 = 4,
+        /// density diffusion, in h c0
+        diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
+        /// Courant number dt (c0 + v)/h, v the largest speed expected
+        courant: f64 ["-"] in 1e-6..=10.0 = 0.25,
+        /// time step; auto: by the Courant number
+        dt: Option<f64> ["s"] in 1e-15..=1e6 = None,
+    }
+}
 
-        impl $Struct {
-            /// Water with this spacing \[m\], sound speed \[m/s\] and gravity \[m/s²\], and what the rules
-            /// choose; `speed` is the largest speed expected \[m/s\], `end` the end \[s\].
-            pub fn medium(
-                &self,
-                method: &touchstone_schemes::water::WaterMethod,
-                [dx, c0, gravity, speed, end]: [f64; 5],
-            ) -> (touchstone_harness::method::Medium, touchstone_harness::case::Rules) {
-                let (h, eos) = (self.h_over_dx * dx, touchstone_solver::Tait::new(self.rho, c0));
-                let down = nalgebra::Vector2::new(0.0, -gravity);
-                let medium = touchstone_harness::method::Medium {
-                    acceleration: down,
-                    wall_acceleration: down,
-                    ..method.properties.medium(eos, [dx, h]).set_by(self)
-                };
-                let step = touchstone_harness::case::Step::courant(self.courant, h, [c0, speed]);
-                let lattice = [self.h_over_dx, c0];
-                let limits =
-                    $crate::waters::water::limits(&method.properties, &medium, lattice, 24);
-                let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
-                (medium, touchstone_harness::case::Rules { step, limits, sound_speed: c0, end })
-            }
-        }
-    };
+/// The scales of a flow of water.
+#[derive(Clone, Copy, Debug)]
+pub struct Scales {
+    /// Spacing \[m\].
+    pub dx: f64,
+    /// Sound speed \[m/s\].
+    pub c0: f64,
+    /// Gravity, downwards \[m/s²\].
+    pub gravity: f64,
+    /// Largest speed expected \[m/s\].
+    pub speed: f64,
+    /// End of the run \[s\].
+    pub end: f64,
+}
+
+impl WaterSettings {
+    /// The medium and the rules of the time step of a flow with these scales.
+    pub fn medium(&self, method: &WaterMethod, scales: Scales) -> (Medium, Rules) {
+        let Scales { dx, c0, gravity, speed, end } = scales;
+        let (h, eos) = (self.h_over_dx * dx, Tait::new(self.rho, c0));
+        let down = Vector2::new(0.0, -gravity);
+        let medium = Medium {
+            acceleration: down,
+            wall_acceleration: down,
+            ..method.properties.medium(eos, [dx, h]).set_by(self)
+        };
+        let step = Step::courant(self.courant, h, [c0, speed]);
+        let limits = limits(&method.properties, &medium, [self.h_over_dx, c0], 24);
+        let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
+        (medium, Rules { step, limits, sound_speed: c0, end })
+    }
 }
