@@ -99,19 +99,26 @@ impl Bound {
     }
 }
 
-impl fmt::Display for Bound {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Bound {
+    /// The bound in words, its ends as `number` writes them.
+    pub fn in_words(self, number: &dyn Fn(f64) -> String) -> String {
         match self {
-            Bound::Below(high) => write!(f, "at most {}", shown(*high)),
-            Bound::Above(low) => write!(f, "at least {}", shown(*low)),
-            Bound::Within(low, high) => write!(f, "{} to {}", shown(*low), shown(*high)),
-            Bound::Equals(expected) => write!(f, "exactly {expected}"),
+            Bound::Below(high) => format!("at most {}", number(high)),
+            Bound::Above(low) => format!("at least {}", number(low)),
+            Bound::Within(low, high) => format!("{} to {}", number(low), number(high)),
+            Bound::Equals(expected) => format!("exactly {expected}"),
         }
     }
 }
 
+impl fmt::Display for Bound {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.in_words(&four_digits))
+    }
+}
+
 /// Four significant digits at most, for people: `300`, `1.784`, `1e-10`.
-fn shown(value: f64) -> String {
+pub fn four_digits(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse().unwrap_or(value);
     let text = format!("{rounded:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_string)
@@ -338,9 +345,14 @@ impl Gate {
 
     /// Where the metric must lie, in words, with how far its limitation reaches.
     pub fn bounds(&self) -> String {
+        self.bounds_in(&four_digits)
+    }
+
+    /// The same, with numbers as `number` writes them.
+    pub fn bounds_in(&self, number: &dyn Fn(f64) -> String) -> String {
         let fitted = if self.fitted { ", fitted to own runs" } else { "" };
-        let known = self.known.map(|known| format!("; limitation{fitted}: {known}"));
-        self.bound.to_string() + &known.unwrap_or_default()
+        let known = |known: Bound| format!("; limitation{fitted}: {}", known.in_words(number));
+        self.bound.in_words(number) + &self.known.map(known).unwrap_or_default()
     }
 
     /// Judges a record: its metric by [`Gate::judge`] if the run reached its end, and otherwise the early

@@ -224,8 +224,11 @@ impl Problem {
             further = posed.further.map_or_else(Vec::new, |of| of(&spec.settings));
             fields = fields_read(case, &spec);
             if gates.is_empty() {
-                let is_meant = |gate: &Gate| !record::is_of(&ours, &gate.metric);
-                nearest = plan::nearest_judged(case, &spec, &is_meant)
+                let judges = |gate: Gate| {
+                    let gate = gate.for_submission(false)?;
+                    (!record::is_of(&ours, &gate.metric)).then_some(gate)
+                };
+                nearest = plan::nearest_judged(case, &spec, &judges)
                     .map(|(of, _)| case::command(case, &of));
             }
         }

@@ -39,19 +39,18 @@ pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
     gates
 }
 
-/// The judged simulation whose settings are the nearest to these of a submission, and a gate there that
-/// would judge it and that `is_meant`: of the same variant if there is one, then with the fewest other
-/// settings, then with the least ratios of these.
+/// The judged simulation whose settings are the nearest to these, and the gate there that `judges` chooses: of
+/// the same variant if there is one, then with the fewest other settings, then with the least ratios of
+/// these.
 pub fn nearest_judged(
     case: &dyn Case,
     spec: &RunSpec,
-    is_meant: &dyn Fn(&Gate) -> bool,
+    judges: &dyn Fn(Gate) -> Option<Gate>,
 ) -> Option<(RunSpec, Gate)> {
-    let states = spec.submission.as_ref().is_some_and(|of| of.states_our_method);
     let plans = [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| of_case(case, tier));
     let judged = plans.filter(|planned| planned.spec.task == Task::Simulate).filter_map(|of| {
-        let gates = of.gates.into_iter().filter_map(|gate| gate.for_submission(states));
-        gates.into_iter().find(is_meant).map(|gate| (of.spec, gate))
+        let spec = of.spec;
+        of.gates.into_iter().find_map(judges).map(|gate| (spec, gate))
     });
     let far = |of: &RunSpec| {
         let names = case.fields().iter().map(|field| field.name);

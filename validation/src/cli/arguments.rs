@@ -516,6 +516,9 @@ pub struct Doctor {
     /// Also measure the speed of the solver (about a minute)
     #[arg(long)]
     pub bench: bool,
+    /// Also show the features of the processor and the hash of each table of reference data
+    #[arg(long)]
+    pub verbose: bool,
     /// Folder that must be writable
     #[arg(long, value_name = "DIR", default_value = "reports")]
     pub out: PathBuf,

@@ -12,7 +12,7 @@ use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
 
 pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
-    output::print(&about(&manifest))?;
+    output::print(&about(&manifest, arguments.verbose))?;
     let (mut is_sound, mut can_write) = (true, true);
     for (what, check) in [
         ("references", references as fn(&arguments::Doctor, &World) -> Result<String, Failure>),
@@ -41,29 +41,36 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
     Ok(if can_write { Exit::Pass } else { Exit::Usage })
 }
 
-fn about(manifest: &Manifest) -> String {
+fn about(manifest: &Manifest, is_verbose: bool) -> String {
     let Manifest { touchstone, rustc, profile, opt_level, target, .. } = manifest;
     let advice = if profile == "release" { "" } else { " (cargo build --release is faster)" };
+    let compiler = rustc.split(" (").next().unwrap_or_default();
+    let [mut build, mut processor] =
+        [format!("{profile}{advice}, {compiler}, {target}"), manifest.cpu.clone()];
+    if is_verbose {
+        build = format!("{build}, opt-level {opt_level}, {}, {rustc}", manifest.features.join(" "));
+        processor = format!("{processor}, {}", manifest.cpu_features.join(" "));
+    }
     let rows = [
         ("touchstone", format!("{touchstone}, {}", manifest.state())),
-        ("compiler", rustc.clone()),
-        ("build", format!("{profile}, opt-level {opt_level}{advice}")),
-        ("target", format!("{target}, {}", manifest.features.join(" "))),
-        ("processor", format!("{}, {}", manifest.cpu, manifest.cpu_features.join(" "))),
+        ("build", build),
+        ("processor", processor),
         ("threads", format!("{} of {} cores", manifest.threads, manifest.cores)),
     ];
     rows.iter().map(|(head, text)| output::hanging(head, 12, text)).collect()
 }
 
 /// Every embedded reference, read and checked against its hash.
-fn references(_: &arguments::Doctor, _: &World) -> Result<String, Failure> {
-    let mut texts = Vec::new();
+fn references(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> {
+    let (mut count, mut hashes) = (0, String::new());
     for name in Reference::names() {
         for resource in &Reference::load(name)?.package.resources {
-            texts.push(format!("\n                 {name}/{} {}", resource.path, resource.hash));
+            count += 1;
+            hashes += &format!("\n                 {name}/{} {}", resource.path, resource.hash);
         }
     }
-    Ok(format!("{} tables as described{}", texts.len(), texts.concat()))
+    let hashes = if arguments.verbose { &hashes } else { " (--verbose lists their hashes)" };
+    Ok(format!("{count} tables as described{hashes}"))
 }
 
 fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> {

@@ -197,8 +197,10 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
 
 fn words(known: &Known) -> String {
     let Known { gate, on, last, others, .. } = known;
-    let judged_as =
-        |judged: &Judged| format!("{}: {}", judged::value(&judged.judgement), judged.words());
+    let judged_as = |judged: &Judged| {
+        let words = output::painted(judged.judgement.verdict, &judged.words());
+        format!("{}: {words}", judged::value(&judged.judgement))
+    };
     let lines = [
         ("checks", format!("metric {}", gate.metric)),
         ("bound", gate.bound.to_string()),

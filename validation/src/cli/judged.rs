@@ -37,7 +37,7 @@ fn table_of<'a>(mut judged: Vec<&'a Judged>) -> String {
     let row = |judged: &'a Judged| {
         let Judged { gate, judgement, .. } = judged;
         vec![
-            words(judged),
+            output::painted(judgement.verdict, &words(judged)),
             gate.id.clone(),
             number(judgement.value),
             gate.bounds(),
@@ -288,8 +288,12 @@ pub fn submissions(suite: &Suite) -> String {
 
 /// What came of all gates, of our own runs and of those of other codes in the store.
 pub fn headline(suite: &Suite) -> String {
-    let ours = suite.counts().headline();
-    let others = Counts::of(suite.submitted().map(|of| of.judged.judgement.verdict)).headline();
+    let painted = |counts: Counts| match counts.count(Verdict::Fail) {
+        0 => counts.headline(),
+        _ => output::painted(Verdict::Fail, &counts.headline()),
+    };
+    let ours = painted(suite.counts());
+    let others = painted(Counts::of(suite.submitted().map(|of| of.judged.judgement.verdict)));
     match suite.submissions().next() {
         None => ours,
         Some(_) if suite.cases.iter().all(|of| of.runs.all.is_empty()) => {

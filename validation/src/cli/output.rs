@@ -1,11 +1,15 @@
 //! Text for people and for programs.
 
-use std::io::{self, ErrorKind, Write};
+use std::env;
+use std::io::{self, ErrorKind, IsTerminal, Write};
 use std::panic::PanicHookInfo;
 use std::path::Path;
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde_json::Value;
+use terminal_size::{Width, terminal_size_of};
+use touchstone_base::gate::Verdict;
 
 use super::Failure;
 
@@ -18,15 +22,63 @@ pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", visible(text.trim_end_matches('\n')));
 }
 
-/// Text whose control characters are seen and not obeyed, as `\u{1b}`: that of a file or of an argument must
-/// not move a cursor or change a title.
+/// Escape sequences of the colours in which verdicts are shown: red, yellow, and the end of either.
+const RED: &str = "\u{1b}[31m";
+const YELLOW: &str = "\u{1b}[33m";
+const END: &str = "\u{1b}[0m";
+
+/// Are results shown in colour? On a terminal, unless `NO_COLOR` is set (<https://no-color.org>).
+static HAS_COLOUR: LazyLock<bool> = LazyLock::new(|| {
+    let is_set = |name| env::var_os(name).is_some_and(|value| !value.is_empty());
+    let is_dumb = env::var_os("TERM").is_some_and(|name| name == "dumb");
+    io::stdout().is_terminal() && !is_set("NO_COLOR") && !is_dumb
+});
+
+/// Text in the colour of a verdict: red if it fails, yellow for a known limitation.
+pub fn painted(verdict: Verdict, text: &str) -> String {
+    paint(verdict, text, *HAS_COLOUR)
+}
+
+fn paint(verdict: Verdict, text: &str, has_colour: bool) -> String {
+    match verdict {
+        Verdict::Fail if has_colour => format!("{RED}{text}{END}"),
+        Verdict::Limitation if has_colour => format!("{YELLOW}{text}{END}"),
+        _ => text.to_string(),
+    }
+}
+
+/// Columns that a text takes.
+fn width(text: &str) -> usize {
+    if !text.contains('\u{1b}') {
+        return text.chars().count();
+    }
+    [RED, YELLOW, END]
+        .iter()
+        .fold(text.to_string(), |text, of| text.replace(of, ""))
+        .chars()
+        .count()
+}
+
+/// Text whose control characters are seen and not obeyed, as `\u{1b}`: text from a file or an argument must
+/// not move the cursor or change the title of the window. Colours of [`painted`] are obeyed.
 fn visible(text: &str) -> String {
-    let seen = |char: char| match char {
-        '\n' | '\t' => char.to_string(),
-        char if char.is_control() => char.escape_default().to_string(),
-        char => char.to_string(),
-    };
-    text.chars().map(seen).collect()
+    visible_with(text, *HAS_COLOUR)
+}
+
+fn visible_with(text: &str, has_colour: bool) -> String {
+    let mut visible = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(char) = rest.chars().next() {
+        let colour = [RED, YELLOW, END].into_iter().find(|of| has_colour && rest.starts_with(of));
+        let length = colour.map_or(char.len_utf8(), str::len);
+        match (colour, char) {
+            (None, '\n' | '\t') => visible.push(char),
+            (None, char) if char.is_control() => visible.extend(char.escape_default()),
+            _ => visible += &rest[..length],
+        }
+        rest = &rest[length..];
+    }
+    visible
 }
 
 /// A result, on standard output. A reader that has had enough (`| head`) is no error.
@@ -103,7 +155,6 @@ pub fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Str
 }
 
 fn laid_out(heads: &[&str], rows: &[Vec<String>]) -> String {
-    let width = |text: &str| text.chars().count();
     let cells = |k: usize| rows.iter().filter_map(move |row| row.get(k)).map(String::as_str);
     let widths: Vec<usize> = (0..heads.len())
         .map(|k| cells(k).map(width).max().unwrap_or(0).max(width(heads[k])))
@@ -131,24 +182,47 @@ fn laid_out(heads: &[&str], rows: &[Vec<String>]) -> String {
     text
 }
 
-/// Longest line of text.
-const COLUMNS: usize = 100;
+/// Length of lines: the width of the terminal, or 100 where standard output is none.
+pub fn columns() -> usize {
+    terminal_size_of(io::stdout()).map_or(100, |(Width(columns), _)| columns.into())
+}
 
-/// Text in lines, each after `indent`.
+/// Text in lines, each after `indent`. No line ends at a no-break space.
 pub fn wrap(text: &str, indent: &str) -> String {
     let (mut lines, mut line) = (Vec::new(), String::new());
-    for word in text.split_whitespace() {
-        let length = indent.chars().count() + line.chars().count() + 1 + word.chars().count();
-        if !line.is_empty() && length > COLUMNS {
+    for word in text.split([' ', '\n']).filter(|word| !word.is_empty()) {
+        let length = width(indent) + width(&line) + 1 + width(word);
+        if !line.is_empty() && length > columns() {
             lines.push(std::mem::take(&mut line));
         }
         line += &format!("{}{word}", if line.is_empty() { "" } else { " " });
     }
     lines.push(line);
-    lines.iter().map(|line| format!("{indent}{line}\n")).collect()
+    lines.iter().map(|line| format!("{indent}{}\n", line.replace('\u{a0}', " "))).collect()
 }
 
 /// Text in lines after a head, of which those after the first begin so many characters from the left.
 pub fn hanging(head: &str, width: usize, text: &str) -> String {
     format!("{head:<width$}{}", wrap(text, &" ".repeat(width)).trim_start())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Colours are ours alone: every other control character is shown, and all of them are where there is no
+    /// terminal.
+    #[test]
+    fn only_verdicts_have_a_colour_and_only_on_a_terminal() {
+        let [fail, limited, pass] = [Verdict::Fail, Verdict::Limitation, Verdict::Pass]
+            .map(|verdict| paint(verdict, "text", true));
+        assert_eq!(
+            [&*fail, &limited, &pass],
+            ["\u{1b}[31mtext\u{1b}[0m", "\u{1b}[33mtext\u{1b}[0m", "text"]
+        );
+        assert_eq!((visible_with(&fail, true), width(&fail)), (fail.clone(), 4));
+        assert_eq!(paint(Verdict::Fail, "text", false), "text");
+        assert_eq!(visible_with(&fail, false), "\\u{1b}[31mtext\\u{1b}[0m");
+        assert_eq!(visible_with("\u{1b}[2Ja\u{9b}b\tc\n", true), "\\u{1b}[2Ja\\u{9b}b\tc\n");
+    }
 }

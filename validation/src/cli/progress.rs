@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 use touchstone_harness::{context::Progress, make::Done};
+use touchstone_report::sig;
 
 use super::output;
 
@@ -32,12 +33,9 @@ impl Bar {
         } else {
             ProgressBar::hidden()
         };
-        let template = "{bar:24} {percent:>3} %  {elapsed}  {msg}";
+        let template = "{bar:24} {percent:>3} %  {elapsed}  {wide_msg}"; // cut at the edge of the terminal
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("━╸ "));
-        }
-        if !bar.is_hidden() {
-            bar.enable_steady_tick(2 * EVERY); // time goes on while a long run does
         }
         let start = Instant::now();
         Bar { bar, start, next: Mutex::new(start), first: OnceLock::new() }
@@ -48,36 +46,46 @@ impl Bar {
         if !self.is_time() {
             return;
         }
-        let Progress { time, end, dt, particle_steps } = progress;
+        let Progress { time, end, .. } = progress;
         let elapsed = self.start.elapsed().as_secs_f64();
         let done = (time / end).clamp(0.0, 1.0);
-        let rate = particle_steps as f64 / elapsed / 1e6;
         let left = left(elapsed, *self.first.get_or_init(|| done), done);
         let left = left.map(|seconds| format!(", {} left", touchstone_report::seconds(seconds)));
         let left = left.unwrap_or_default();
-        self.bar.set_position((done * PARTS as f64) as u64);
-        self.bar.set_message(format!(
-            "t {time:.3e} of {end:.3e} s, dt {dt:.2e} s, {rate:.2} M particle steps/s{left}"
-        ));
+        self.show(done, format!("t = {} of {} s{left}", sig(time, 3), sig(end, 3)));
     }
 
     /// Shows how far the runs of a plan are.
     pub fn show_runs(&self, done: Done) {
         let Done { runs, all, share, left, last } = done;
         let mut words = format!("{runs} of {}", touchstone_report::counted(all, "run", "runs"));
-        if runs > 0 {
-            words += &format!(", last {last}");
-        }
         if let Some(left) = left {
             words += &format!(", {} left", touchstone_report::seconds(left));
         }
+        if runs > 0 {
+            words += &format!(", last {last}");
+        }
+        self.show(share, words);
+    }
+
+    /// Draws the bar. The elapsed time goes on while a long run does; not before, because a bar that was
+    /// drawn stays on the screen above whatever is said without [`Self::suspend`].
+    fn show(&self, share: f64, words: String) {
         self.bar.set_position((share * PARTS as f64) as u64);
         self.bar.set_message(words);
+        if !self.bar.is_hidden() {
+            self.bar.enable_steady_tick(2 * EVERY);
+        }
     }
 
     /// Says a line above the bar.
     pub fn say(&self, text: &str) {
-        self.bar.suspend(|| output::say(text));
+        self.suspend(|| output::say(text));
+    }
+
+    /// Takes the bar away while something is said.
+    pub fn suspend<T>(&self, say: impl FnOnce() -> T) -> T {
+        self.bar.suspend(say)
     }
 
     /// Wipes the bar away.

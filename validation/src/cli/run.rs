@@ -109,8 +109,14 @@ fn carry_out(
         let count = unasked.len();
         table += &format!("more gates on metrics not asked for (--metrics all): {count}\n\n");
     }
-    let end = outcome(case, &asked.spec, &record, &verdicts);
-    let text = format!("{}\n{table}{end}", summary(&record));
+    let [first, next] = outcome(case, &asked.spec, &record, &verdicts);
+    let text = format!(
+        "{}, variant {}\n{first}\n{table}{}{}",
+        record.run.case,
+        record.run.variant,
+        details(&record),
+        if next.is_empty() { next } else { format!("\n{next}") },
+    );
     let printed = match arguments.json || written.is_err() {
         true => output::print_whole(&record.to_json().map_err(Failure::bug)?),
         false => output::print(&text),
@@ -192,11 +198,11 @@ fn compute(
     let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
     let tell = |size: &Size| {
         if !arguments.json {
-            told.call_once(|| output::say(&format!("estimate: {size}")));
+            told.call_once(|| bar.say(&format!("estimate: {size}")));
         }
     };
     let show = |progress: Progress| bar.show_run(progress);
-    let lose = |error: &RunError| lost.tell(error, folder);
+    let lose = |error: &RunError| bar.suspend(|| lost.tell(error, folder));
     let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let write = |simulations: &[Vec<u8>]| match folder {
         Some(folder) => checkpoint::write(&folder.output, asked, simulations)
@@ -375,26 +381,29 @@ fn velocities(record: &Record) -> Option<Profile> {
     (!rows.is_empty()).then(|| Profile::of_rows(&columns, &rows))
 }
 
-/// What a person wants to know of a record.
-fn summary(record: &Record) -> String {
-    let Record { run, cost, .. } = record;
+/// The metrics of a record, what is absent, the parameters that follow from the settings, and the work.
+fn details(record: &Record) -> String {
+    let Record { numerics, cost, .. } = record;
     let value = |value: &Value| match value.as_f64() {
         Some(number) if !value.is_u64() => touchstone_report::sig(number, 4),
         _ => value.as_str().map_or_else(|| value.to_string(), String::from),
     };
-    let numerics: Vec<String> =
-        record.numerics.iter().map(|(name, number)| format!("{name} {}", value(number))).collect();
-    let mut text = format!("{}, variant {}\n", run.case, run.variant);
-    text += &output::wrap(&numerics.join(", "), "    ");
-    let rate = cost.particle_rhs as f64 / cost.wall_s.max(1e-9) / 1e6;
-    text += &format!(
-        "    {} particles, {} steps in {}, {rate:.2} million particle right-hand sides a second\n\n",
-        cost.particles,
-        cost.steps,
-        touchstone_report::seconds(cost.wall_s)
+    // A step is shortened to reach the end and the times of samples: it is planned, then used.
+    let is_used = |name: &str, number: &Value| {
+        let used = name.strip_suffix(" planned").and_then(|name| numerics.get(name));
+        used.is_some_and(|used| value(used) == value(number))
+    };
+    let shown = numerics.iter().filter(|(name, number)| !is_used(name, number));
+    let shown = shown.map(|(name, number)| format!("{name}\u{a0}{}", value(number)));
+    let numerics = output::hanging("with", 7, &shown.collect::<Vec<_>>().join(", "));
+    let rate = cost.particle_rhs as f64 / cost.cpu_s.max(1e-9) / 1e6;
+    let work = format!(
+        "{} particles, {} steps, {rate:.2} million particle right-hand sides per second on one core",
+        cost.particles, cost.steps
     );
     let profile = cost.breakdown.as_ref().map(|breakdown| profile::tables(cost, breakdown));
-    text + &metrics(record) + &absent(record) + &profile.unwrap_or_default()
+    let (metrics, absent, profile) = (metrics(record), absent(record), profile.unwrap_or_default());
+    format!("{metrics}{absent}\n{numerics}{}{profile}", output::hanging("work", 7, &work))
 }
 
 /// The results that the run does not have, by the reason.

@@ -9,9 +9,8 @@ use touchstone_harness::{
     runs::{JudgedRun, Planned, Runs},
     studies::limit_of_theory,
 };
-use touchstone_report::Cell;
 
-use touchstone_cases::stiffness::{self, Row};
+use touchstone_cases::stiffness::Row;
 
 use super::{Exit, Failure, Outcome, World, arguments, output, trouble};
 
@@ -55,6 +54,17 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     Ok(trouble(&made).unwrap_or(Exit::Pass))
 }
 
+/// Columns of the limits of each variant.
+const HEADS: [&str; 7] =
+    ["variant", "step [s]", "limit/step", "bound by", "stiffness", "steps", "sweeps"];
+/// What these columns mean.
+const READING: &str = "At default settings. Step: the time step that is taken. Limit/step: the largest \
+    stable step of all waves together, by linear theory on the lattice at rest, over the step; at least 1.25 \
+    is advised for particles that move. Bound by: the mechanism with the smallest limit of its own. \
+    Stiffness: the limit of the slowest mechanism of the problem over the smallest one. Sweeps: pair sweeps \
+    of the run, with the stages of super-time-stepping. With --json, and in the report, the limit of each \
+    mechanism stands beside these.";
+
 /// What limits the step of each variant, without a run.
 fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
     let mut rows = Vec::new();
@@ -66,11 +76,22 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
         return Err(Failure::usage(words));
     }
     let text = || {
-        let table = stiffness::table(&rows);
-        let heads: Vec<&str> = table.columns.iter().map(|column| &*column.head).collect();
-        let cells = |row: &Vec<Cell>| row.iter().map(|cell| cell.text.replace('`', "")).collect();
-        let reading = output::wrap(&stiffness::READING.replace('*', ""), "");
-        format!("{}\n{reading}", output::table(&heads, table.rows.iter().map(cells)))
+        let row = |row: &Row| {
+            let limits = &row.rules.limits;
+            let headroom = touchstone_report::sig(row.rules.dt_limit() / row.rules.dt(), 3);
+            let [stiffness, steps, sweeps] =
+                [row.stiffness(), row.steps(), row.steps() * row.rules.sweeps()]
+                    .map(|value| touchstone_report::sig(value, 3));
+            let step = touchstone_report::sci(row.rules.dt(), 3);
+            let binding = limits.binding().name().to_string();
+            vec![row.variant.to_string(), step, headroom, binding, stiffness, steps, sweeps]
+        };
+        let mut text = String::new();
+        for of_case in rows.chunk_by(|a, b| a.case == b.case) {
+            let table = output::table(&HEADS, of_case.iter().map(row));
+            text += &format!("{}\n{table}\n", of_case[0].case);
+        }
+        text + &output::wrap(READING, "")
     };
     output::answer(as_json, || rows.iter().map(row_json).collect(), text)
 }

@@ -5,7 +5,6 @@ use touchstone_base::{gate::Gate, record::Status, spec::RunSpec};
 use touchstone_harness::{
     case::{self, Case, Tier},
     declare::Declaration,
-    plan,
     runs::{Judged, JudgedRun},
     studies::cost_in_words,
 };
@@ -13,7 +12,7 @@ use touchstone_report::Counts;
 
 use super::{
     Exit, judged, output,
-    summary::{bound, error_of, finer, in_words, worst},
+    summary::{bound, error_of, finer, in_words, nearest, worst},
 };
 
 /// The verdict on a submission, and the exit code.
@@ -38,30 +37,31 @@ fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit
     let record = &run.record;
     let declared = case.declaration(Tier::Quick);
     let (mut error, mut metric) = error_of(&declared, record);
-    let nearest = if verdicts.is_empty() { nearest(case, &declared, run) } else { None };
+    let states = record.run.submission.as_ref().is_some_and(|of| of.states_our_method);
+    let judges = |gate: Gate| gate.for_submission(states);
+    let nearest =
+        if verdicts.is_empty() { nearest(case, &declared, record, &judges) } else { None };
     let judged = worst(verdicts.iter()).map(|judged| &judged.gate);
-    let other = judged.or(nearest.as_ref().map(|(_, gate)| gate));
+    let other = judged.or(nearest.as_ref().map(|nearest| &nearest.gate));
     let has_error = record.metrics.contains_key(&metric) || record.status != Status::Completed;
     if let (false, Some(gate)) = (has_error, other)
         && let Some(found) = record.metrics.get(&gate.metric)
     {
         (error, metric) = (in_words(&gate.metric, found), gate.metric.clone());
     }
-    let (mut bound, mut gates) = (bound(verdicts, &metric), counted(verdicts));
+    let (mut bound, mut gates) = (bound(&declared, record, verdicts, &metric), counted(verdicts));
     if verdicts.is_empty() {
         gates = "Nothing was judged: no gate applies to this submission.".into();
-        bound = "none for this variant with these settings".into();
-    }
-    if let Some((of, gate)) = &nearest {
-        let there = case::command(case, of).replacen("touchstone run ", "", 1);
-        let Gate { id, metric, bound: most, .. } = gate;
-        bound += &format!("; the nearest that is judged is {there}: {metric} {most} ({id})");
+        bound = match &nearest {
+            Some(nearest) => nearest.in_words(case, &declared),
+            None => "none for this variant with these settings".into(),
+        };
     }
     let ended = match &record.status {
         Status::Completed => String::new(),
         status => format!("{status}; nothing after it is measured"),
     };
-    let next = next(case, &declared, run, verdicts, nearest.map(|(of, _)| of));
+    let next = next(case, &declared, run, verdicts, nearest.map(|nearest| nearest.spec));
     let cost = cost_in_words(record);
     let lines = [ended, error, bound, gates, cost, next];
     let heads = ["ended", "error", "bound", "gates", "cost", "next"];
@@ -76,15 +76,6 @@ fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit
 
 fn counted(verdicts: &[Judged]) -> String {
     Counts::of(verdicts.iter().map(|judged| judged.judgement.verdict)).headline()
-}
-
-/// The nearest settings at which a number of this submission is judged, that of the card if it has one.
-fn nearest(case: &dyn Case, declared: &Declaration, run: &JudgedRun) -> Option<(RunSpec, Gate)> {
-    let has = |gate: &Gate| run.record.metrics.contains_key(&gate.metric);
-    let card = declared.card.as_ref().map(|card| &card.metric.name);
-    let of_card = |gate: &Gate| has(gate) && Some(&gate.metric) == card;
-    let found = plan::nearest_judged(case, &run.planned.spec, &of_card);
-    found.or_else(|| plan::nearest_judged(case, &run.planned.spec, &has))
 }
 
 /// The command that is of use to a submitter.

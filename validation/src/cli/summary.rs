@@ -1,15 +1,16 @@
 //! What a suite comes to, as a person reads it in one screen: a line a case, then what needs attention. And
-//! how `run` ends, for a person who reads ten seconds: the headline error, its bound, its cost, and a command
-//! to go on with.
+//! what `run` says first, for a person who reads ten seconds: the headline error, its bound and its cost; and
+//! the command to go on with.
 
 use touchstone_base::{
-    gate::Verdict,
+    gate::{Gate, Verdict, four_digits},
     record::{self, Record, Status},
     spec::RunSpec,
 };
 use touchstone_harness::{
     case::{self, Case, Tier},
     declare::{Breaks, Declaration},
+    plan,
     runs::{Judged, counts},
     studies::{cost_in_words, headline},
     suite::{CaseResults, JudgedOf, Suite},
@@ -63,7 +64,10 @@ fn row(results: &CaseResults) -> Vec<String> {
     let counts = results.counts();
     let mut row = vec![results.case.name().to_string()];
     let columns = [Verdict::Fail, Verdict::Limitation, Verdict::ExpectedFailure, Verdict::Pass];
-    row.extend(columns.map(|verdict| counts.count(verdict).to_string()));
+    row.extend(columns.map(|verdict| match counts.count(verdict) {
+        0 => "0".to_string(),
+        count => output::painted(verdict, &count.to_string()),
+    }));
     row.extend(match results.recommended() {
         Some((card, record)) => [
             headline(card, record).unwrap_or_else(|_| "none".into()),
@@ -107,24 +111,84 @@ fn failures(suite: &Suite) -> String {
     text
 }
 
-/// The lines after the tables of a run.
-pub fn outcome(case: &dyn Case, spec: &RunSpec, record: &Record, verdicts: &[Judged]) -> String {
+/// The lines about a run that come before its tables, and the command to go on with, which comes after them.
+pub fn outcome(
+    case: &dyn Case,
+    spec: &RunSpec,
+    record: &Record,
+    verdicts: &[Judged],
+) -> [String; 2] {
     let declared = case.declaration(Tier::Quick);
     let (error, metric) = error_of(&declared, record);
-    let counts = counts(verdicts);
     let card = declared.card.as_ref();
     let beside = card.and_then(|card| card.beside).and_then(|beside| beside(record));
+    let nearest = if verdicts.is_empty() { nearest(case, &declared, record, &Some) } else { None };
+    let (bound, gates) = match &nearest {
+        Some(nearest) => (nearest.in_words(case, &declared), String::new()),
+        None => (bound(&declared, record, verdicts, &metric), counts(verdicts).headline()),
+    };
     let lines = [
         ("error", error),
         ("also", beside.unwrap_or_default()),
         ("breaks", broken(&declared, record).unwrap_or_default()),
-        ("bound", bound(verdicts, &metric)),
-        ("gates", counts.headline()),
+        ("bound", bound),
+        ("gates", gates),
         ("cost", cost_in_words(record)),
-        ("next", next(case, &declared, spec, record, verdicts)),
     ];
     let told = lines.iter().filter(|(_, words)| !words.is_empty());
-    told.map(|(head, words)| output::hanging(head, 7, words)).collect()
+    let nearest = nearest.map(|nearest| nearest.spec);
+    let next = next(case, &declared, spec, record, verdicts, nearest.as_ref());
+    let next = if next.is_empty() { next } else { output::hanging("next", 7, &next) };
+    [told.map(|(head, words)| output::hanging(head, 7, words)).collect(), next]
+}
+
+/// The judged run whose settings are the nearest to those of a run that no gate judges.
+pub struct Nearest {
+    pub spec: RunSpec,
+    pub gate: Gate,
+}
+
+/// The nearest settings at which a gate that `judges` allows reads a number of this record: the error of the
+/// case, if there is such a gate.
+pub fn nearest(
+    case: &dyn Case,
+    declared: &Declaration,
+    record: &Record,
+    judges: &dyn Fn(Gate) -> Option<Gate>,
+) -> Option<Nearest> {
+    let measured =
+        |gate: Gate| judges(gate).filter(|gate| record.metrics.contains_key(&gate.metric));
+    let card = declared.card.as_ref().map(|card| &card.metric.name);
+    let of_card = |gate: Gate| measured(gate).filter(|gate| Some(&gate.metric) == card);
+    let spec = record.spec();
+    let found = plan::nearest_judged(case, &spec, &of_card);
+    let (spec, gate) = found.or_else(|| plan::nearest_judged(case, &spec, &measured))?;
+    Some(Nearest { spec, gate })
+}
+
+impl Nearest {
+    /// What is judged there.
+    pub fn in_words(&self, case: &dyn Case, declared: &Declaration) -> String {
+        let Nearest { spec, gate } = self;
+        let there = case::command(case, spec).replacen("touchstone run ", "", 1);
+        let bound = gate.bound.in_words(&in_unit(declared, &gate.metric, spec));
+        let Gate { id, metric, .. } = gate;
+        format!(
+            "none for these settings; the nearest run with a bound is {there}: {metric} {bound} ({id})"
+        )
+    }
+}
+
+/// Writes a value of a metric of this run in the unit in which the error of the case is stated, if the metric
+/// is that error.
+fn in_unit(declared: &Declaration, metric: &str, spec: &RunSpec) -> impl Fn(f64) -> String + use<> {
+    let card = declared.card.as_ref().filter(|card| card.metric.name == metric);
+    let unit = card.map(|card| (card.stated)(&spec.settings).unit);
+    move |value| match unit {
+        None => four_digits(value),
+        Some("") => format!("{}\u{a0}%", four_digits(100.0 * value)),
+        Some(unit) => format!("{}\u{a0}{unit}", four_digits(value)),
+    }
 }
 
 /// A number of a record in words.
@@ -172,19 +236,23 @@ fn broken(declared: &Declaration, record: &Record) -> Option<String> {
     Some(format!("at {before}{value}{after}: {sign}"))
 }
 
-/// The bound of that metric, with the verdict; of another one if this one has none.
-pub fn bound(verdicts: &[Judged], metric: &str) -> String {
-    let of_metric = verdicts.iter().filter(|judged| judged.gate.metric == metric);
-    let Some(Judged { gate, judgement, .. }) = worst(of_metric) else {
-        let none = "none: no plan has a gate on this number for this variant with these settings";
-        let other =
-            worst(verdicts.iter()).map(|of| format!("; nearest to its bound is {}", of.gate.id));
-        return format!("{none}{}", other.unwrap_or_default());
+/// The bound of that metric in the unit of the error, with the verdict; of the gate nearest to its bound if
+/// this metric has none.
+pub fn bound(declared: &Declaration, record: &Record, verdicts: &[Judged], metric: &str) -> String {
+    let of_metric = worst(verdicts.iter().filter(|judged| judged.gate.metric == metric));
+    let Some(Judged { gate, judgement, .. }) = of_metric.or_else(|| worst(verdicts.iter())) else {
+        return String::new();
     };
     let margin =
         judgement.margin.map(|m| format!(", {} of it left", touchstone_report::percent(m, 2)));
     let (verdict, margin) = (judgement.verdict, margin.unwrap_or_default());
-    format!("{}: {verdict}{margin} ({})", gate.bounds(), gate.id)
+    let verdict = output::painted(verdict, &verdict.to_string());
+    let bound = gate.bounds_in(&in_unit(declared, &gate.metric, &record.spec()));
+    let other = match of_metric {
+        Some(_) => String::new(),
+        None => format!("none on this error; of {} ", gate.metric),
+    };
+    format!("{other}{bound}: {verdict}{margin} ({})", gate.id)
 }
 
 /// The command to try next.
@@ -194,6 +262,7 @@ fn next(
     spec: &RunSpec,
     record: &Record,
     verdicts: &[Judged],
+    nearest: Option<&RunSpec>,
 ) -> String {
     let name = case.name();
     let worst = worst(verdicts.iter())
@@ -204,9 +273,10 @@ fn next(
             format!("touchstone stability {name}")
         }
         (None, record::Status::Diverged { .. }) => format!("touchstone list {name}"),
-        (None, _) if verdicts.is_empty() => {
-            format!("touchstone verify {name} (makes and judges the runs that have gates)")
-        }
+        (None, _) if verdicts.is_empty() => match nearest {
+            Some(spec) => format!("{} (the nearest run with a bound)", case::command(case, spec)),
+            None => format!("touchstone verify {name} (makes and judges the runs that have gates)"),
+        },
         (None, _) => finer(case, declared, spec).unwrap_or_default(),
     }
 }
