@@ -512,3 +512,46 @@ fn double(path: &Path, column: &str) {
     };
     fs::write(path, format!("{head}\n{}", rows.lines().map(row).collect::<String>())).unwrap();
 }
+
+/// `report` of a sweep said "603 gates fail, 1 gate passes", and wrote that over whatever page was there.
+#[test]
+fn a_sweep_is_shown_judged_by_nothing_and_replaces_no_page_of_other_records() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    for (store, values) in [("sweep", "re=0.5,1"), ("other", "re=2")] {
+        let plan = format!(
+            "plan couette --variant plain,seed --set rows=8,10 --set end=0.2 --set {values}"
+        );
+        fs::write(at.join("plan"), of(at, &plan).0).unwrap();
+        assert_eq!(of(at, &format!("run --specs plan --store {store}")).1, 0);
+    }
+    let (text, code) = of(at, "report --store sweep");
+    assert_eq!(code, 0, "{text}");
+    let heads = ["variant", "re", "rows", "end", "error", "run", "time", "pairs"];
+    assert!(text.lines().any(|line| line.split_whitespace().take(8).eq(heads)), "{text}");
+    for (variant, runs) in [("plain ", 4), ("seed ", 4)] {
+        assert_eq!(text.lines().filter(|line| line.starts_with(variant)).count(), runs, "{text}");
+    }
+    assert!(!text.contains("gates fail") && text.contains("No gate is judged"), "{text}");
+    let page = |path: &str| fs::read_to_string(at.join(path).join("index.html")).unwrap();
+    for part in ["id=\"couette-sweep-cost\"", "plain re=1", "No gate is judged"] {
+        assert!(page("sweep").contains(part), "{part}");
+    }
+    assert_eq!(of(at, "report --store sweep").1, 0, "the same records");
+    assert_eq!(of(at, "report --store sweep --out page").1, 0);
+    let before = page("page");
+    for line in ["report --store other --out page", "report --out page --store other --partial"] {
+        let (text, code) = of(at, line);
+        assert!(code == 2 && text.contains("made from other records"), "{line}: {text}");
+        assert_eq!(page("page"), before, "{line}");
+    }
+    assert_eq!(of(at, "report --store other --out page --overwrite").1, 0);
+    assert!(page("page").contains("plain re=2"));
+    fs::write(at.join("page/index.html"), "my own page").unwrap();
+    let (text, code) = of(at, "report --out page");
+    assert!(
+        code == 2 && text.contains("--overwrite") && !at.join("page/records").exists(),
+        "{text}"
+    );
+    assert_eq!(page("page"), "my own page");
+}

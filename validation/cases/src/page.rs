@@ -63,6 +63,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         notes,
         sections,
         png_folder: "figures".into(),
+        ..Page::default()
     }
 }
 

@@ -356,6 +356,14 @@ pub struct Accuracy {
     pub ladders: Vec<Ladder>,
 }
 
+impl Declaration {
+    /// The error of the case: that of its card, or else of its first ladder.
+    pub fn error(&self) -> Option<&MetricName> {
+        let ladder = self.accuracy.first().map(|accuracy| &accuracy.error);
+        self.card.as_ref().map(|card| &card.metric).or(ladder)
+    }
+}
+
 /// The magnitude of this metric of a run that reached its end, which is its error.
 pub fn error_of(metric: &MetricName, record: &Record) -> Option<f64> {
     let value = record.value(metric.clone()).filter(|_| record.status == Status::Completed);

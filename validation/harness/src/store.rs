@@ -197,6 +197,11 @@ impl Store {
         let refused = |reason| FileError::Unread { path: path.to_path_buf(), reason };
         paths(path, "").map_err(refused)?.into_iter().map(read).collect()
     }
+
+    /// The same, with an error in the place of a file that is no record; none of a folder that cannot be read.
+    pub fn each(path: &Path) -> impl Iterator<Item = Result<Record, FileError>> {
+        paths(path, "").unwrap_or_default().into_iter().map(read)
+    }
 }
 
 /// The files of a folder that are records and whose names begin so, sorted. What a process that was killed

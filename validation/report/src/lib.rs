@@ -40,7 +40,7 @@ pub use explorer::{Explorer, VERDICTS, verdicts_where};
 pub use figure::{Dash, Dots, Figure, Layer, Look, Plot, Series, Shape};
 pub use inline::{code, plain};
 pub use number::{counted, exact, percent, sci, seconds, sig};
-pub use page::{Block, Page, Section};
+pub use page::{Block, Page, Section, made_from};
 pub use render::{png, svg};
 pub use table::{Cell, Column, Table, first_sentence};
 pub use ticks::Scale;

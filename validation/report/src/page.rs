@@ -35,6 +35,8 @@ pub struct Page {
     pub sections: Vec<Section>,
     /// Folder of the figures' PNG files beside the page; empty writes and links none.
     pub png_folder: String,
+    /// Names the records that the page shows, as [`made_from`] reads it.
+    pub made_from: String,
 }
 
 /// A heading with blocks, and sections below it.
@@ -143,13 +145,14 @@ impl Page {
                 head {
                     (PreEscaped("<meta charset=\"utf-8\"/>"))
                     (PreEscaped(VIEWPORT))
+                    (PreEscaped(MADE_FROM)) (self.made_from) (PreEscaped("\"/>"))
                     title { (self.title) }
                     style { (PreEscaped(face)) (PreEscaped(STYLE)) }
                 }
                 body {
                     header {
                         h1 { (self.title) }
-                        (self.counts.html())
+                        @if self.counts.worst().is_some() { (self.counts.html()) }
                         @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                     }
                     main {
@@ -185,6 +188,15 @@ impl Page {
 }
 
 const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>";
+
+/// Before the name of the records that a page shows.
+const MADE_FROM: &str = "<meta name=\"touchstone-records\" content=\"";
+
+/// The name of the records that a page shows; none of a text that is no page of ours.
+pub fn made_from(html: &str) -> Option<&str> {
+    let (_, after) = html.split_once(MADE_FROM)?;
+    Some(after.split_once('"')?.0)
+}
 
 /// Writes the PNG files of the drawings of sections.
 fn write_images(sections: &[Section], folder: &OutputFolder) -> io::Result<()> {

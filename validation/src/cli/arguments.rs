@@ -439,11 +439,15 @@ pub struct Report {
     /// How much to run
     #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
-    /// Folder for the report
-    #[arg(long, value_name = "DIR", default_value = "reports")]
-    pub out: PathBuf,
+    /// Folder for the report; by default `reports`, and for the page of a sweep the folder of its records
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace a page in the folder that was made from other records
+    #[arg(long)]
+    pub overwrite: bool,
     /// Write the report from the records of this folder without making any run; by default, runs are
-    /// made and their records stored in the folder `records` inside that of --out
+    /// made and their records stored in the folder `records` inside that of --out. Runs that no tier plans,
+    /// such as those of a sweep, are shown in a table and a figure, and not judged
     #[arg(long, value_name = "DIR", conflicts_with = "fresh")]
     pub store: Option<PathBuf>,
     /// With --store, judge only what is there, and list every run without a record: missing, running,

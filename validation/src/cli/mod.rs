@@ -32,6 +32,7 @@ mod run;
 mod stability;
 mod submitted;
 mod summary;
+mod sweep;
 mod symmetry;
 #[cfg(test)]
 mod tests;

@@ -1,59 +1,81 @@
 //! `report`: run what is missing, judge, render. The page is there as soon as one case is complete: before
-//! all runs are made, what there is so far is judged, and what is lacking is listed.
+//! all runs are made, what there is so far is judged, and what is lacking is listed. Runs of a sweep are shown
+//! and not judged.
 
+use std::io::ErrorKind;
+use std::path::Path;
 use std::sync::Mutex;
 use std::time::{Duration, Instant, SystemTime};
 
-use touchstone_base::files::{FileError, OutputFolder};
+use touchstone_base::{
+    files::{self, FileError, OutputFolder},
+    record::Record,
+    reference::sha256,
+};
 use touchstone_cases::{page, peers};
 use touchstone_harness::{
-    case::Tier,
+    case::{Case, Tier},
     make::Made,
     store::Store,
     suite::{Plans, Suite},
 };
-use touchstone_report::{self, check_page};
+use touchstone_report::{Page, check_page};
 
 use super::{
-    Failure, Outcome, World, arguments,
+    Exit, Failure, Outcome, World, arguments,
     judged::{self, VERDICTS},
     output,
     partial::{of_made, partial},
     summary::summary,
-    verify,
+    sweep, verify,
 };
+
+/// Folder of a report, unless another one is named.
+const REPORTS: &str = "reports";
+/// Name of the page in its folder.
+const PAGE: &str = "index.html";
+/// More than this is no page \[bytes\].
+const MOST_BYTES: u64 = 1 << 28;
 
 pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
     let start = Instant::now();
-    let folder = OutputFolder::create(&arguments.out)?;
     let (tier, any_build) = (arguments.tier, arguments.making.any_build);
-    let (suite, listed, lacking) = match &arguments.store {
+    let reports = || arguments.out.as_deref().unwrap_or(Path::new(REPORTS));
+    let (folder, suite, listed, lacking, made_from);
+    match &arguments.store {
         Some(store) => {
             let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
-            if arguments.partial {
+            let judges = arguments.partial || arguments.junit.is_some();
+            let sweep = || sweep::of(&plans, &stored, tier, store, world);
+            if let Some(cases) = (!judges).then(sweep).flatten() {
+                return report_sweep(&cases, store, arguments);
+            }
+            (folder, made_from) = place(reports(), Some(store), arguments)?;
+            (suite, listed, lacking) = if arguments.partial {
                 partial(plans, tier, store, stored)
             } else if verify::has_submissions_alone(&stored) {
                 let (suite, _, told) = partial(plans, tier, store, stored);
                 (suite, String::new(), told)
             } else {
                 (verify::of_stored(plans, tier, stored), String::new(), None)
-            }
+            };
         }
         None => {
-            let store = Store::open(&folder.path().join("records"))?;
+            (folder, made_from) = place(reports(), None, arguments)?;
+            let store = Store::open(&folder.path().join(RECORDS))?;
             let plans = verify::plans(world.cases, tier, world)?;
             let last = Mutex::new(None);
             let early = |made| early(plans.clone(), tier, &store, made, &folder, &last);
             let (making, early) = (arguments.making, Some(&early as _));
-            let suite = verify::run(plans.clone(), tier, &store, making, early, world)?;
-            (suite, String::new(), None)
+            suite = verify::run(plans.clone(), tier, &store, making, early, world)?;
+            (listed, lacking) = (String::new(), None);
         }
-    };
+    }
     // A file that cannot be written keeps none of the others from being written: the runs took minutes.
     let exported = judged::write_junit(&suite, arguments.junit.as_deref());
     let written = write_verdicts(&folder, &suite);
-    let path = folder.path().join("index.html");
-    let mut page = page::assemble(&suite, &now());
+    let path = folder.path().join(PAGE);
+    let mut page = Page { made_from, ..page::assemble(&suite, &now()) };
     page.lead.extend(lacking.map(not_complete));
     let html = page.html();
     let sound = check_page(&html);
@@ -78,6 +100,60 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
             "the page was written, but a browser may fail to open it: {reason}"
         ))),
     }
+}
+
+/// Name of the folder of records in that of their report.
+const RECORDS: &str = "records";
+
+/// The folder of a report, and the name of its records on the page: their folder inside that of the report,
+/// or a digest of the folder of another store. A page of other records is replaced only if that is asked for.
+fn place(
+    folder: &Path,
+    store: Option<&Path>,
+    arguments: &arguments::Report,
+) -> Result<(OutputFolder, String), Failure> {
+    let output = OutputFolder::create(folder)?;
+    let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
+    let name = match store.map(|store| (whole(store), whole(folder))) {
+        None => RECORDS.to_string(),
+        Some((store, folder)) => match store.strip_prefix(folder) {
+            Ok(inside) => inside.to_string_lossy().replace(['"', '&', '<', '>'], "-"),
+            Err(_) => sha256(store.as_os_str().as_encoded_bytes()),
+        },
+    };
+    let path = folder.join(PAGE);
+    let shows_others = match files::read_text(&path, MOST_BYTES) {
+        Ok(html) => touchstone_report::made_from(&html) != Some(&name),
+        Err(reason) => reason.kind() != ErrorKind::NotFound,
+    };
+    if shows_others && !arguments.overwrite {
+        return Err(Failure::usage(format!(
+            "{} was made from other records and would be lost; name another folder by --out, or give \
+             --overwrite",
+            path.display()
+        )));
+    }
+    Ok((output, name))
+}
+
+/// Writes the page of runs that are not judged.
+fn report_sweep(
+    cases: &[(&'static dyn Case, Vec<Record>)],
+    store: &Path,
+    arguments: &arguments::Report,
+) -> Outcome {
+    output::say(
+        "note: the store has runs that no tier plans, and not all runs of any case; their errors and costs \
+         are shown, and nothing is judged (--partial judges what is planned)",
+    );
+    let folder = arguments.out.as_deref().unwrap_or(store);
+    let (output, made_from) = place(folder, Some(store), arguments)?;
+    let page = Page { made_from, ..sweep::page(cases, &now())? };
+    let path = output.path().join(PAGE);
+    let written = page.write_html(&path, &page.html());
+    written.map_err(|reason| FileError::File { path: path.clone(), reason })?;
+    output::print(&format!("{}\n", path.display()))?;
+    Ok(Exit::Pass)
 }
 
 fn write_verdicts(folder: &OutputFolder, suite: &Suite) -> Result<(), Failure> {
@@ -111,8 +187,8 @@ fn early(
     peers::add(&mut made, &plans);
     let (suite, lacking) = of_made(plans, tier, store.path(), made);
     let lacking = lacking?; // all are there: the page that lacks nothing follows
-    let mut page = page::assemble(&suite, &now());
-    let path = folder.path().join("index.html");
+    let mut page = Page { made_from: RECORDS.into(), ..page::assemble(&suite, &now()) };
+    let path = folder.path().join(PAGE);
     let words = format!("{}: {}", path.display(), lacking[0]);
     page.lead.push(not_complete(lacking));
     page.png_folder.clear();

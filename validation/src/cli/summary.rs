@@ -12,7 +12,7 @@ use touchstone_harness::{
     declare::{Breaks, Declaration},
     plan,
     runs::{Judged, counts},
-    studies::{cost_in_words, headline},
+    studies::{Resolution, cost_in_words, headline},
     suite::{CaseResults, JudgedOf, Suite},
 };
 use touchstone_report::Counts;
@@ -204,8 +204,7 @@ pub fn in_words(name: &str, metric: &record::Metric) -> String {
 /// The error of the case, which is that of its card or of its first ladder, in words; and the name of its
 /// metric.
 pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
-    let ladder = declared.accuracy.first().map(|accuracy| &accuracy.error);
-    let Some(metric) = declared.card.as_ref().map(|card| &card.metric).or(ladder) else {
+    let Some(metric) = declared.error() else {
         return Default::default();
     };
     let measured = record.metrics.get(&metric.name);
@@ -281,21 +280,13 @@ fn next(
     }
 }
 
-/// The run with half the spacing: by the setting in which the levels of a ladder differ.
+/// The run with half the spacing.
 pub fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<String> {
-    let ladders = declared.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);
-    let ladder = ladders.into_iter().find(|ladder| ladder.levels.len() > 1)?;
-    let [coarse, fine] =
-        [ladder.levels.first()?, ladder.levels.last()?].map(|level| &level.run.spec.settings);
-    let names = case.fields().iter().map(|field| field.name);
-    let (name, is_count) = names.into_iter().find_map(|name| {
-        let [coarse, fine] = [coarse, fine].map(|settings| settings[name].as_f64());
-        (coarse? != fine?).then_some((name, coarse < fine))
-    })?;
-    let now = spec.settings[name].as_f64()?;
+    let Resolution { setting, is_count } = Resolution::of(case, declared)?;
+    let now = spec.settings[setting].as_f64()?;
     let half_the_spacing = if is_count { 2.0 * now } else { 0.5 * now };
     let mut set = case::changed(case, spec);
-    set.retain(|assignment| assignment.split('=').next() != Some(name));
-    set.push(format!("{name}={half_the_spacing}"));
+    set.retain(|assignment| assignment.split('=').next() != Some(setting));
+    set.push(format!("{setting}={half_the_spacing}"));
     Some(case::command(case, &case::spec(case, &spec.variant, &set).ok()?))
 }

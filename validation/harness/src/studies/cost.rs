@@ -10,7 +10,7 @@ use touchstone_report::{
 use crate::{
     columns::Columns,
     convergence::{Level, convergence},
-    declare::{Accuracy, Ladder, Resolution, error_of},
+    declare::{Accuracy, Ladder, error_of},
     orders::{self, Found},
     runs::Runs,
     study::Study,
@@ -18,22 +18,30 @@ use crate::{
 
 /// One run of a ladder.
 #[derive(Clone, Debug)]
-struct Point {
+pub(super) struct Point {
     /// Spacing.
-    spacing: f64,
-    /// The resolution in words.
-    resolution: Resolution,
+    pub spacing: f64,
+    /// What it is called in figures: its resolution.
+    pub label: String,
     /// Its error; NaN if it has none.
-    error: f64,
-    /// Processor seconds of the stepping, sorted, taken alone \[s\].
-    seconds: Vec<f64>,
+    pub error: f64,
+    /// Processor seconds of the stepping, sorted \[s\].
+    pub seconds: Vec<f64>,
     /// Pair interactions.
-    pairs: f64,
+    pub pairs: f64,
+}
+
+/// Runs that a line joins in a figure.
+pub(super) struct Line<'a> {
+    /// Name in the legend.
+    pub name: &'a str,
+    /// The runs, coarse to fine.
+    pub points: &'a [Point],
 }
 
 impl Point {
     /// Median of the timings \[s\]; NaN if the run was not timed.
-    fn median(&self) -> f64 {
+    pub(super) fn median(&self) -> f64 {
         median(&self.seconds).unwrap_or(f64::NAN)
     }
 
@@ -54,7 +62,7 @@ fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
         seconds.sort_by(f64::total_cmp);
         Point {
             spacing: level.spacing,
-            resolution: level.resolution,
+            label: level.resolution.count.to_string(),
             error: error.unwrap_or(f64::NAN),
             seconds,
             pairs: record.map_or(f64::NAN, |record| record.cost.pair_interactions as f64),
@@ -64,7 +72,7 @@ fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
 }
 
 /// What a run costs.
-type Cost = fn(&Point) -> f64;
+pub(super) type Cost = fn(&Point) -> f64;
 
 /// Points that no other point beats in both error and cost, cheapest first.
 fn pareto<'a>(points: impl Iterator<Item = &'a Point>, cost: Cost) -> Vec<&'a Point> {
@@ -131,28 +139,36 @@ fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
     let axes = [accuracy.spacing, accuracy.label.as_str()];
     let lines = rows.iter().map(|row| (row.of.variant, row.levels.as_slice()));
     let spacing = orders::plot("Error against spacing", axes, lines, accuracy.slope.as_slice());
-    let time = ["Error against run time", "run time on one core [s]"];
-    let clock = panel(time, rows, Point::median, true);
-    let work = ["Error against work", "pair interactions [-]"];
-    let counted = panel(work, rows, |p| p.pairs, false);
+    let line = |row: &'_ Row| (row.of.variant, row.points.clone());
+    let lines: Vec<_> = rows.iter().map(line).collect();
+    let lines: Vec<Line> = lines.iter().map(|(name, points)| Line { name, points }).collect();
+    // The error is named at the panel on the left.
+    let time = ["Error against run time", "run time on one core [s]", ""];
+    let clock = panel(time, &lines, Point::median, true);
+    let work = ["Error against work", "pair interactions [-]", ""];
+    let counted = panel(work, &lines, |p| p.pairs, false);
     let panels = [spacing, clock, counted];
     let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
     panels.into_iter().fold(figure, Figure::panel)
 }
 
-/// Error over a cost; are the points named by their resolutions?
-fn panel([title, axis]: [&str; 2], rows: &[Row], cost: Cost, is_named: bool) -> Plot {
-    // The error is named at the panel on the left.
-    let mut plot = Plot::new(title, Axis::log(axis), Axis::log(""));
-    let all = rows.iter().flat_map(|row| &row.points);
+/// Error over a cost, with these names of panel, cost and error; are the points named by their resolutions?
+pub(super) fn panel(
+    [title, axis, error]: [&str; 3],
+    lines: &[Line],
+    cost: Cost,
+    is_named: bool,
+) -> Plot {
+    let mut plot = Plot::new(title, Axis::log(axis), Axis::log(error));
+    let all = lines.iter().flat_map(|line| line.points);
     let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
     plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
-    for (k, row) in rows.iter().enumerate() {
-        let own: Vec<&Point> = row.points.iter().filter(|p| p.error.is_finite()).collect();
+    for (k, Line { name, points }) in lines.iter().enumerate() {
+        let own: Vec<&Point> = points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = Series::line(row.of.variant, line).cycle(k);
+        let mut series = Series::line(*name, line).cycle(k);
         if is_named {
-            series = series.labels(own.iter().map(|p| p.resolution.count.to_string()));
+            series = series.labels(own.iter().map(|p| p.label.clone()));
             series.x_bars = own.iter().map(|p| p.spread()).collect();
         }
         plot = plot.layer(series);
@@ -195,9 +211,9 @@ mod tests {
     use super::*;
     use crate::studies::tests::{ERROR, column, comparison, records, spec, tables};
 
-    fn point(name: &'static str, error: f64, seconds: &[f64]) -> Point {
-        let (resolution, seconds) = (Resolution::new(0, name), seconds.to_vec());
-        Point { spacing: 0.1, resolution, error, seconds, pairs: 1.0 }
+    fn point(name: &str, error: f64, seconds: &[f64]) -> Point {
+        let (label, seconds) = (name.to_string(), seconds.to_vec());
+        Point { spacing: 0.1, label, error, seconds, pairs: 1.0 }
     }
 
     #[test]
@@ -215,7 +231,7 @@ mod tests {
     }
 
     fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<String> {
-        points.into_iter().map(|p| p.resolution.to_string()).collect()
+        points.into_iter().map(|p| p.label.clone()).collect()
     }
 
     /// What is a tenth worse at a higher cost is beaten, what is a hundredth better is not.

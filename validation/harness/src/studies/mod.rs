@@ -10,12 +10,14 @@ mod limit;
 mod map;
 mod sensitivity;
 mod submissions;
+mod sweep;
 #[cfg(test)]
 mod tests;
 pub mod validation;
 
 pub use card::{card, cost as cost_in_words, headline};
 pub use limit::of_theory as limit_of_theory;
+pub use sweep::{Resolution, study as sweep};
 
 use crate::{
     declare::{Accuracy, Declaration},

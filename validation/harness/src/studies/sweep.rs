@@ -1,0 +1,184 @@
+//! The runs of one case that a store holds, whatever they are: their errors and costs side by side, judged by
+//! nothing.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+use touchstone_base::record::{MetricName, Record};
+use touchstone_report::{Cell, Column, Figure, Table, code, sig};
+
+use super::{
+    anchor,
+    cost::{Line, Point, panel},
+};
+use crate::{
+    case::{self, Case},
+    declare::{Declaration, error_of},
+    runs::Tier,
+    study::Study,
+};
+
+/// The setting that refines the runs of a case.
+pub struct Resolution {
+    /// Its name.
+    pub setting: &'static str,
+    /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
+    pub is_count: bool,
+}
+
+impl Resolution {
+    /// The first setting in which the coarsest and the finest level of a ladder differ.
+    pub fn of(case: &dyn Case, declared: &Declaration) -> Option<Self> {
+        let ladders = declared.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);
+        let ladder = ladders.into_iter().find(|ladder| ladder.levels.len() > 1)?;
+        let ends = [ladder.levels.first()?, ladder.levels.last()?];
+        let [coarse, fine] = ends.map(|level| &level.run.spec.settings);
+        case.fields().iter().map(|field| field.name).find_map(|setting| {
+            let [coarse, fine] = [coarse, fine].map(|settings| settings[setting].as_f64());
+            let (coarse, fine) = coarse.zip(fine)?;
+            (coarse != fine).then_some(Self { setting, is_count: coarse < fine })
+        })
+    }
+
+    /// The spacing of a run in units that are the same for all runs of the case; NaN if it has none.
+    fn spacing(&self, settings: &Value) -> f64 {
+        let value = settings[self.setting].as_f64().unwrap_or(f64::NAN);
+        if self.is_count { 1.0 / value } else { value }
+    }
+}
+
+/// A run and the settings in which it differs from the defaults of its variant, but for its resolution.
+struct Row<'a> {
+    record: &'a Record,
+    /// Place of its variant in the list of the case.
+    place: usize,
+    others: Vec<String>,
+    point: Point,
+}
+
+/// A table of the errors and costs of these runs of a case, and a figure of errors over costs: a line for the
+/// runs that differ in their resolution alone.
+pub fn study(case: &dyn Case, records: &[Record]) -> Study {
+    let declared = case.declaration(Tier::Quick);
+    let error = declared.error();
+    let resolution = Resolution::of(case, &declared);
+    let mut rows: Vec<Row> =
+        records.iter().map(|of| row(case, of, error, resolution.as_ref())).collect();
+    let coarser = |a: &Row, b: &Row| b.point.spacing.total_cmp(&a.point.spacing);
+    rows.sort_by(|a, b| {
+        (a.place, &a.others).cmp(&(b.place, &b.others)).then_with(|| coarser(a, b))
+    });
+    let id = anchor(case.name(), "sweep");
+    let study = Study::new(&id, &format!("Runs of {}", case.name()));
+    let study = match error {
+        Some(error) => study.block(figure(&id, error, &rows)),
+        None => study,
+    };
+    study.block(table(case, &declared, &rows))
+}
+
+fn row<'a>(
+    case: &dyn Case,
+    record: &'a Record,
+    error: Option<&MetricName>,
+    resolution: Option<&Resolution>,
+) -> Row<'a> {
+    let mut others = case::changed(case, &record.spec());
+    let settings = &record.run.settings;
+    let refines =
+        |text: &String| resolution.is_some_and(|of| text.split('=').next() == Some(of.setting));
+    others.retain(|text| !refines(text));
+    let mut seconds = record.cost.alone_s.clone();
+    if seconds.is_empty() {
+        seconds.push(record.cost.cpu_s);
+    }
+    seconds.sort_by(f64::total_cmp);
+    let value = resolution.and_then(|of| settings[of.setting].as_f64());
+    let point = Point {
+        spacing: resolution.map_or(f64::NAN, |of| of.spacing(settings)),
+        label: value.map(touchstone_report::exact).unwrap_or_default(),
+        error: error.and_then(|error| error_of(error, record)).unwrap_or(f64::NAN),
+        seconds,
+        pairs: record.cost.pair_interactions as f64,
+    };
+    let place = case.variants().iter().position(|variant| variant.name == record.run.variant);
+    Row { record, place: place.unwrap_or(usize::MAX), others, point }
+}
+
+/// Errors over run time and over pair interactions.
+fn figure(id: &str, error: &MetricName, rows: &[Row]) -> Figure {
+    let of_line = |a: &Row, b: &Row| (a.place, &a.others) == (b.place, &b.others);
+    let line = |rows: &[Row]| {
+        let name = format!("{} {}", rows[0].record.run.variant, rows[0].others.join(" "));
+        (name.trim_end().to_string(), rows.iter().map(|row| row.point.clone()).collect::<Vec<_>>())
+    };
+    let lines: Vec<(String, Vec<Point>)> = rows.chunk_by(of_line).map(line).collect();
+    let lines: Vec<Line> = lines.iter().map(|(name, points)| Line { name, points }).collect();
+    let name = code(&error.name);
+    let caption =
+        format!("The error {name} over run time on one core (left) and over work (right).");
+    let title = "Error against run time";
+    let time = panel([title, "run time on one core [s]", &error.name], &lines, Point::median, true);
+    let title = "Error against work";
+    let work = panel([title, "pair interactions [-]", ""], &lines, |point| point.pairs, false);
+    let figure = Figure::new(format!("{id}-cost"), caption).columns(2).panel_size(420.0, 300.0);
+    figure.panel(time).panel(work)
+}
+
+/// A row a run. A column for each setting that is changed in some run.
+fn table(case: &dyn Case, declared: &Declaration, rows: &[Row]) -> Table {
+    let changed = rows.iter().flat_map(|row| case::changed(case, &row.record.spec()));
+    let changed: Vec<String> =
+        changed.filter_map(|text| Some(text.split_once('=')?.0.to_string())).collect();
+    let names = case.fields().iter().map(|field| field.name);
+    let names: Vec<&str> = names.filter(|name| changed.iter().any(|of| of == name)).collect();
+    let mut columns = vec![Column::text("variant")];
+    columns.extend(names.iter().map(|name| Column::num(code(name), "")));
+    columns.push(Column::text("error"));
+    columns.extend([Column::num("run time", ""), Column::num("pairs", "")]);
+    columns.extend([Column::num("particles", ""), Column::num("steps", ""), Column::text("ended")]);
+    let mut formulas = BTreeMap::new();
+    let cells = |row: &Row| {
+        let Row { record, point, .. } = row;
+        let mut cells = vec![Cell::marked(code(&record.run.variant))];
+        cells.extend(names.iter().map(|name| value(&record.run.settings[*name])));
+        cells.push(error_in_words(declared, point, record));
+        cells.push(Cell::seconds(point.median()));
+        cells.push(Cell::sci(point.pairs, 2));
+        let [particles, steps] = [record.cost.particles as u64, record.cost.steps];
+        cells.extend([Cell::count(particles), Cell::count(steps)]);
+        cells.push(Cell::text(record.status.to_string()));
+        cells
+    };
+    let metric = declared.error();
+    let formula = rows.iter().filter_map(|row| row.record.metrics.get(&metric?.name));
+    formula.for_each(|of| *formulas.entry(of.formula.clone()).or_insert(0) += 1);
+    let error = match (metric, formulas.keys().next()) {
+        (Some(metric), Some(formula)) => format!("Error: {} = {formula}. ", code(&metric.name)),
+        _ => "The case states no error. ".to_string(),
+    };
+    let caption = format!(
+        "{error}Run time: processor time of the time steps on one core. No gate is judged. Settings that \
+         have the default of their variant in every run are not shown."
+    );
+    let table = Table::new(caption, columns);
+    rows.iter().map(cells).fold(table, Table::row)
+}
+
+/// The error as the case states it.
+fn error_in_words(declared: &Declaration, point: &Point, record: &Record) -> Cell {
+    let stated = declared.card.as_ref().map(|card| (card.stated)(&record.run.settings));
+    match stated {
+        _ if point.error.is_nan() => Cell::text("–"),
+        Some(stated) => Cell { value: Some(point.error), ..Cell::text(stated.number(point.error)) },
+        None => Cell { value: Some(point.error), ..Cell::text(sig(point.error, 3)) },
+    }
+}
+
+fn value(value: &Value) -> Cell {
+    match (value.as_f64(), value.as_str()) {
+        (Some(number), _) => Cell::exact(number),
+        (None, Some(word)) => Cell::text(word),
+        (None, None) => Cell::text(value.to_string()),
+    }
+}

@@ -1,0 +1,115 @@
+//! The page of a store whose runs no tier plans, such as those of a sweep: a table and a figure a case, judged
+//! by nothing.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use touchstone_base::{
+    files::FileError,
+    record::Record,
+    spec::{RunKey, Task},
+};
+use touchstone_harness::{
+    case::{Case, Tier},
+    make::Stored,
+    plan,
+    store::Store,
+    studies,
+    study::Study,
+    suite::Plans,
+};
+use touchstone_report::{Block, Page, Section, Table, counted};
+
+use super::{Failure, World, output, tell};
+
+/// The runs of a store that holds some that no tier plans, and not all runs of any case of this tier; none of
+/// another store, whose runs are judged.
+pub fn of(
+    plans: &Plans,
+    stored: &Stored,
+    tier: Tier,
+    path: &Path,
+    world: &World,
+) -> Option<Vec<(&'static dyn Case, Vec<Record>)>> {
+    let lacks = |case: &dyn Case| stored.missing.iter().any(|job| job.case.name() == case.name());
+    if !plans.iter().all(|(case, _)| lacks(*case)) {
+        return None;
+    }
+    let (records, unread) = read(path);
+    let tiers = [Tier::Quick, Tier::Full].into_iter().chain((tier == Tier::Deep).then_some(tier));
+    let planned = |case: &dyn Case| -> BTreeSet<RunKey> {
+        let plans = tiers.clone().flat_map(|tier| plan::of_case(case, tier));
+        plans.map(|planned| planned.spec.key()).collect()
+    };
+    let of_case = |case: &&'static dyn Case| {
+        let of = records.iter().filter(|record| record.run.case == case.name());
+        (*case, of.cloned().collect::<Vec<Record>>())
+    };
+    let cases: Vec<_> =
+        world.cases.iter().map(of_case).filter(|(_, records)| !records.is_empty()).collect();
+    let is_other = |(case, records): &(&'static dyn Case, Vec<Record>)| {
+        let planned = planned(*case);
+        records.iter().any(|record| !planned.contains(&record.run.key()))
+    };
+    if !cases.iter().any(is_other) {
+        return None;
+    }
+    tell(&unread.iter().map(|error| format!("{error}; it is not shown")).collect::<Vec<_>>());
+    Some(cases)
+}
+
+/// Our own simulations of a store, sorted by file name, and the files that could not be read.
+fn read(path: &Path) -> (Vec<Record>, Vec<FileError>) {
+    let (mut records, mut unread) = (Vec::new(), Vec::new());
+    for read in Store::each(path) {
+        match read {
+            Ok(record) if record.run.submission.is_some() => {}
+            Ok(record) if record.run.task != Task::Simulate => {}
+            Ok(record) => records.push(record),
+            Err(error) => unread.push(error),
+        }
+    }
+    (records, unread)
+}
+
+/// The page of these runs; their tables are printed.
+pub fn page(cases: &[(&'static dyn Case, Vec<Record>)], made: &str) -> Result<Page, Failure> {
+    let mut sections = Vec::new();
+    for (case, records) in cases {
+        let study = studies::sweep(*case, records);
+        output::print(&format!("{}\n{}\n", case.name(), text(&study)))?;
+        let section = Section::new(&study.id, &study.title);
+        sections.push(study.blocks.into_iter().fold(section, Section::block));
+    }
+    let runs = cases.iter().map(|(_, records)| records.len()).sum();
+    let runs = counted(runs, "run", "runs");
+    Ok(Page {
+        title: format!("touchstone: {runs} of a store"),
+        lead: vec![format!(
+            "{made}. Errors and costs of {runs} that no tier plans, or not all of which are there: no gate is \
+             judged."
+        )],
+        sections,
+        png_folder: "figures".into(),
+        ..Page::default()
+    })
+}
+
+/// The tables of a study for a terminal.
+fn text(study: &Study) -> String {
+    let table = |block: &Block| match block {
+        Block::Table(table) => Some(lines(table)),
+        _ => None,
+    };
+    study.blocks.iter().filter_map(table).collect()
+}
+
+fn lines(table: &Table) -> String {
+    let plain = |text: &str| text.replace('`', "").replace('\u{a0}', " ");
+    let heads: Vec<String> = table.columns.iter().map(|column| plain(&column.head)).collect();
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    let row =
+        |row: &Vec<touchstone_report::Cell>| row.iter().map(|cell| plain(&cell.text)).collect();
+    let rows: Vec<Vec<String>> = table.rows.iter().map(row).collect();
+    output::table(&heads, rows) + &output::wrap(&plain(&table.caption), "")
+}
