@@ -135,6 +135,8 @@ fn the_limits_of_every_variant_are_shown_without_a_run() {
     for case in touchstone_cases::CASES.iter().filter(|case| case.name() != "extremes") {
         assert!(table.contains(&format!("{}\nvariant ", case.name())), "{}", case.name());
     }
+    let widest = table.lines().map(|line| line.chars().count()).max();
+    assert!(widest <= Some(100), "{widest:?} columns");
 }
 
 #[test]
@@ -756,11 +758,13 @@ fn runs_of_a_plan_may_be_long_if_this_is_allowed() {
 
 #[test]
 fn doctor_finds_this_program_sound() {
-    let output = touchstone(&["doctor"]);
+    let output = touchstone(&["doctor", "--verbose"]);
     assert_eq!(output.status.code(), Some(0), "{}{}", stdout(&output), stderr(&output));
     for word in ["commit", "references  ok", "writing     ok", "self-check  ok", "sha256:"] {
         assert!(stdout(&output).contains(word), "{word}: {}", stdout(&output));
     }
+    let text = stdout(&touchstone(&["doctor"]));
+    assert!(text.lines().count() <= 8 && !text.contains("sha256:"), "{text}");
 }
 
 #[test]

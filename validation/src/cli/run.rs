@@ -395,7 +395,11 @@ fn details(record: &Record) -> String {
     };
     let shown = numerics.iter().filter(|(name, number)| !is_used(name, number));
     let shown = shown.map(|(name, number)| format!("{name}\u{a0}{}", value(number)));
-    let numerics = output::hanging("with", 7, &shown.collect::<Vec<_>>().join(", "));
+    let shown: Vec<String> = shown.collect();
+    let numerics = match shown.is_empty() {
+        true => String::new(),
+        false => output::hanging("with", 7, &shown.join(", ")),
+    };
     let rate = cost.particle_rhs as f64 / cost.cpu_s.max(1e-9) / 1e6;
     let work = format!(
         "{} particles, {} steps, {rate:.2} million particle right-hand sides per second on one core",

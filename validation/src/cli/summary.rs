@@ -149,7 +149,7 @@ pub struct Nearest {
 }
 
 /// The nearest settings at which a gate that `judges` allows reads a number of this record: the error of the
-/// case, if there is such a gate.
+/// case, if there is such a gate of the same variant.
 pub fn nearest(
     case: &dyn Case,
     declared: &Declaration,
@@ -161,8 +161,11 @@ pub fn nearest(
     let card = declared.card.as_ref().map(|card| &card.metric.name);
     let of_card = |gate: Gate| measured(gate).filter(|gate| Some(&gate.metric) == card);
     let spec = record.spec();
-    let found = plan::nearest_judged(case, &spec, &of_card);
-    let (spec, gate) = found.or_else(|| plan::nearest_judged(case, &spec, &measured))?;
+    let of_card = plan::nearest_judged(case, &spec, &of_card);
+    let is_own = |(of, _): &(RunSpec, Gate)| of.variant == spec.variant;
+    let found = of_card.clone().filter(is_own);
+    let (spec, gate) =
+        found.or_else(|| plan::nearest_judged(case, &spec, &measured)).or(of_card)?;
     Some(Nearest { spec, gate })
 }
 
