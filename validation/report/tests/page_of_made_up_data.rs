@@ -113,5 +113,6 @@ fn page() -> io::Result<Page> {
             curves,
         ],
         png_folder: "figures".into(),
+        ..Page::default()
     })
 }
