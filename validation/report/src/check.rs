@@ -163,6 +163,7 @@ mod tests {
             notes: vec!["Note.".into()],
             sections: vec![section, three, verdicts],
             png_folder: "figures".into(),
+            ..Page::default()
         }
     }
 
