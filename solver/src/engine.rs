@@ -15,12 +15,12 @@ use crate::{
     neighbours::{BLOCK, Lists, Neighbours},
     numbers::{Numbers, Symmetric},
     parallel,
-    particle_data::{BlockExtrema, Checkpoint, Counts, InvalidState, ParticleData, Phase},
+    particle_data::{BlockExtrema, Checkpoint, Counts, InvalidState, ParticleData, Phase, Stepped},
     particles::{Column, Common, Evolved, Fixed, Rate, Role},
     physics::{Derived, Physics, State},
-    sweep::{self, BlockUpdate, PairSweep, Sweep, all, drift, forces, none},
-    terms::{PairSum, Term, moments::InverseMoments},
-    walls::{Extrapolation, WallState, Walls},
+    sweep::{self, BlockUpdate, PairSweep, Sweep},
+    terms::{Rates, Term, moments::InverseMoments},
+    walls::{Extrapolated, Extrapolation, WallState, Walls},
 };
 
 /// Terms of a scene, and the columns that they derive, without their types.
@@ -48,7 +48,7 @@ impl<X: Numbers> ParticleData<X> {
         equations: &mut dyn Equations<X>,
         state: &mut [Evolved<X>],
         along: &mut dyn FnMut(usize, usize),
-    ) -> Result<(), InvalidState> {
+    ) -> Stepped {
         if self.slips {
             let fluid = &mut state[..self.counts.fluid];
             for wall in self.neighbours.mirrors() {
@@ -67,11 +67,7 @@ impl<X: Numbers> ParticleData<X> {
         Ok(())
     }
 
-    fn refresh(
-        &mut self,
-        equations: &mut dyn Equations<X>,
-        state: &[Evolved<X>],
-    ) -> Result<(), InvalidState> {
+    fn refresh(&mut self, equations: &mut dyn Equations<X>, state: &[Evolved<X>]) -> Stepped {
         let extent = self.fill(equations, state)?;
         if self.is_stale(extent) {
             self.build_lists(equations, &mut places(state));
@@ -205,24 +201,57 @@ pub(crate) struct TypedEquations<P: Physics> {
     /// Of the forces, and of the drift.
     pub terms: (P::Forces, P::Drift),
     wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
-    extrapolation: Extrapolated<P>,
+    extrapolation: ExtrapolationOf<P>,
     /// Of the particles, of their images, and the sentinel.
     pub columns: Vec<Column<Derived<P>>>,
     /// Inverses of moments: empty where no force needs them.
     inverses: Vec<Symmetric>,
 }
 
-type Extrapolated<P> = <<P as Physics>::Walls as Walls<<P as Physics>::Extra>>::Extrapolation;
+type ExtrapolationOf<P> = <<P as Physics>::Walls as Walls<<P as Physics>::Extra>>::Extrapolation;
 
 impl<P: Physics> TypedEquations<P> {
-    fn sweep<'a, O: Copy + Default, T: PairSum<O>>(
-        &'a self,
-        terms: &'a T,
-        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
+    /// The pair sweep of these terms, whose derived data of a column `read` selects. `moving`: dx/dt includes v.
+    fn sweep<T: Term<P::Extra>>(
+        &self,
+        terms: &T,
+        read: impl Fn(&Derived<P>) -> T::Derived + Sync,
         moving: bool,
-    ) -> impl PairSweep<O> {
-        Sweep { kernel: &self.kernel, terms, columns: &self.columns, select, moving }
+    ) -> impl PairSweep<Rate<P::Extra>> {
+        let Self { kernel, columns, .. } = self;
+        Sweep { kernel, columns, sum: Rates { terms, read, moving } }
     }
+
+    fn forces(&self, moving: bool) -> impl PairSweep<Rate<P::Extra>> {
+        self.sweep(&self.terms.0, first, moving)
+    }
+
+    fn drift(&self, moving: bool) -> impl PairSweep<Rate<P::Extra>> {
+        self.sweep(&self.terms.1, second, moving)
+    }
+
+    fn all(&self, moving: bool) -> impl PairSweep<Rate<P::Extra>> {
+        self.sweep(&self.terms, whole, moving)
+    }
+}
+
+// Functions in place of closures, which in generic code have a type for each scheme: the sweep would be compiled
+// for each.
+
+fn first<A: Copy, B>(derived: &(A, B)) -> A {
+    derived.0
+}
+
+fn second<A, B: Copy>(derived: &(A, B)) -> B {
+    derived.1
+}
+
+fn whole<S: Copy>(derived: &S) -> S {
+    *derived
+}
+
+fn nothing<S, D: Default>(_: &S) -> D {
+    D::default()
 }
 
 impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
@@ -254,29 +283,17 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
 
     fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>)) {
         if !<P::Walls as Walls<X>>::Terms::IS_EMPTY {
-            run(&self.sweep(&self.wall_terms, none(), false));
+            run(&self.sweep(&self.wall_terms, nothing, false));
         }
     }
 
     fn extrapolate(&self, of: &ParticleData<X>, run: &mut dyn FnMut(&dyn PairSweep<WallState>)) {
-        if !Extrapolated::<P>::IS_EMPTY {
-            let (fluid, feet) = (of.counts.fluid, &of.neighbours.feet[..]);
-            run(&self.sweep(
-                &self.extrapolation,
-                at_feet::<_, Extrapolated<P>>(fluid, feet),
-                false,
-            ));
+        if !ExtrapolationOf::<P>::IS_EMPTY {
+            let Self { kernel, columns, extrapolation: by, .. } = self;
+            let (first, feet) = (of.counts.fluid, &of.neighbours.feet[..]);
+            run(&Sweep { kernel, columns, sum: Extrapolated { by, feet, first } });
         }
     }
-}
-
-/// Selects the foot of a wall particle; `first` is the number of the first wall particle.
-fn at_feet<S, E: Extrapolation>(
-    first: usize,
-    feet: &[Vector2<f64>],
-) -> impl Fn(usize, &S) -> E::Foot + Sync {
-    // Fluid has numbers below those of walls, and images have numbers above, for which there are no feet.
-    move |k: usize, _: &S| E::foot(feet.get(k.wrapping_sub(first)))
 }
 
 /// Terms and particles of a scene.
@@ -303,7 +320,7 @@ impl<P: Physics> Engine<P> {
             inverses: vec![],
         };
         data.slips = P::Walls::SLIPS;
-        data.extrapolates = !Extrapolated::<P>::IS_EMPTY;
+        data.extrapolates = !ExtrapolationOf::<P>::IS_EMPTY;
         let state = take(&mut data.state);
         data.build_lists(&mut equations, &mut places(&state));
         data.state = state;
@@ -322,17 +339,13 @@ impl<P: Physics> Engine<P> {
     /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
     /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
     /// that is derived from the state.
-    pub fn begin(&mut self, state: &mut State<P>) -> Result<(), InvalidState> {
-        self.data.begin(&mut self.equations, state, &mut |_, _| ())
+    pub fn begin(&mut self, state: &mut State<P>) -> Stepped {
+        self.begin_with::<()>(state, &mut [])
     }
 
     /// Starts a step likewise, with something `kept` of each of the first particles, or of none, which stays
     /// in their order.
-    pub fn begin_with<T>(
-        &mut self,
-        state: &mut State<P>,
-        kept: &mut [T],
-    ) -> Result<(), InvalidState> {
+    pub fn begin_with<T>(&mut self, state: &mut State<P>, kept: &mut [T]) -> Stepped {
         let mut along = |i, j| {
             if !kept.is_empty() {
                 kept.swap(i, j);
@@ -342,13 +355,13 @@ impl<P: Physics> Engine<P> {
     }
 
     /// Refreshes everything that is derived from a state inside a step.
-    pub fn refresh(&mut self, state: &State<P>) -> Result<(), InvalidState> {
+    pub fn refresh(&mut self, state: &State<P>) -> Stepped {
         self.data.refresh(&mut self.equations, state)
     }
 
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
-    pub fn refresh_differences(&mut self, state: &State<P>) -> Result<(), InvalidState> {
+    pub fn refresh_differences(&mut self, state: &State<P>) -> Stepped {
         self.data.fill(&mut self.equations, state)?;
         self.data.refresh_walls(&mut self.equations, state, 0.0);
         Ok(())
@@ -357,33 +370,33 @@ impl<P: Physics> Engine<P> {
     /// Sums the forces: `update` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
-        let sweep = self.equations.sweep(&self.equations.terms.0, forces(), true);
+        let sweep = self.equations.forces(true);
         self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
 
-    /// Sums a part of the forces, whose derived numbers `select` reads: `update` with dv/dt, for fluid
+    /// Sums a part of the forces, whose derived data of a column `read` selects: `update` with dv/dt, for fluid
     /// particles.
     pub fn sweep_part<T: Term<P::Extra>>(
         &mut self,
         targets: &mut State<P>,
         part: &T,
-        select: impl Fn(usize, &Derived<P>) -> T::Derived + Sync,
+        read: impl Fn(&Derived<P>) -> T::Derived + Sync,
         update: &BlockUpdate<P::Extra>,
     ) {
-        let sweep = self.equations.sweep(part, select, true);
+        let sweep = self.equations.sweep(part, read, true);
         self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
 
     /// Sums the drift: `update` with dx/dt, dρ/dt and the terms' own rates.
     pub fn sweep_drift(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
-        let sweep = self.equations.sweep(&self.equations.terms.1, drift(), true);
+        let sweep = self.equations.drift(true);
         self.data.sweep(Phase::Drift, &sweep, &self.equations, targets, update);
     }
 
     /// Sums forces and drift in one pair sweep: `update` with the whole rate.
     pub fn sweep_all(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
-        let sweep = self.equations.sweep(&self.equations.terms, all(), true);
+        let sweep = self.equations.all(true);
         self.data.sweep(Phase::Both, &sweep, &self.equations, targets, update);
     }
 
@@ -402,22 +415,21 @@ impl<P: Physics> Engine<P> {
         if T::NORMALISES {
             normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
         }
-        let sweep = Sweep { kernel, terms, columns: &columns, select: all(), moving: false };
+        let sum = Rates { terms, read: whole, moving: false };
+        let sweep = Sweep { kernel, columns: &columns, sum };
         sweep::rates(&sweep, &neighbours.lists)
     }
 
     /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
     pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
-        let sweep = self.equations.sweep(&self.equations.terms, all(), false);
-        sweep::rates(&sweep, &self.data.neighbours.lists)
+        sweep::rates(&self.equations.all(false), &self.data.neighbours.lists)
     }
 
     /// The rates of fluid particles by all terms, with dv/dt from the sweep of [`Engine::sweep_forces`], and
     /// the rest from that of [`Engine::sweep_drift`].
     pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
-        let forces = self.equations.sweep(&self.equations.terms.0, forces(), false);
-        let drift = self.equations.sweep(&self.equations.terms.1, drift(), false);
-        together(&forces, &drift, &self.data.neighbours.lists)
+        let Self { equations, data } = self;
+        together(&equations.forces(false), &equations.drift(false), &data.neighbours.lists)
     }
 
     /// The rates of wall particles by their terms, for the state that the columns were refreshed for last.
@@ -445,7 +457,7 @@ impl<P: Physics> Engine<P> {
     /// Gives the forces the inverses of the moments, if they need them.
     pub(crate) fn normalise(&mut self) {
         const {
-            let is_sound = !P::Forces::NORMALISES || Extrapolated::<P>::IS_EMPTY;
+            let is_sound = !P::Forces::NORMALISES || ExtrapolationOf::<P>::IS_EMPTY;
             assert!(is_sound, "moments of fluid alone");
         };
         const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
@@ -502,8 +514,7 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     columns: &mut [Column<T::Derived>],
     inverses: &mut Vec<Symmetric>,
 ) {
-    let terms = &InverseMoments;
-    let sweep = Sweep { kernel, terms, columns, select: none(), moving: false };
+    let sweep = Sweep { kernel, columns, sum: InverseMoments };
     let Neighbours { lists, wall_lists, .. } = neighbours;
     inverses.resize(lists.of.end.max(wall_lists.of.end), Symmetric::default());
     for lists in [lists, wall_lists] {

@@ -58,6 +58,9 @@ pub struct InvalidState {
     pub value: f64,
 }
 
+/// Whether a step stayed within the bounds of its scene.
+pub type Stepped = Result<(), InvalidState>;
+
 /// Bounds that a run must not leave; a run that does has diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
@@ -174,16 +177,16 @@ pub(crate) struct Counts {
     pub walls: usize,
 }
 
-/// The largest speed and displacements in a state. Displacements are those since lists were built, along an
-/// axis and against it.
+/// Extremes over the particles of a block: of the displacement since lists were built, and of the speed.
 #[derive(Clone, Copy)]
 pub(crate) struct BlockExtrema {
+    /// Largest square of the displacement \[m²\].
     displacement2: f64,
+    /// Largest square of the speed \[m²/s²\].
     speed2: f64,
-    right: f64,
-    left: f64,
-    up: f64,
-    down: f64,
+    /// Corners of the bounding box of all displacements and 0 \[m\].
+    low: Vector2<f64>,
+    high: Vector2<f64>,
     within_limits: bool,
 }
 
@@ -191,24 +194,21 @@ impl BlockExtrema {
     pub const NIL: Self = Self {
         displacement2: 0.0,
         speed2: 0.0,
-        right: 0.0,
-        left: 0.0,
-        up: 0.0,
-        down: 0.0,
+        low: Vector2::new(0.0, 0.0),
+        high: Vector2::new(0.0, 0.0),
         within_limits: true,
     };
 
-    /// The larger of each. Exact, so the order does not matter. A number that is NaN is beyond limits.
+    /// The extremes of both. Exact, so the order does not matter. A number that is NaN is beyond limits.
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         let larger = |one: f64, two: f64| if two > one { two } else { one };
+        let smaller = |one: f64, two: f64| if two < one { two } else { one };
         Self {
             displacement2: larger(self.displacement2, other.displacement2),
             speed2: larger(self.speed2, other.speed2),
-            right: larger(self.right, other.right),
-            left: larger(self.left, other.left),
-            up: larger(self.up, other.up),
-            down: larger(self.down, other.down),
+            low: self.low.zip_map(&other.low, smaller),
+            high: self.high.zip_map(&other.high, larger),
             within_limits: self.within_limits & other.within_limits,
         }
     }
@@ -440,21 +440,12 @@ impl<X: Numbers> ParticleData<X> {
     pub(crate) fn extent(&self, state: &[Evolved<X>], built_at: &[Vector2<f64>]) -> BlockExtrema {
         let mut extent = BlockExtrema::NIL;
         for (evolved, built_at) in state.iter().zip(built_at) {
-            let d = evolved.position - built_at;
-            let excess = self.excess(evolved, d.norm_squared());
-            let within_limits = excess.is_none() && evolved.extra.is_finite();
+            let moved = evolved.position - built_at;
+            let (low, high, displacement2) = (moved, moved, moved.norm_squared());
             let speed2 = evolved.velocity.norm_squared();
-            let (displacement2, [right, left, up, down]) =
-                (d.norm_squared(), [d.x, -d.x, d.y, -d.y]);
-            extent = extent.and(BlockExtrema {
-                displacement2,
-                speed2,
-                right,
-                left,
-                up,
-                down,
-                within_limits,
-            });
+            let excess = self.excess(evolved, displacement2);
+            let within_limits = excess.is_none() && evolved.extra.is_finite();
+            extent = extent.and(BlockExtrema { displacement2, speed2, low, high, within_limits });
         }
         extent
     }
@@ -473,7 +464,7 @@ impl<X: Numbers> ParticleData<X> {
     /// were built \[m\]: not more than half the diagonal of the box of all displacements and 0, for a period
     /// moves all images alike; nor than the largest displacement, which a mirror turns.
     fn approach(&self, extent: BlockExtrema) -> f64 {
-        let diagonal = Vector2::new(extent.right + extent.left, extent.up + extent.down).norm();
+        let diagonal = (extent.high - extent.low).norm();
         let has_mirrors = self.neighbours.maps.iter().any(|map| !map.walls().is_empty());
         extent.displacement2.sqrt().min(if has_mirrors { f64::MAX } else { 0.5 * diagonal })
     }

@@ -81,87 +81,53 @@ pub(crate) fn fill<O: Copy + Send>(sweep: &dyn PairSweep<O>, lists: &Lists, resu
     run(sweep, lists, results, &|_, results, found| results.copy_from_slice(found));
 }
 
-// Functions that select the derived data that terms read, from the number of a column and its derived data. A
-// closure in generic code has a type for each scheme, and the sweep would be compiled for each; these have
-// not.
-
-/// Selects the derived data of the forces.
-pub(crate) fn forces<A: Copy, B>() -> impl Fn(usize, &(A, B)) -> A + Sync {
-    |_, derived| derived.0
-}
-
-/// Selects the derived data of the drift.
-pub(crate) fn drift<A, B: Copy>() -> impl Fn(usize, &(A, B)) -> B + Sync {
-    |_, derived| derived.1
-}
-
-/// Selects all derived data.
-pub(crate) fn all<S: Copy>() -> impl Fn(usize, &S) -> S + Sync {
-    |_, derived| *derived
-}
-
-/// Selects no derived data: zeros.
-pub(crate) fn none<S, D: Default>() -> impl Fn(usize, &S) -> D + Sync {
-    |_, _| D::default()
-}
-
 /// A sum over the neighbours of particles, which reads columns.
-pub(crate) struct Sweep<'a, K, T, S, C> {
+pub(crate) struct Sweep<'a, K, T, S> {
     pub kernel: &'a Smoothing<K>,
-    /// The sum, a [`PairSum`].
-    pub terms: &'a T,
     pub columns: &'a [Column<S>],
-    /// Selects the derived data that the terms read.
-    pub select: C,
-    /// Whether particles move: dx/dt = v, to which terms may add.
-    pub moving: bool,
+    /// A [`PairSum`].
+    pub sum: T,
 }
 
-impl<K, T, S, C> Sweep<'_, K, T, S, C> {
-    /// Passes on the results of these particles, of which `sum` forms the sums over neighbours.
+impl<K, T, S> Sweep<'_, K, T, S> {
+    /// Passes on the results of these particles, of which `on_lanes` forms the sums over neighbours.
     #[inline(always)]
     fn results_by<O: Copy + Default>(
         &self,
-        sum: impl Fn(Particles<Self, T, O>),
+        on_lanes: impl Fn(Particles<K, T, S, O>),
         block: &Block,
         of: Range<usize>,
         pass: &mut dyn FnMut(usize, &[O]),
     ) where
-        T: PairSum<O>,
-        S: Numbers,
-        C: Fn(usize, &S) -> T::Derived,
+        T: PairSum<S, O>,
     {
-        let &Sweep { terms, columns, ref select, moving, .. } = self;
+        let Self { columns, sum, .. } = self;
         let mut results = buffer();
         let mut own = Aligned(Seen::<T::Derived>::default().spread::<Buffer>());
         let mut sums = Aligned(T::Sum::default().spread::<Buffer>());
         for first in of.clone().step_by(MANY) {
             let end = (first + MANY).min(of.end);
-            if !T::NOTHING {
+            if !T::IS_EMPTY {
                 // The last group may lack some.
                 for k in 0..(end - first).next_multiple_of(GROUP) {
                     let number = if first + k < end { first + k } else { columns.len() - 1 };
                     let &Column { position, velocity, common, ref derived } = &columns[number];
                     let numbers = (common.mass, common.density, common.volume);
-                    (position, velocity, numbers, select(number, derived)).put(&mut own.0, k);
+                    (position, velocity, numbers, sum.read(number, derived)).put(&mut own.0, k);
                 }
                 let (list, own, sums) = (first - of.start, &own.0, &mut sums.0);
-                sum(Particles { sweep: self, block, list, of: first..end, own, sums });
+                on_lanes(Particles { sweep: self, block, list, of: first..end, own, sums });
             }
             for (k, (result, number)) in results.0.iter_mut().zip(first..end).enumerate() {
-                let own = &columns[number];
-                let derived = select(number, &own.derived);
-                *result = terms.result(own, derived, T::Sum::take(&sums.0, k), moving);
+                *result = sum.result(&columns[number], T::Sum::take(&sums.0, k));
             }
             pass(first, &results.0[..end - first]);
         }
     }
 }
 
-impl<O: Copy + Default, K: Kernel, T: PairSum<O>, S: Numbers, C> PairSweep<O>
-    for Sweep<'_, K, T, S, C>
-where
-    C: Fn(usize, &S) -> T::Derived + Sync,
+impl<O: Copy + Default, K: Kernel, T: PairSum<S, O>, S: Numbers> PairSweep<O>
+    for Sweep<'_, K, T, S>
 {
     fn results(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O])) {
         self.results_by(|particles| on_widest(particles), block, of, pass);
@@ -175,8 +141,8 @@ type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 /// The sums of some particles of a block. In a profile it is `with_registers_for_eight` or
 /// `with_registers_for_four` with this type (the search for neighbours is the same with its own); the
 /// portable form is inlined into its caller.
-struct Particles<'a, W, T: PairSum<O>, O> {
-    sweep: &'a W,
+struct Particles<'a, K, T: PairSum<S, O>, S, O> {
+    sweep: &'a Sweep<'a, K, T, S>,
     block: &'a Block,
     list: usize,
     of: Range<usize>,
@@ -184,15 +150,11 @@ struct Particles<'a, W, T: PairSum<O>, O> {
     sums: &'a mut In<T::Sum, Buffer>,
 }
 
-impl<K: Kernel, T: PairSum<O>, S: Numbers, C, O> OnLanes
-    for Particles<'_, Sweep<'_, K, T, S, C>, T, O>
-where
-    C: Fn(usize, &S) -> T::Derived,
-{
+impl<K: Kernel, T: PairSum<S, O>, S: Numbers, O> OnLanes for Particles<'_, K, T, S, O> {
     #[inline(always)]
     fn run<V: Lane>(self) {
         const { assert!(MANY.is_multiple_of(GROUP) && GROUP.is_multiple_of(V::LANES)) };
-        let &Sweep { kernel, terms, columns, ref select, .. } = self.sweep;
+        let Sweep { kernel, columns, sum: of } = self.sweep;
         let support2 = kernel.support() * kernel.support() * (1.0 + 1e-12);
         for start in (0..self.of.len()).step_by(V::LANES) {
             let (position, velocity, (mass, density, volume), derived) =
@@ -213,9 +175,9 @@ where
                 }
                 let v = velocity - other.velocity.spread::<V>();
                 let (f, others) = (kernel.f(r2), other.common.spread::<V>());
-                let derived = [derived, select(column as usize, &other.derived).spread::<V>()];
+                let derived = [derived, of.read(column as usize, &other.derived).spread::<V>()];
                 let pair = Pair { r, r2, v, f, own: common, other: others, derived, kernel };
-                terms.add(&pair, &mut sum);
+                of.add(&pair, &mut sum);
             }
             T::Sum::store(sum, self.sums, start);
         }
@@ -230,6 +192,7 @@ mod tests {
     use crate::{
         Continuity, Domain, Pressure, QuinticSpline, Tait, Term, Viscosity,
         neighbours::{Neighbours, Reach},
+        terms::Rates,
     };
 
     const DX: f64 = 0.1;
@@ -281,8 +244,9 @@ mod tests {
     fn no_particle_is_a_neighbour_of_itself() {
         let columns = columns(&Weights, 23);
         let (neighbours, kernel) = (listed(&columns), Smoothing::<QuinticSpline>::new(DX));
-        let (terms, columns) = (&Weights, &columns[..]);
-        let sweep = Sweep { kernel: &kernel, terms, columns, select: all(), moving: false };
+        let columns = &columns[..];
+        let sum = Rates { terms: &Weights, read: |(): &()| (), moving: false };
+        let sweep = Sweep { kernel: &kernel, columns, sum };
         let particles = &columns[..columns.len() - 1];
         assert_ne!(particles.len() % GROUP, 0, "the last group lacks some");
         for (k, rate) in rates(&sweep, &neighbours.lists).iter().enumerate() {
@@ -303,8 +267,8 @@ mod tests {
         let count = columns.len() - 1;
         let neighbours = listed(&columns);
         let kernel = Smoothing::<QuinticSpline>::new(DX);
-        let (terms, columns) = (&terms, &columns[..]);
-        let sweep = Sweep { kernel: &kernel, terms, columns, select: all(), moving: true };
+        let sum = Rates { terms: &terms, read: Clone::clone, moving: true };
+        let sweep = Sweep { kernel: &kernel, columns: &columns, sum };
         let [mut portable, mut one, mut widest] = [const { Vec::<Rate<()>>::new() }; 3];
         for (b, block) in neighbours.lists.blocks.iter().enumerate() {
             let of = b * BLOCK..((b + 1) * BLOCK).min(count);

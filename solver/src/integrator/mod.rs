@@ -12,19 +12,18 @@ pub use predictor_corrector::PredictorCorrector;
 pub use single_sweep::SingleSweep;
 pub use super_steps::{SuperSteps, stages};
 
+pub use crate::particle_data::Stepped;
+
 use crate::{
     engine::Engine,
     kernel::Kernel,
     numbers::Numbers,
-    particle_data::{Checkpoint, InvalidState},
+    particle_data::Checkpoint,
     particles::{Evolved, Rate},
     physics::{Compose, Physics, State},
     terms::Term,
     walls::Walls,
 };
-
-/// Whether a step stayed within the bounds of its scene.
-pub type Stepped = Result<(), InvalidState>;
 
 /// An explicit time integration of (x, v, ρ) of the physics `P`.
 pub trait Integrator<P: Physics>: 'static {

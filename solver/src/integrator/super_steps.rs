@@ -93,7 +93,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
                 let advanced = newer[i].velocity + rate * length;
                 older.velocity = advanced * last - older.velocity * before;
             };
-            engine.sweep_part(older, &stiff, |_, ((_, stiff), _)| *stiff, &each(update));
+            engine.sweep_part(older, &stiff, |((_, stiff), _)| *stiff, &each(update));
             swap(older, newer);
         }
         let fluid = engine.data.fluid_count();

@@ -134,39 +134,57 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
 }
 
-/// A sum over neighbours from which an `O` follows: rates, an extrapolated state, or inverse moments.
-pub(crate) trait PairSum<O>: Sync {
-    /// The derived data of a particle that the sum reads.
+/// A sum over the neighbours of a particle and its result `O`: rates, the state of a wall particle, or inverse
+/// moments. `S` is the derived data of a column.
+pub(crate) trait PairSum<S, O>: Sync {
+    /// The part of the derived data that the sum reads.
     type Derived: Numbers;
-    /// Sums of a particle over its neighbours.
+    /// The sums.
     type Sum: Numbers;
     /// Whether there is nothing to sum.
-    const NOTHING: bool = false;
+    const IS_EMPTY: bool = false;
 
+    /// The derived data that the sum reads of column `number`.
+    fn read(&self, number: usize, derived: &S) -> Self::Derived;
     /// Adds the contributions of the neighbours j of `pair`.
     fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<Self::Sum, V>);
-    /// The result for a particle, which `moves` with its velocity or does not.
-    fn result<S>(&self, own: &Column<S>, derived: Self::Derived, sum: Self::Sum, moves: bool) -> O;
+    /// The result for a particle.
+    fn result(&self, own: &Column<S>, sum: Self::Sum) -> O;
 }
 
-impl<X: Numbers, T: Term<X>> PairSum<Rate<X>> for T {
+/// The sum of terms of which each column has the derived data `read(S)`, in rates.
+pub(crate) struct Rates<'a, T, R> {
+    pub terms: &'a T,
+    pub read: R,
+    /// Whether dx/dt includes v.
+    pub moving: bool,
+}
+
+impl<S, X: Numbers, T: Term<X>, R: Fn(&S) -> T::Derived + Sync> PairSum<S, Rate<X>>
+    for Rates<'_, T, R>
+{
     type Derived = T::Derived;
     type Sum = T::Sum;
-    const NOTHING: bool = T::IS_EMPTY;
+    const IS_EMPTY: bool = T::IS_EMPTY;
 
     #[inline(always)]
-    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, T::Derived>, sum: &mut In<T::Sum, V>) {
-        self.pair(pair, sum);
+    fn read(&self, _: usize, derived: &S) -> T::Derived {
+        (self.read)(derived)
     }
 
     #[inline(always)]
-    fn result<S>(&self, own: &Column<S>, derived: T::Derived, sum: T::Sum, moves: bool) -> Rate<X> {
+    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, T::Derived>, sum: &mut In<T::Sum, V>) {
+        self.terms.pair(pair, sum);
+    }
+
+    #[inline(always)]
+    fn result(&self, own: &Column<S>, sum: T::Sum) -> Rate<X> {
         let mut rate = Rate::default();
-        if moves {
+        if self.moving {
             rate.position = own.velocity;
         }
-        self.finish(&own.common, derived, sum, &mut rate);
-        self.place(own.position, &mut rate);
+        self.terms.finish(&own.common, (self.read)(&own.derived), sum, &mut rate);
+        self.terms.place(own.position, &mut rate);
         rate
     }
 }

@@ -26,9 +26,12 @@ pub fn inverse(moments: Symmetric) -> Option<Symmetric> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InverseMoments;
 
-impl PairSum<Symmetric> for InverseMoments {
+impl<S> PairSum<S, Symmetric> for InverseMoments {
     type Derived = ();
     type Sum = Symmetric;
+
+    #[inline(always)]
+    fn read(&self, _: usize, _: &S) {}
 
     #[inline(always)]
     fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut Symmetric<V>) {
@@ -36,7 +39,7 @@ impl PairSum<Symmetric> for InverseMoments {
     }
 
     #[inline(always)]
-    fn result<S>(&self, _: &Column<S>, _: (), sum: Symmetric, _: bool) -> Symmetric {
+    fn result(&self, _: &Column<S>, sum: Symmetric) -> Symmetric {
         inverse(sum).unwrap_or_default()
     }
 }

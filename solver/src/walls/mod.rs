@@ -80,19 +80,34 @@ impl Extrapolation for () {
     }
 }
 
-impl<E: Extrapolation> PairSum<WallState> for E {
+/// The sum of an extrapolation over the fluid.
+pub(crate) struct Extrapolated<'a, E> {
+    pub by: &'a E,
+    /// From each wall particle to its foot \[m\]; empty if the sums do not need it.
+    pub feet: &'a [Vector2<f64>],
+    /// Number of the first wall particle.
+    pub first: usize,
+}
+
+impl<S, E: Extrapolation> PairSum<S, WallState> for Extrapolated<'_, E> {
     type Derived = E::Foot;
     type Sum = E::Sum;
-    const NOTHING: bool = E::IS_EMPTY;
+    const IS_EMPTY: bool = E::IS_EMPTY;
 
     #[inline(always)]
-    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, E::Foot>, sum: &mut In<E::Sum, V>) {
-        self.pair(pair, sum);
+    fn read(&self, number: usize, _: &S) -> E::Foot {
+        // Fluid has numbers below those of walls, and images have numbers above: neither has feet.
+        E::foot(self.feet.get(number.wrapping_sub(self.first)))
     }
 
     #[inline(always)]
-    fn result<S>(&self, own: &Column<S>, _: E::Foot, sum: E::Sum, _: bool) -> WallState {
-        self.finish(&own.common, sum)
+    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, E::Foot>, sum: &mut In<E::Sum, V>) {
+        self.by.pair(pair, sum);
+    }
+
+    #[inline(always)]
+    fn result(&self, own: &Column<S>, sum: E::Sum) -> WallState {
+        self.by.finish(&own.common, sum)
     }
 }
 
