@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-/// Where particles may be and which axes close on themselves.
+/// The domain: its extent and its periodic axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Domain {
     /// Lower corner of the period \[m\]; of no meaning on open axes.

@@ -1,10 +1,10 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
 //! a state and then makes the pair sweeps.
 //!
-//! Five things stand between an integrator and a term: an [`Engine`] has particles and `Equations`, the terms
-//! of the scene with their columns; a `Sweep` sums some of these terms, each a `PairSum`, over neighbour
-//! lists. Code that need not know their types, here and in `sweep.rs`, sees `dyn Equations` and
-//! `dyn PairSweep`, and is compiled once, not for each scheme.
+//! Five things are between an integrator and a term. An [`Engine`] holds particles and `Equations`, which are
+//! the terms of the scene and the columns derived by them. A `Sweep` forms a `PairSum`, such as the sum of
+//! some terms, over neighbour lists. Code that does not depend on the types of terms, here and in `sweep.rs`,
+//! uses `dyn Equations` and `dyn PairSweep` and is compiled once, not once for each scheme.
 
 use std::mem::take;
 
@@ -23,7 +23,7 @@ use crate::{
     walls::{Extrapolated, Extrapolation, WallState, Walls},
 };
 
-/// Terms of a scene, and the columns that they derive, without their types.
+/// Terms of a scene and their columns, without their types.
 pub(crate) trait Equations<X>: Sync {
     /// Gives the terms the largest speed \[m/s\].
     fn prepare(&mut self, speed: f64);
@@ -35,9 +35,10 @@ pub(crate) trait Equations<X>: Sync {
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64);
     /// Derives the columns of wall particles from these.
     fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]);
-    /// Calls `run` with the pair sweep over wall particles, if they have terms.
+    /// Calls `run` with the pair sweep over wall particles; not at all if walls have no terms.
     fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>));
-    /// Calls `run` with the pair sweep that extrapolates to wall particles, if they extrapolate.
+    /// Calls `run` with the pair sweep that extrapolates to wall particles; not at all if walls do not
+    /// extrapolate.
     fn extrapolate(&self, of: &ParticleData<X>, run: &mut dyn FnMut(&dyn PairSweep<WallState>));
 }
 
@@ -95,8 +96,8 @@ impl<X: Numbers> ParticleData<X> {
         self.column_bytes = equations.make_room(columns + 1);
     }
 
-    /// Derives the columns of the particles, and finds out how far they moved since the neighbour lists
-    /// were built.
+    /// Derives the columns of the particles and the distances that they moved since the neighbour lists were
+    /// built.
     fn fill(
         &mut self,
         equations: &mut dyn Equations<X>,
@@ -110,7 +111,8 @@ impl<X: Numbers> ParticleData<X> {
         extents.resize(count + 1, BlockExtrema::NIL);
         extents[count] = self.buffers.still.unwrap_or(BlockExtrema::NIL);
         equations.derive(self, &state[..filled], &mut extents);
-        // Columns of interface particles, if there are any, are filled by nobody else.
+        // Columns of interface particles are filled here only: with interface particles, no column is left
+        // out.
         if self.extrapolates && fluid + walls == state.len() && self.buffers.still.is_none() {
             let still = self.extent(&state[fluid..], &self.neighbours.built_at[fluid..]);
             self.buffers.still = Some(still);
@@ -135,14 +137,13 @@ impl<X: Numbers> ParticleData<X> {
         self.enter(Phase::Rest);
     }
 
-    /// Gives the columns of wall particles, and their images, the state that is extrapolated from the fluid
-    /// before them.
+    /// Gives the columns and images of wall particles the state extrapolated from the fluid.
     fn extrapolate(&mut self, equations: &mut dyn Equations<X>, state: &[Evolved<X>], motion: f64) {
         let own = &state[self.neighbours.wall_lists.of.clone()];
         let mut implied = take(&mut self.buffers.extrapolated);
         implied.clear();
         implied.extend_from_slice(own);
-        // Sums are made at the foot of a wall particle, if it has one; its column is derived again below.
+        // Sums are formed at the foot of each wall particle; its column is derived again below.
         for (wall, foot) in implied.iter_mut().zip(&self.neighbours.feet) {
             wall.position += foot;
         }
@@ -198,11 +199,11 @@ impl<X: Numbers> ParticleData<X> {
 /// Terms and columns of a scene, with their types.
 pub(crate) struct TypedEquations<P: Physics> {
     pub kernel: Smoothing<P::Kernel>,
-    /// Of the forces, and of the drift.
+    /// Forces and drift.
     pub terms: (P::Forces, P::Drift),
     wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
     extrapolation: ExtrapolationOf<P>,
-    /// Of the particles, of their images, and the sentinel.
+    /// Columns of the particles, then of their images, then the sentinel.
     pub columns: Vec<Column<Derived<P>>>,
     /// Inverses of moments: empty where no force needs them.
     inverses: Vec<Symmetric>,
@@ -299,7 +300,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
 /// Terms and particles of a scene.
 pub struct Engine<P: Physics> {
     pub(crate) equations: TypedEquations<P>,
-    /// Boxed, for it is moved by code that is compiled for each scheme.
+    /// In a box, because code compiled for each scheme moves it.
     pub(crate) data: Box<ParticleData<P::Extra>>,
 }
 
@@ -336,15 +337,15 @@ impl<P: Physics> Engine<P> {
         Ok(())
     }
 
-    /// Starts a step at this state: particles may be put in another order, wrapped into the period and put
-    /// back before a wall along which they slip, and terms take over the largest speed. Refreshes everything
-    /// that is derived from the state.
+    /// Starts a step at this state: may sort the particles, wrap them into the period and put them back
+    /// before a wall along which they slip; gives the terms the largest speed; refreshes all data derived
+    /// from the state.
     pub fn begin(&mut self, state: &mut State<P>) -> Stepped {
         self.begin_with::<()>(state, &mut [])
     }
 
-    /// Starts a step likewise, with something `kept` of each of the first particles, or of none, which stays
-    /// in their order.
+    /// Starts a step as [`Engine::begin`] does, and sorts `kept` along with the first particles; `kept` may
+    /// be empty.
     pub fn begin_with<T>(&mut self, state: &mut State<P>, kept: &mut [T]) -> Stepped {
         let mut along = |i, j| {
             if !kept.is_empty() {
@@ -354,7 +355,7 @@ impl<P: Physics> Engine<P> {
         self.data.begin(&mut self.equations, state, &mut along)
     }
 
-    /// Refreshes everything that is derived from a state inside a step.
+    /// Refreshes all data derived from a state inside a step.
     pub fn refresh(&mut self, state: &State<P>) -> Stepped {
         self.data.refresh(&mut self.equations, state)
     }
@@ -400,8 +401,8 @@ impl<P: Physics> Engine<P> {
         self.data.sweep(Phase::Both, &sweep, &self.equations, targets, update);
     }
 
-    /// The rates of fluid particles by these terms alone, which need not be those of the scene, for
-    /// the state that the columns were refreshed for last. dx/dt is without v.
+    /// Rates of fluid particles by the given terms alone, which need not belong to the scene, for the state
+    /// of the last refresh. dx/dt excludes v.
     pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
         let (kernel, neighbours) = (&self.equations.kernel, &self.data.neighbours);
         let mut columns = vec![Column::sentinel(); self.equations.columns.len()];
@@ -420,13 +421,14 @@ impl<P: Physics> Engine<P> {
         sweep::rates(&sweep, &neighbours.lists)
     }
 
-    /// The rates of fluid particles by all terms, likewise, from the sweep of [`Engine::sweep_all`].
+    /// Rates of fluid particles by all terms from one pair sweep, for the state of the last refresh. dx/dt
+    /// excludes v.
     pub fn rates_in_one_sweep(&self) -> Vec<Rate<P::Extra>> {
         sweep::rates(&self.equations.all(false), &self.data.neighbours.lists)
     }
 
-    /// The rates of fluid particles by all terms, with dv/dt from the sweep of [`Engine::sweep_forces`], and
-    /// the rest from that of [`Engine::sweep_drift`].
+    /// Rates of fluid particles by all terms: dv/dt from a sweep over the forces, the other rates from a
+    /// sweep over the drift. dx/dt excludes v.
     pub fn rates_in_two_sweeps(&self) -> Vec<Rate<P::Extra>> {
         let Self { equations, data } = self;
         together(&equations.forces(false), &equations.drift(false), &data.neighbours.lists)
@@ -439,8 +441,8 @@ impl<P: Physics> Engine<P> {
         rates
     }
 
-    /// Number of particles that have rates, the first of a state: those of the fluid, and of walls whose
-    /// terms give rates.
+    /// Number of particles with rates, which are the first ones of a state: fluid particles, and wall
+    /// particles if the walls have terms.
     pub(crate) fn swept(&self) -> usize {
         let Counts { fluid, walls } = self.data.counts;
         let is_empty = <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
@@ -454,7 +456,7 @@ impl<P: Physics> Engine<P> {
             + self.equations.inverses.capacity() * size_of::<Symmetric>()
     }
 
-    /// Gives the forces the inverses of the moments, if they need them.
+    /// Gives the forces the inverse moments, if they use them.
     pub(crate) fn normalise(&mut self) {
         const {
             let is_sound = !P::Forces::NORMALISES || ExtrapolationOf::<P>::IS_EMPTY;
@@ -483,13 +485,14 @@ fn together<X: Numbers>(
     drift
 }
 
-/// Where particles are: an iterator whose type depends on no scheme.
+/// Positions of particles, as an iterator whose type does not depend on the scheme.
 pub(crate) fn places<X>(state: &[Evolved<X>]) -> impl Iterator<Item = Vector2<f64>> {
     state.iter().map(|evolved| evolved.position)
 }
 
-/// Refills the images among these columns of the particles from `first` on; an image of an image belongs to
-/// both. `motion` is the share of the walls' own motion that they have.
+/// Refills the images of the particles from `first` on; an image of an image counts as an image of its
+/// particle. `motion` is the factor of the walls' own velocity in images: 1, or 0 for differences of
+/// velocities.
 fn fill_images<D: Numbers>(
     neighbours: &Neighbours,
     first: usize,
@@ -553,7 +556,7 @@ fn derive_all<X, T: Term<X>>(
     state: &[Evolved<X>],
     columns: &mut [Column<T::Derived>],
 ) {
-    // A copy, which no write can change: what does not depend on the particle leaves the loop.
+    // A copy, so that no write can alias it: the compiler moves loop-invariant numbers out of the loop.
     let terms = &terms.clone();
     let (fixed, state) = (&fixed[..columns.len()], &state[..columns.len()]);
     for k in 0..columns.len() {
@@ -561,8 +564,8 @@ fn derive_all<X, T: Term<X>>(
     }
 }
 
-/// Writes the column of a particle, field by field: as a value it is put together on the stack first, from
-/// where the processor loads what it has just stored, which takes up to 40 ns a particle.
+/// Writes the column of a particle field by field. A column built as a value is assembled on the stack and
+/// loaded again directly after it was stored, which takes up to 40 ns a particle.
 #[inline(always)]
 fn derive<X, T: Term<X>>(
     terms: &T,

@@ -43,8 +43,8 @@ impl Tait {
         self.sound_speed * self.sound_speed * self.density / f64::from(self.gamma)
     }
 
-    /// The enthalpy w = ∫ dp/ρ from ⁰ρ on = ⁰c² \[(ρ/⁰ρ)^(γ−1) − 1\]/(γ−1) \[J/kg\], for γ > 1: in a
-    /// fluid at rest ∇w is the gravity, whatever the density.
+    /// The enthalpy w = ∫ dp/ρ from ⁰ρ = ⁰c² \[(ρ/⁰ρ)^(γ−1) − 1\]/(γ−1) \[J/kg\], for γ > 1. In a fluid at
+    /// rest ∇w is gravity, at any density.
     #[inline(always)]
     pub fn enthalpy(&self, density: f64) -> f64 {
         let scale = self.sound_speed * self.sound_speed / f64::from(self.gamma - 1);
@@ -59,7 +59,7 @@ impl EquationOfState for Tait {
         V::all(self.background) + V::all(self.stiffness()) * compression
     }
 
-    /// The least pressure that a density has is ⁰p − K; below it, almost nothing is left.
+    /// The least pressure with a density is ⁰p − K, where the density is almost 0.
     fn density(&self, pressure: f64) -> f64 {
         let ratio = (pressure - self.background) / self.stiffness() + 1.0;
         // Not `max`, which would make a number of NaN.
@@ -106,12 +106,12 @@ impl EquationOfState for Linear {
     }
 }
 
-/// xⁿ by squaring, n ≥ 0. Not `powi`: its order of multiplication, and so its bits, change with what
-/// the compiler knows about n where it is inlined.
+/// xⁿ by squaring, n ≥ 0. Not `powi`: the compiler changes its order of multiplication, and so its bits,
+/// where n is known at compile time.
 #[inline(always)]
 fn power<V: Lane>(x: V, n: i32) -> V {
     let (x2, x4) = (x * x, (x * x) * (x * x));
-    // Without a loop for the powers of water: the loop takes 3 % of the time step of a dam break.
+    // The powers of water without a loop, which would take 3 % of the time step of a dam break.
     match n {
         3 => return x * x2,
         6 => return x2 * x4,
@@ -129,8 +129,8 @@ fn power<V: Lane>(x: V, n: i32) -> V {
     product
 }
 
-/// The n-th root of x > 0 by Newton's method, n ≥ 1: of + − × ÷ alone, so with the same bits on every
-/// machine, which `powf` does not promise.
+/// The n-th root of x > 0 by Newton's method, n ≥ 1, with + − × ÷ only: the bits are equal on every machine,
+/// which `powf` does not guarantee.
 fn root(x: f64, n: i32) -> f64 {
     // Not below the root (Bernoulli), from where every step of Newton's leads down, as xⁿ is convex.
     let mut root = 1.0 + (x - 1.0) / f64::from(n);

@@ -1,11 +1,11 @@
-//! Inverses of small matrices, each in a few lines: those of nalgebra are compiled with code for any size.
+//! Inverses of small matrices. The inverses of nalgebra are compiled with code for any size.
 
 use nalgebra::{Matrix2, Matrix3};
 
 use crate::numbers::Symmetric;
 
-/// Determinant from which the moments of a neighbourhood count as regular, where they are scaled to 1 inside
-/// a body of particles; where neighbours lie on a line, it is 0.
+/// Least determinant of regular moments, scaled so that it is 1 inside a body of particles; 0 if the
+/// neighbours are on one line.
 pub const LEAST_DETERMINANT: f64 = 1e-3;
 
 /// The inverse of a matrix, not finite where the determinant is 0.
@@ -25,7 +25,7 @@ impl<M> Inverse<M> {
     }
 }
 
-/// Of a symmetric matrix of two rows.
+/// Inverse of a symmetric 2 × 2 matrix.
 #[inline(always)]
 pub fn of_symmetric(m: Symmetric) -> Inverse<Symmetric> {
     let Symmetric { xx, yy, xy } = m;
@@ -34,14 +34,14 @@ pub fn of_symmetric(m: Symmetric) -> Inverse<Symmetric> {
     Inverse { determinant, matrix }
 }
 
-/// Of a matrix of two rows.
+/// Inverse of a 2 × 2 matrix.
 pub fn of_two(m: &Matrix2<f64>) -> Inverse<Matrix2<f64>> {
     let determinant = m.m11 * m.m22 - m.m21 * m.m12;
     let matrix = Matrix2::new(m.m22, -m.m12, -m.m21, m.m11).map(|x| x / determinant);
     Inverse { determinant, matrix }
 }
 
-/// Of a matrix of three rows.
+/// Inverse of a 3 × 3 matrix.
 #[inline]
 pub fn of_three(m: &Matrix3<f64>) -> Inverse<Matrix3<f64>> {
     let [[a, d, g], [b, e, h], [c, f, i]] = m.data.0;

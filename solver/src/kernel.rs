@@ -175,7 +175,7 @@ mod tests {
         }
     }
 
-    /// ∫ W dA = 1 by Simpson's rule, and the gradient's moment ∫ F x² dA = 1 that follows from it.
+    /// ∫ W dA = 1 by Simpson's rule, and the moment of the gradient, ∫ F x² dA = 1.
     fn check_normalisation<K: Kernel>() {
         let kernel = Smoothing::<K>::new(1.3);
         let (n, two_pi) = (6000, 2.0 * std::f64::consts::PI);

@@ -1,7 +1,7 @@
 //! A compact solver for weakly compressible SPH in two dimensions, composed at compile time.
 //!
-//! The model is that of a paper on fluids and elastic solids by SPH; equation numbers in parentheses are
-//! those of the paper. All quantities are in SI units; masses and volumes are per unit depth.
+//! The model is from a paper on fluids and elastic solids by SPH; numbers in parentheses are equations of
+//! this paper. All quantities are in SI units; masses and volumes are per unit depth.
 //!
 //! | Symbol | Meaning |
 //! |---|---|

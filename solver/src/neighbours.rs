@@ -1,19 +1,18 @@
-//! Neighbour lists (Verlet lists): one list of column indices a group of eight particles that are stored one
-//! after another, kept for as long as no two particles have come nearer to each other by more than the skin.
+//! Neighbour lists (Verlet lists): one list of column indices for each group of eight particles stored in
+//! sequence. Lists are kept until two particles have approached each other by more than the skin.
 //!
-//! Particles are stored in tiles 64 spacings wide, so that what a group sees is in the nearest caches, and
-//! in a tile along strips two spacings high, every other strip backwards, so that a group is compact: four by
-//! two on a square lattice, where 60 columns are within three spacings of one of the eight, 28 others of
-//! each.
+//! Particles are stored in tiles 64 spacings wide, so that the neighbours of a group are in the nearest
+//! caches. In a tile they follow strips two spacings high, every other strip backwards, so that a group is
+//! compact: four by two on a square lattice, where 60 columns are within three spacings of the group and 28
+//! within three spacings of one particle.
 //!
-//! Column c < n is particle c; then come images (periodic copies, mirror particles), and last the sentinel,
-//! which stands for the particles that a group lacks. Two particles farther apart than support + skin when
-//! the lists were built, and no nearer by more than the skin since, are still outside each other's support:
-//! the criterion is exact.
+//! Column c < n is particle c; then follow images (periodic copies, mirror particles), and last the sentinel,
+//! which fills the empty lanes of a group. Two particles farther apart than support + skin when the lists
+//! were built, and since then no nearer by more than the skin, are outside each other's support: the
+//! criterion is exact.
 //!
-//! A list begins with the members of its group, then come those inside the support of any of them. The others
-//! stand together at its end, where a pair sweep skips what is outside of all, so that a wide skin costs
-//! little.
+//! A list begins with the members of its group, then the columns inside the support of any member. Columns
+//! outside every support are at its end, where a pair sweep skips them, so that a wide skin costs little.
 
 use std::{mem::take, ops::Range};
 
@@ -27,10 +26,10 @@ use crate::{
     walls::{Map, PlaneWall, corners},
 };
 
-/// Lists a unit of parallel work; fixed, so that nothing depends on the number of threads.
+/// Particles in a unit of parallel work; fixed, so that nothing depends on the number of threads.
 pub(crate) const BLOCK: usize = 512;
 
-/// An extra column: which earlier column it copies, a particle or an image, and by which map.
+/// An extra column: a copy of an earlier column (a particle or an image) by a map.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Image {
     pub source: u32,
@@ -54,8 +53,8 @@ pub(crate) struct Block {
     pub pairs: u64,
 }
 
-/// Particles that share a list: as many as the widest registers take, whatever the processor has, so that
-/// bits do not depend on it.
+/// Particles that share a list: the number of lanes of the widest registers, on every processor, so that bits
+/// do not depend on the processor.
 pub const GROUP: usize = MOST;
 
 impl Block {
@@ -89,8 +88,8 @@ struct Grid {
 }
 
 impl Grid {
-    /// Covers the points and a margin before the first, by cells of this size; at most about two cells a
-    /// point, however far apart they are.
+    /// Covers the points, and a margin before the first, by cells of this size. Cells are enlarged until
+    /// there are at most about two a point.
     fn new(points: &[Vector2<f64>], size_of_cell: f64, margin: f64) -> Self {
         let low = points.iter().fold(points[0], |a, p| a.inf(p)).map(|low| low - margin);
         let size = points.iter().fold(points[0], |a, p| a.sup(p)) - low;
@@ -130,7 +129,7 @@ impl Grid {
     }
 }
 
-/// The neighbour lists of a scene and what is needed to rebuild them without allocating.
+/// The neighbour lists of a scene, and buffers to rebuild them without allocating.
 #[derive(Debug, Default)]
 pub(crate) struct Neighbours {
     support: f64,
@@ -143,15 +142,15 @@ pub(crate) struct Neighbours {
     pub lists: Lists,
     /// Lists of the wall particles.
     pub wall_lists: Lists,
-    /// From each wall particle to the place whose neighbours it lists \[m\]; empty if to itself.
+    /// From each wall particle to the centre of its list \[m\]; empty if the particle itself is the centre.
     pub feet: Vec<Vector2<f64>>,
-    /// Where the particles were when the lists were built.
+    /// Positions of the particles when the lists were built.
     pub built_at: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
     grid: Grid,
     cell_starts: Vec<u32>,
-    /// Columns in the order of cells, and (while lists are built) where they are; then something that pads
-    /// the last lanes.
+    /// Columns in the order of cells and, while lists are built, their positions; then padding for the last
+    /// lanes.
     cell_columns: Vec<u32>,
     cell_points: Vec<Vector2<f64>>,
 }
@@ -162,12 +161,12 @@ pub(crate) struct Reach {
     pub support: f64,
     /// How far lists reach beyond the support.
     pub skin: f64,
-    /// About how far particles stand apart.
+    /// Approximate distance between nearest particles.
     pub spacing: f64,
 }
 
 impl Neighbours {
-    /// Lists that are empty until they are built.
+    /// Empty lists.
     pub fn new(reach: Reach, domain: Domain, mirrors: &[PlaneWall]) -> Self {
         let Reach { support, skin, spacing } = reach;
         let radius = support + skin;
@@ -222,8 +221,8 @@ impl Neighbours {
         self.points.extend(positions);
     }
 
-    /// The order along strips two spacings high, every other one backwards: the same for any order that the
-    /// placed particles came in.
+    /// The order along strips two spacings high, every other one backwards. The result does not depend on the
+    /// order of the placed particles.
     pub fn order(&mut self, order: &mut Vec<u32>) {
         let grid = Grid::new(&self.points, 2.0 * self.spacing, 0.5 * self.spacing);
         let [width, height] = grid.cells;
@@ -332,8 +331,8 @@ impl Neighbours {
         Lists { of, parallel, ..lists }
     }
 
-    /// Finds the columns nearer than the radius to the box around these particles, in the order of cells,
-    /// then of columns. Returns how many they are.
+    /// Finds the columns nearer than the radius to the bounding box of these particles, in the order of
+    /// cells, then of columns. Returns their number.
     #[inline(always)]
     fn find<V: Lane>(&self, found: &mut Vec<u32>, of: Range<usize>) -> usize {
         const { assert!(GROUP.is_multiple_of(V::LANES)) };
@@ -353,7 +352,7 @@ impl Neighbours {
             let columns = self.cell_columns[run].chunks_exact(V::LANES);
             for (k, (points, columns)) in points.zip(columns).enumerate() {
                 let place = gather_vector::<V>(|lane| points[lane]);
-                // Rounded as the distance to a particle is, and monotonic: never above it.
+                // Rounded like the distance to a particle, and monotonic: never above it.
                 let x = (low.x - place.x).at_least(place.x - high.x).positive();
                 let y = (low.y - place.y).at_least(place.y - high.y).positive();
                 // The last lanes may be of the next cells.
@@ -376,7 +375,7 @@ struct FillLists<'a> {
 
 /// The particles of a group, and the squares of the reaches of their lists.
 struct Seen<V> {
-    /// As many of these as the lanes of a group need.
+    /// One entry for each lane of a group.
     own: [Vector2<V>; GROUP],
     reaches2: [f64; 2],
 }
@@ -384,7 +383,7 @@ struct Seen<V> {
 impl<V: Lane> Seen<V> {
     #[inline(always)]
     fn new(members: &[Vector2<f64>], reaches2: [f64; 2]) -> Self {
-        // No point is near one that is not a number.
+        // No point is near a place that is NaN.
         let nowhere = Vector2::repeat(f64::NAN);
         let own = |k: usize| members.get(k).copied().unwrap_or(nowhere);
         let mut all = [nowhere.spread::<V>(); GROUP];
@@ -394,7 +393,7 @@ impl<V: Lane> Seen<V> {
         Self { own: all, reaches2 }
     }
 
-    /// Which of the particles have this point within each reach, bit by bit.
+    /// Bit k of each number: particle k has the point within this reach.
     #[inline(always)]
     fn near(&self, point: Vector2<f64>) -> [usize; 2] {
         let point = point.spread::<V>();
@@ -425,7 +424,7 @@ impl OnLanes for FillLists<'_> {
         for first in of.clone().step_by(GROUP) {
             let members = first..(first + GROUP).min(of.end);
             let count = neighbours.find::<V>(found, members.clone());
-            // Not a closure, which is not inlined, see the profiles in `Cargo.toml`.
+            // Not a closure: closures are not inlined here, see the profiles in `Cargo.toml`.
             let own = Seen::<V>::new(&points[members.clone()], [support2, radius2]);
             if of.end <= up_to {
                 for (lane, member) in members.clone().enumerate() {
@@ -444,7 +443,7 @@ impl OnLanes for FillLists<'_> {
                     continue;
                 }
                 let [inside, listed] = own.near(points[k]);
-                // Always written, kept if it is to be: no branch to mispredict.
+                // Always written, counted only if kept: no branch to mispredict.
                 (columns[end], beyond[far]) = (column, column);
                 end += usize::from(inside != 0);
                 far += usize::from(inside == 0 && listed != 0);
@@ -469,15 +468,15 @@ mod tests {
         Vector2::new((random() + 0.5) * width, (random() + 0.5) * height)
     }
 
-    /// An entry of a list: which particle, and the position of it or of its image.
+    /// An entry of a list: the particle, and the position of the particle or of its image.
     type Listed = (u32, Vector2<f64>);
 
     fn horizontal(y: f64, up: f64) -> PlaneWall {
         PlaneWall::new(Vector2::new(0.0, y), Vector2::new(0.0, up), Vector2::zeros())
     }
 
-    /// All that particle i can see within `radius`, by trying every image. Shifts of two periods
-    /// are tried as well, to find out that one is enough.
+    /// All neighbours of particle i within `radius`, found by trying every image; shifts of two periods are
+    /// included to show that one period is enough.
     fn brute_force(
         points: &[Vector2<f64>],
         i: usize,
@@ -514,7 +513,7 @@ mod tests {
         seen
     }
 
-    /// The neighbours of particle `own`, the k-th of these blocks, with those of its group.
+    /// The neighbours of particle `own`, number k of these blocks, and of its group.
     fn listed(
         neighbours: &Neighbours,
         blocks: &[Block],
@@ -556,7 +555,7 @@ mod tests {
         let n = points.len();
         let all: Vec<_> = (0..n).map(|i| brute_force(points, i, radius, domain, mirrors)).collect();
         let mut pairs = 0;
-        // The last ones are walls that see all, walls that see no walls, or not there.
+        // The last points are walls that list all columns, walls that list fluid only, or not walls.
         for (fluid, fluid_only) in [(n / 2, false), (n / 2, true), (n, false)] {
             neighbours.place(&mut points.iter().copied());
             neighbours.build(fluid, n - fluid, fluid_only, false);
@@ -605,7 +604,7 @@ mod tests {
         pairs
     }
 
-    /// On a processor with registers for four these are not the same program.
+    /// With four-lane registers this is other code.
     #[test]
     fn lists_are_the_same_in_portable_lanes() {
         let (mut random, domain) = (random(3), Domain::torus(4.0, 3.0));
@@ -660,7 +659,7 @@ mod tests {
     fn lists_reach_across_a_period_of_just_two_radii_and_past_its_edges() {
         let mut random = random(9);
         let domain = Domain::torus(2.0, 2.0);
-        // Between two wraps particles may stand outside of the period by a few displacements.
+        // Between two wraps particles may be outside the period by a few displacements.
         let outside = Vector2::repeat(0.2);
         let points: Vec<_> = (0..150).map(|_| point(&mut random, [2.4, 2.4]) - outside).collect();
         check(&points, 1.0, &domain, &[]);
@@ -687,7 +686,7 @@ mod tests {
         let one = [Vector2::new(0.5, 0.1)];
         assert_eq!(check(&one, 0.4, &open, &[]), 0);
         assert_eq!(check(&one, 0.4, &Domain::torus(0.8, 0.8), &[]), 0);
-        // Its own ghost is its only neighbour.
+        // Its ghost is its only neighbour.
         assert_eq!(check(&one, 0.4, &open, &[horizontal(0.0, 1.0)]), 1);
         let apart = [Vector2::zeros(), Vector2::new(1e6, -1e6)];
         assert_eq!(check(&apart, 2.0, &open, &[]), 0);
@@ -767,7 +766,7 @@ mod tests {
         [high - low, 0.5 * (low + high)]
     }
 
-    /// A lattice of a tile and a half: groups of four by two, each beside the one before it, which list 60
+    /// A lattice of one and a half tiles: groups are four by two, each next to the previous one, and list 60
     /// particles within three spacings.
     #[test]
     fn groups_of_a_lattice_are_four_by_two_and_side_by_side() {

@@ -30,12 +30,11 @@ pub trait Numbers: Copy + Default + PartialEq + Send + Sync + std::fmt::Debug + 
     fn advanced(self, dt: f64, rate: Self) -> Self;
     /// Whether every number is finite.
     fn is_finite(&self) -> bool;
-    /// The deviatoric stress of a particle with these extra fields, if it is one of a solid \[Pa\].
+    /// The deviatoric stress of a solid particle with these extra fields \[Pa\]; `None` for a fluid.
     fn stress(&self) -> Option<Symmetric> {
         None
     }
-    /// Extra fields of a particle of a solid with this deviatoric stress \[Pa\]; defaults if it is of no
-    /// solid.
+    /// Extra fields of a solid particle with this deviatoric stress \[Pa\]; the default for a fluid.
     fn of_stress(_: Symmetric) -> Self {
         Self::default()
     }

@@ -20,7 +20,7 @@ pub fn for_each<T>(
     });
 }
 
-/// Calls `work` `count` times, on as many threads as have time.
+/// Calls `work` `count` times, on up to `count` threads.
 fn on_threads(count: usize, work: &(dyn Fn() + Sync)) {
     if count > 1 {
         rayon::join(|| on_threads(count / 2, work), || on_threads(count - count / 2, work));

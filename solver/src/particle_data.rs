@@ -54,7 +54,7 @@ pub struct InvalidState {
     pub particle: u32,
     /// The quantity.
     pub field: &'static str,
-    /// Its value, of a vector the length.
+    /// Its value; of a vector, the length.
     pub value: f64,
 }
 
@@ -80,11 +80,11 @@ impl Default for Limits {
 /// A call of [`crate::Stepper::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Interval {
-    /// Where it began \[s\].
+    /// Its start \[s\].
     pub start: f64,
-    /// Where it ends \[s\].
+    /// Its end \[s\].
     pub until: f64,
-    /// Its largest step \[s\].
+    /// Largest step \[s\].
     pub dt_max: f64,
 }
 
@@ -97,12 +97,12 @@ pub struct Progress {
     pub dt: f64,
     /// The work done so far.
     pub work: Work,
-    /// Half of what two particles came nearer to each other at most since the neighbour lists were built, at
-    /// the start of the last step \[m\].
+    /// Half of the largest approach of two particles since the neighbour lists were built, at the start of
+    /// the last step \[m\].
     pub last_approach: f64,
     /// Whether the lists were built inside a step, for particles neither sorted nor wrapped.
     pub built_inside_a_step: bool,
-    /// The present call of [`crate::Stepper::advance`]; zeros once it has reached its end.
+    /// The present call of [`crate::Stepper::advance`]; zeros after its end.
     pub call: Interval,
     /// Steps that this call has made.
     pub made: u64,
@@ -117,34 +117,34 @@ pub struct PreviousStep<X> {
     pub rate: (f64, X),
 }
 
-/// Everything that determines the rest of a run, as data: [`crate::Stepper::restore`] continues it with the
-/// same bits as if it had not been interrupted.
+/// The complete state of a run as data: [`crate::Stepper::restore`] continues from it with the bits of an
+/// uninterrupted run.
 ///
-/// Sums are added in the order of the neighbour lists, so the order of storage belongs to it, and the
-/// places that the lists were built at.
+/// Sums are added in the order of the neighbour lists, so the checkpoint includes the order of storage and
+/// the positions at which the lists were built.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint<X = ()> {
     /// Time, work and the age of the neighbour lists.
     pub progress: Progress,
-    /// How far the velocities are behind the rest \[s\]; 0 before the first step, and of integrators whose
-    /// quantities all have the same time.
+    /// Lag of the velocities behind the other quantities \[s\]; 0 before the first step, and for integrators
+    /// with all quantities at one time.
     pub lag: f64,
-    /// Particles as they are stored, with their numbers in the scene.
+    /// Particles in the order of storage, with their numbers in the scene.
     pub particles: Vec<(u32, Particle<X>)>,
-    /// Where each was when the neighbour lists were built \[m\].
+    /// Position of each particle when the neighbour lists were built \[m\].
     pub built_at: Vec<Vector2<f64>>,
     /// Earlier steps of the first particles; empty for most integrators.
     pub past: Vec<PreviousStep<X>>,
 }
 
 impl<X: Numbers> Checkpoint<X> {
-    /// Checks that it is one of an integrator with the memory of this one; else says what is wrong.
+    /// Checks that the checkpoint belongs to an integrator with the memory of `of`; else returns the reason.
     pub(crate) fn check_memory(&self, of: &Self) -> Result<(), &'static str> {
         let is_whole = (self.lag, self.past.len()) == (of.lag, of.past.len());
         if is_whole { Ok(()) } else { Err("memory of another integrator") }
     }
 
-    /// Checks that it is stored in the way in which a simulation stores it; else says what is wrong.
+    /// Checks that a simulation can have stored this checkpoint; else returns the reason.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         let Self { progress, lag, particles, built_at, past } = self;
         let ids: std::collections::BTreeSet<u32> = particles.iter().map(|(id, _)| *id).collect();
@@ -199,7 +199,7 @@ impl BlockExtrema {
         within_limits: true,
     };
 
-    /// The extremes of both. Exact, so the order does not matter. A number that is NaN is beyond limits.
+    /// The extremes of both. Exact, so the order does not matter. NaN counts as beyond the limits.
     #[inline(always)]
     fn and(self, other: Self) -> Self {
         let larger = |one: f64, two: f64| if two > one { two } else { one };
@@ -221,12 +221,13 @@ impl BlockExtrema {
 
 /// Buffers with which pair sweeps are prepared.
 pub(crate) struct SweepBuffers<X> {
-    /// Of each block of particles whose columns were filled, and of the particles whose columns were not.
+    /// Extremes of each block of particles whose columns were filled, then of the particles whose columns
+    /// were kept.
     pub extents: Vec<BlockExtrema>,
-    /// Of wall particles that extrapolate and do not move: their columns are filled once after lists are
-    /// built.
+    /// Extremes of wall particles that extrapolate and do not move: their columns are filled once after each
+    /// build of lists.
     pub still: Option<BlockExtrema>,
-    /// Wall particles with the velocities and densities that they extrapolate; empty where they do not.
+    /// Wall particles with extrapolated velocities and densities; empty for other walls.
     pub extrapolated: Vec<Evolved<X>>,
 }
 
@@ -239,7 +240,7 @@ impl<X> Default for SweepBuffers<X> {
 /// The particles of a simulation, their neighbour lists, the time, and the work done.
 #[derive(Default)]
 pub struct ParticleData<X = ()> {
-    /// Empty while a step is under way, which has it.
+    /// Empty during a step, which owns the state.
     pub(crate) state: Vec<Evolved<X>>,
     pub(crate) fixed: Vec<Fixed>,
     pub(crate) counts: Counts,
@@ -249,7 +250,7 @@ pub struct ParticleData<X = ()> {
     pub(crate) extrapolates: bool,
     pub(crate) neighbours: Neighbours,
     pub(crate) limits: Limits,
-    /// Half of what particles may come nearer to each other while neighbour lists stay exact \[m\].
+    /// Half of the largest approach of two particles with exact neighbour lists \[m\].
     pub(crate) slack: f64,
     /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,
     /// since images are one period away, on either side.
@@ -265,7 +266,7 @@ pub struct ParticleData<X = ()> {
 }
 
 impl<X: Numbers> ParticleData<X> {
-    /// Puts particles in this order, with their numbers in the scene, in place of those that are there.
+    /// Replaces the particles by these, with their numbers in the scene, in this order of storage.
     pub(crate) fn put(&mut self, particles: &[(u32, Particle<X>)]) {
         let count = |role| particles.iter().filter(|(_, p)| p.role == role).count();
         let evolved = |(_, p): &(u32, Particle<X>)| {
@@ -283,21 +284,20 @@ impl<X: Numbers> ParticleData<X> {
         self.counts.fluid
     }
 
-    /// Mass \[kg/m\] and state of the fluid particles as they are stored, without order; for observers
-    /// that sum.
+    /// Mass \[kg/m\] and state of the fluid particles in the order of storage, for observers that sum.
     pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
         let fluid = self.counts.fluid;
         self.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
     }
 
-    /// Mass \[kg/m\] and state of the wall particles with an evolving density, likewise.
+    /// Mass \[kg/m\] and state of the wall particles with an evolving density, in the order of storage.
     pub fn walls(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
         let range = self.neighbours.wall_lists.of.clone();
         self.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
     }
 
-    /// For each fluid particle as it is stored what may be its neighbours, itself not: places in
-    /// [`crate::Stepper::plain_columns`].
+    /// For each fluid particle, in the order of storage, the possible neighbours without itself, as indices
+    /// into [`crate::Stepper::plain_columns`].
     pub fn lists(&self) -> impl Iterator<Item = impl Iterator<Item = usize>> {
         let Lists { of, blocks, .. } = &self.neighbours.lists;
         of.clone().map(|k| {
@@ -316,7 +316,7 @@ impl<X: Numbers> ParticleData<X> {
         particles
     }
 
-    /// All particles as they are stored, with their numbers in the scene.
+    /// All particles in the order of storage, with their numbers in the scene.
     fn stored(&self) -> impl Iterator<Item = (u32, Particle<X>)> {
         self.fixed.iter().zip(&self.state).map(|(&Fixed { mass, id, role }, evolved)| {
             let Evolved { position, velocity, density, extra } = *evolved;
@@ -324,7 +324,7 @@ impl<X: Numbers> ParticleData<X> {
         })
     }
 
-    /// The moving particles as they are stored.
+    /// The moving particles in the order of storage.
     pub fn fluid_state(&self) -> &[Evolved<X>] {
         &self.state[..self.counts.fluid]
     }
@@ -334,14 +334,14 @@ impl<X: Numbers> ParticleData<X> {
         &mut self.state[..self.counts.fluid]
     }
 
-    /// The images as they follow the particles: which earlier column each copies, and by which map.
+    /// The images in the order of their columns: the earlier column that each copies, and the map.
     pub fn images(&self) -> impl ExactSizeIterator<Item = (usize, &Map)> {
         let Neighbours { images, maps, .. } = &self.neighbours;
         images.iter().map(|image| (image.source as usize, &maps[image.map as usize]))
     }
 
-    /// Takes over the particles of a checkpoint, for which neighbour lists are to be built first; else
-    /// says what is wrong, and has changed nothing.
+    /// Takes the particles of a checkpoint. Neighbour lists must be built afterwards. An error is the reason;
+    /// nothing has changed then.
     pub(crate) fn replace(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
         from.check()?;
         let mut own = vec![None; self.fixed.len()];
@@ -355,8 +355,8 @@ impl<X: Numbers> ParticleData<X> {
         Ok(())
     }
 
-    /// Goes to a checkpoint of the same scene whose neighbour lists are those that there are; else says what
-    /// is wrong, and has changed nothing.
+    /// Goes to a checkpoint of this scene that has the present neighbour lists. An error is the reason;
+    /// nothing has changed then.
     pub fn resume(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str> {
         from.check()?;
         let ids = from.particles.iter().map(|(id, _)| *id);
@@ -397,8 +397,8 @@ impl<X: Numbers> ParticleData<X> {
             + self.neighbours.bytes()
     }
 
-    /// Puts fluid particles in order along strips, and all inside the period. `along` swaps whatever else is
-    /// in the order of the particles.
+    /// Sorts fluid particles along strips and wraps them into the period. `along` swaps other data in the
+    /// order of the particles.
     pub(crate) fn sort(&mut self, state: &mut [Evolved<X>], along: &mut dyn FnMut(usize, usize)) {
         self.enter(Phase::Sorting);
         for evolved in &mut *state {
@@ -427,7 +427,7 @@ impl<X: Numbers> ParticleData<X> {
         self.count_pairs(phase, self.neighbours.pairs());
     }
 
-    /// Counts pair sweeps that begin, over this many neighbours in all, which need not be those of the lists.
+    /// Counts pair sweeps over this total number of neighbours, which need not be the number in the lists.
     pub fn count_pairs(&mut self, phase: Phase, neighbours: u64) {
         self.enter(phase);
         self.progress.work.pair_interactions += neighbours;
@@ -450,7 +450,7 @@ impl<X: Numbers> ParticleData<X> {
         extent
     }
 
-    /// The extremes of a whole state from those of its parts.
+    /// Combines the extremes of all parts of a state; an error is the first invalid particle.
     pub(crate) fn check(
         &self,
         state: &[Evolved<X>],
@@ -460,9 +460,9 @@ impl<X: Numbers> ParticleData<X> {
         if extent.within_limits { Ok(extent) } else { Err(self.find_fault(state)) }
     }
 
-    /// Half of what two particles, or their images, have come nearer to each other at most since the lists
-    /// were built \[m\]: not more than half the diagonal of the box of all displacements and 0, for a period
-    /// moves all images alike; nor than the largest displacement, which a mirror turns.
+    /// Half of the largest approach of two particles, or of their images, since the lists were built \[m\].
+    /// It is at most half the diagonal of the bounding box of all displacements and 0, because a period moves
+    /// all images alike, and at most the largest displacement, which a mirror may turn.
     fn approach(&self, extent: BlockExtrema) -> f64 {
         let diagonal = (extent.high - extent.low).norm();
         let has_mirrors = self.neighbours.maps.iter().any(|map| !map.walls().is_empty());
@@ -471,12 +471,12 @@ impl<X: Numbers> ParticleData<X> {
 
     /// Whether neighbour lists are not exact any more.
     pub(crate) fn is_stale(&self, extent: BlockExtrema) -> bool {
-        // Negated, so that a slack that is not a number means "always".
+        // Negated, so that a slack of NaN means "always".
         !(self.approach(extent) <= self.slack)
     }
 
-    /// Whether neighbour lists will be stale within a step like the last one: better built now, in
-    /// order, than inside the step and again after it.
+    /// Whether neighbour lists will be stale after another step like the last one: it is cheaper to build
+    /// them now than inside the step and again after it.
     pub(crate) fn is_stale_soon(&mut self, extent: BlockExtrema) -> bool {
         let approach = self.approach(extent);
         let ahead = approach + (approach - self.progress.last_approach).max(0.0);
@@ -497,7 +497,7 @@ impl<X: Numbers> ParticleData<X> {
         first.expect("a state that is out of bounds has a particle that is")
     }
 
-    /// The first field that is beyond its limit. A NaN fails every comparison.
+    /// The first field beyond its limit. A NaN fails every comparison.
     #[inline(always)]
     fn excess(&self, evolved: &Evolved<X>, displacement2: f64) -> Option<(&'static str, f64)> {
         let ([least, most], speed2) = (self.limits.density, evolved.velocity.norm_squared());
@@ -512,10 +512,10 @@ impl<X: Numbers> ParticleData<X> {
     }
 }
 
-/// Permutes in place by swaps: entry i becomes what was at `order[i]`.
+/// Permutes in place by swaps: entry i becomes the former entry `order[i]`.
 fn apply_order(order: &mut [u32], swap: &mut dyn FnMut(usize, usize)) {
     for i in 0..order.len() {
-        // Where order[i] is now: entries before i were swapped away along the chain.
+        // The present place of entry order[i]: entries before i were swapped away along the chain.
         let mut from = order[i] as usize;
         while from < i {
             from = order[from] as usize;

@@ -1,7 +1,7 @@
 //! Particle data in three kinds: fixed, evolved, and derived (the column that a pair sweep reads).
 //!
-//! The integrator accesses [`Evolved`] only. A [`Column`] is derived from it before each sweep and is
-//! laid out for the pair sweep.
+//! The integrator advances [`Evolved`] only. A [`Column`] is derived from it before each sweep, laid out for
+//! the pair sweep.
 
 use nalgebra::Vector2;
 use touchstone_lanes::Lane;
@@ -19,7 +19,7 @@ pub enum Role {
     Interface,
 }
 
-/// One particle as a scene is given it and as it is read back.
+/// One particle, as input of a scene and as output.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Particle<X = ()> {
     /// Role in the scene.
@@ -150,8 +150,8 @@ impl Common {
     }
 }
 
-/// A particle as pair sweeps read it; `S` holds the numbers that the terms derive for its neighbours. Columns
-/// are packed: derived numbers take the memory that they need.
+/// A particle as read by pair sweeps; `S` holds the derived data of the terms. Columns are packed: they take
+/// no more memory than their numbers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Column<S = ()> {
@@ -161,14 +161,14 @@ pub struct Column<S = ()> {
     pub velocity: Vector2<f64>,
     /// Mass, density, volume.
     pub common: Common,
-    /// Derived numbers that terms ask for.
+    /// Derived data of the terms.
     pub derived: S,
 }
 
 const _: () = assert!(size_of::<Column<f64>>() == 64, "a fluid shows 64 bytes");
 
 impl<S: Numbers> Column<S> {
-    /// Stands in the lanes that a group lacks: so far away that every kernel is 0, without mass or volume.
+    /// Fills the empty lanes of a group: so far away that every kernel is 0, without mass or volume.
     pub(crate) fn sentinel() -> Self {
         let common = Common { mass: 0.0, density: 1.0, volume: 0.0 };
         let far = Vector2::new(1e100, 1e100);

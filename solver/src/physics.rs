@@ -4,8 +4,8 @@ use std::marker::PhantomData;
 
 use crate::{kernel::Kernel, numbers::Numbers, particles::Evolved, terms::Term, walls::Walls};
 
-/// The right-hand side of d(x, v, ρ, …)/dt as types. Schemes that differ in their integrator alone have the
-/// same physics, and share what is compiled for it.
+/// The right-hand side of d(x, v, ρ, …)/dt as types. Schemes that differ only in their integrator have one
+/// physics and share its compiled code.
 pub trait Physics: Sized + 'static {
     /// Fields that a particle integrates beyond x, v and ρ; `()` for a fluid.
     type Extra: Numbers;
@@ -19,9 +19,9 @@ pub trait Physics: Sized + 'static {
     type Walls: Walls<Self::Extra>;
 }
 
-/// A composition of types: the whole method, written as one line
-/// `Compose<Kernel, Forces, Drift, Walls, Integrator>`. What is not named here is not in the program.
-/// The physics of it does not depend on the integrator `I`; with `I` = `()` it is a physics and no scheme.
+/// The whole method as one line of types, `Compose<Kernel, Forces, Drift, Walls, Integrator>`. A term that is
+/// not named here is not in the program. The physics does not depend on the integrator `I`; with `I` = `()`
+/// the type is a physics and not a scheme.
 #[derive(Debug)]
 pub struct Compose<K, F, D, W, I = (), X = ()>(PhantomData<(K, F, D, W, I, X)>);
 
@@ -38,6 +38,6 @@ impl<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, I: 'static, X: Numbers> Phy
 /// The particles of the physics `P` as the integrator advances them.
 pub type State<P> = [Evolved<<P as Physics>::Extra>];
 
-/// The derived numbers of a particle in the physics `P`: those that the forces read, and the drift.
+/// The derived data of a particle in the physics `P`: of the forces and of the drift.
 pub type Derived<P> =
     <(<P as Physics>::Forces, <P as Physics>::Drift) as Term<<P as Physics>::Extra>>::Derived;

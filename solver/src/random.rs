@@ -1,4 +1,4 @@
-//! Random numbers of tests: SplitMix64, with the same numbers on every machine.
+//! Random numbers of tests: SplitMix64, equal on every machine.
 
 /// Numbers in -0.5..0.5, equally likely.
 pub fn random(seed: u64) -> impl FnMut() -> f64 {

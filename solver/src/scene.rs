@@ -16,7 +16,7 @@ use crate::{
     walls::{Extrapolation, PlaneWall, RIGHT_ANGLE, Walls},
 };
 
-/// Why a scene cannot be simulated: a number that is not allowed.
+/// An invalid scene: a number outside its allowed values.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[error("{of}: the {quantity} is {value}, but must be {allowed}")]
 pub struct SceneError {
@@ -65,10 +65,10 @@ pub struct Setting<X = ()> {
     /// The particles. Results list them in the same order.
     pub particles: Vec<Particle<X>>,
     /// From each wall particle, in the order of the particles, to its foot, the nearest point of the surface
-    /// \[m\]: for walls that read it, [`Extrapolation::FEET`]; else empty.
+    /// \[m\]; only for walls with [`Extrapolation::FEET`], else empty.
     pub feet: Vec<Vector2<f64>>,
-    /// Verlet skin: how far neighbour lists reach beyond the support radius \[m\]. With a larger skin the
-    /// lists are longer and are rebuilt less often.
+    /// Verlet skin: reach of neighbour lists beyond the support radius \[m\]. With a larger skin the lists
+    /// are longer and are rebuilt less often.
     pub skin: f64,
     /// Neighbour lists are rebuilt before two particles, having moved against each other, have each moved by
     /// more than this share of the skin. Up to 0.5 no neighbour is missed; larger values are wrong and exist
@@ -119,8 +119,8 @@ impl<X: Numbers> Setting<X> {
         }
     }
 
-    /// The particles of a sound scene, sorted, without lists, for a kernel with this support \[h\]. `reads`
-    /// says whether the walls read feet.
+    /// The particles of a valid scene, sorted, without lists, for a kernel with this support \[h\]. `reads`:
+    /// the walls use feet.
     fn ready(
         self,
         support: f64,
@@ -194,9 +194,9 @@ fn check_domain(domain: &Domain, support: f64, skin: f64) -> Checked {
     Ok(())
 }
 
-/// A normal that is not of length 1 would stretch the images, and a wall with a velocity along its normal
-/// would have to move its plane, which is not implemented. Two walls are parallel or make a right angle, a
-/// corner, for which there are images across both.
+/// A normal must have length 1, else images are stretched. A wall with a velocity along its normal would move
+/// its plane, which is not implemented. Two walls must be parallel or at a right angle (a corner, with images
+/// across both).
 fn check_walls(mirrors: &[PlaneWall]) -> Checked {
     for (wall, mirror) in mirrors.iter().enumerate() {
         let PlaneWall { point, normal, velocity, curvature } = mirror;
@@ -217,7 +217,7 @@ fn check_walls(mirrors: &[PlaneWall]) -> Checked {
     Ok(())
 }
 
-/// Walls that read feet need one for each wall particle, which lies off the surface; others need none.
+/// Walls that use feet need one for each wall particle, off the surface; other walls need none.
 fn check_feet(reads: bool, feet: &[Vector2<f64>], walls: usize) -> Checked {
     let (count, expected) = (feet.len(), if reads { walls } else { 0 });
     let on_surface =

@@ -15,10 +15,10 @@ use crate::{
 /// How stepping ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Outcome {
-    /// The time asked for was reached.
+    /// The requested time was reached.
     Reached,
-    /// A particle exceeded [`Setting::limits`](crate::scene::Setting::limits); the state that is left cannot
-    /// be used.
+    /// A particle exceeded [`Setting::limits`](crate::scene::Setting::limits); the remaining state is
+    /// unusable.
     Diverged(Divergence),
     /// The observer asked to stop.
     Stopped,
@@ -51,9 +51,9 @@ pub trait Observer<X: Numbers> {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
 
-    /// Whether [`Stepper::advance`] brings every quantity to the time at which it ends, for which a leapfrog
-    /// sums the forces once more. Without, its velocities lag behind by half a step, and what pair sweeps
-    /// read is that of the last step. The steps have the same bits either way.
+    /// Whether [`Stepper::advance`] brings every quantity to its final time, for which a leapfrog sums the
+    /// forces once more. Without, the velocities of a leapfrog lag by half a step, and pair sweeps read the
+    /// columns of the last step. The steps have equal bits either way.
     fn synchronises(&self) -> bool {
         true
     }
@@ -65,12 +65,12 @@ impl<X: Numbers> Observer<X> for () {
     }
 }
 
-/// A simulation without the type of its scheme, as a harness uses it: `&dyn Stepper<X>` is any simulation
-/// whose particles integrate the extra fields `X`.
+/// A simulation without the type of its scheme: `&dyn Stepper<X>` is any simulation of particles with the
+/// extra fields `X`.
 pub trait Stepper<X: Numbers> {
-    /// Its particles as they are stored, and their neighbour lists.
+    /// The particles in the order of storage, and their neighbour lists.
     fn data(&self) -> &ParticleData<X>;
-    /// Its particles, and [`ParticleData::watch`].
+    /// The particles, and [`ParticleData::watch`].
     fn data_mut(&mut self) -> &mut ParticleData<X>;
     /// Simulated time \[s\].
     fn time(&self) -> f64 {
@@ -88,13 +88,13 @@ pub trait Stepper<X: Numbers> {
     fn particles(&self) -> Vec<Particle<X>> {
         self.data().particles()
     }
-    /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then brings every
-    /// quantity to that time, unless the observer does without. The next step undoes that, so the times at
-    /// which a run is observed do not change it, but for the length of equal steps between them.
+    /// Steps to the time `until` \[s\] with equal steps of at most `dt_max` \[s\], then synchronises every
+    /// quantity to this time if the observer needs it. The next step reverts the synchronisation, so the
+    /// times of observation affect a run only through the length of equal steps between them.
     ///
     /// The time is computed from the start and the number of steps, so rounding errors do not accumulate.
-    /// After a stop, a call with the same two arguments makes the steps that the stop left undone, with the
-    /// bits of a run that was not stopped.
+    /// After a stop, a call with equal `until` and `dt_max` makes the remaining steps, with the bits of a run
+    /// without a stop.
     ///
     /// # Panics
     /// If `until` is earlier than the present time or not finite, or if `dt_max` is not above 0 or is so
@@ -106,33 +106,33 @@ pub trait Stepper<X: Numbers> {
     fn step(&mut self, dt: f64) -> Stepped;
     /// Brings every quantity to the same time, and refreshes the derived data, for [`Stepper::advance`].
     fn synchronise(&mut self) -> Stepped;
-    /// Everything that is needed to continue from here with bitwise equal results.
+    /// The complete state: a restored simulation continues with equal bits.
     fn checkpoint(&self) -> Checkpoint<X>;
-    /// Goes back or on to a [`Stepper::checkpoint`] of a simulation of the same scene: its particles
-    /// replace the present ones, and what follows has the bits of that simulation.
+    /// Goes to a [`Stepper::checkpoint`] of a simulation of this scene: its particles replace the present
+    /// ones, and later steps have the bits of that simulation.
     ///
     /// # Errors
-    /// The fault of a checkpoint that no simulation of this scheme can have made; nothing has changed then.
+    /// The reason, if no simulation of this scheme can have made the checkpoint; nothing has changed then.
     fn restore(&mut self, from: &Checkpoint<X>) -> Result<(), &'static str>;
     /// The kernel W(r) \[1/m²\] from r² \[m²\].
     fn weight(&self, r2: f64) -> f64;
-    /// The derived data of particles and of their images, as pair sweeps read them, after
-    /// [`Stepper::advance`] reached a time. With [`Stepper::weight`] they serve to interpolate a field.
+    /// The columns of particles and of their images without derived data, after [`Stepper::advance`] reached
+    /// a time. Together with [`Stepper::weight`] they interpolate a field.
     fn plain_columns(&self) -> Vec<Column>;
     /// Rates of each particle of [`ParticleData::fluid`] by all terms of the scene, after
     /// [`Stepper::advance`] reached a time: dv/dt by the forces, the other rates by the drift. dx/dt does
     /// not include v.
     fn total_rates(&self) -> Vec<Rate<X>>;
-    /// Rates of each particle of [`ParticleData::walls`] by the terms of the walls, likewise after
-    /// [`Stepper::advance`] reached a time; empty if they have none, or extrapolate.
+    /// Rates of each particle of [`ParticleData::walls`] by the terms of the walls, after
+    /// [`Stepper::advance`] reached a time; empty for walls without terms.
     fn wall_rates(&self) -> Vec<Rate<X>> {
         Vec::new()
     }
     /// Memory that the simulation occupies \[bytes\].
     fn bytes(&self) -> usize;
-    /// The simulation without the type by which it is known.
+    /// This simulation as a trait object.
     fn stepper(&mut self) -> &mut dyn Stepper<X>;
-    /// The energies that its forces derive from, if they do \[J/m\].
+    /// Potential energies of the forces \[J/m\]; `None` for forces without a potential.
     fn potential(&self) -> Option<Potential> {
         None
     }
@@ -145,9 +145,9 @@ pub struct Potential {
     pub compression: f64,
     /// Stored by the change of shape.
     pub shear: f64,
-    /// Stored by what resists modes that deform no particle.
+    /// Energy of the resistance to hourglass modes, which deform no particle.
     pub hourglass: f64,
-    /// Of contacts and of weight.
+    /// Energy of contacts and of weight.
     pub loads: f64,
 }
 
@@ -271,16 +271,16 @@ fn count_steps(start: f64, until: f64, dt_max: f64) -> u64 {
 }
 
 impl<S: Scheme> Simulation<S> {
-    /// The particles alone, with their neighbour lists, for a method that is none of [`Scheme`] and keeps
-    /// the lists, however far particles move.
+    /// The particles with their neighbour lists, for a method without a [`Scheme`] that keeps the lists at
+    /// any displacement.
     pub fn into_particles(self) -> ParticleData<S::Extra> {
         let mut data = *self.engine.data;
         data.reach2 = f64::MAX;
         data
     }
 
-    /// The forces and the drift, which may be changed between two calls of [`Stepper::advance`], for
-    /// example a body force that drives the flow. They are not part of a checkpoint.
+    /// Forces and drift, which may be changed between two calls of [`Stepper::advance`], for example a body
+    /// force that drives the flow. A checkpoint does not include them.
     pub fn terms_mut(&mut self) -> &mut (S::Forces, S::Drift) {
         &mut self.engine.equations.terms
     }

@@ -1,12 +1,11 @@
-//! The pair sweep, which takes most of the time of a run: each particle, in a lane of its own, sums over the
-//! neighbour list of its group in the order of this list, and its rates are passed to the integrator. A
-//! neighbour outside of its support adds an exact zero. Only its own data are written: there are no locks and
-//! no atomics, and results are bitwise equal for any number of threads and of lanes.
+//! The pair sweep, which takes most of the time of a run. Each particle, in a lane of its own, sums over the
+//! neighbour list of its group in the order of the list, and its result goes to the integrator. A neighbour
+//! outside the support adds an exact zero. A thread writes only data of its own particles: there are no locks
+//! and no atomics, and results are bitwise equal for any number of threads and lanes.
 //!
-//! A sweep writes the results of a few particles into a buffer, from which the integrator then updates them.
-//! So the loop over pairs depends only on the kernel, the terms and the columns (derived data), and is
-//! compiled once for each combination of these. Code that is compiled only once calls it through
-//! [`PairSweep`].
+//! A sweep writes the results of a few particles into a buffer, from which the integrator updates them. So
+//! the loop over pairs depends only on the kernel, the sum and the columns, and is compiled once for each
+//! combination. Code that is compiled only once calls it through [`PairSweep`].
 
 use std::ops::Range;
 
@@ -22,7 +21,8 @@ use crate::{
     terms::{Pair, PairSum},
 };
 
-/// Where cache lines begin. Elsewhere, which depends on who calls, a sweep takes up to half as long again.
+/// Aligned to a cache line. With other alignments, which depend on the caller, a sweep takes up to 1.5 times
+/// as long.
 #[repr(align(64))]
 struct Aligned<T>(T);
 
@@ -63,7 +63,7 @@ pub(crate) fn run<O, T: Send>(
     });
 }
 
-/// Compiled for itself, for it is long.
+/// Not inlined: its code is long.
 #[inline(never)]
 fn buffer<O: Copy + Default>() -> Aligned<[O; MANY]> {
     Aligned([O::default(); MANY])
@@ -138,9 +138,9 @@ impl<O: Copy + Default, K: Kernel, T: PairSum<S, O>, S: Numbers> PairSweep<O>
 /// data `D`.
 type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 
-/// The sums of some particles of a block. In a profile it is `with_registers_for_eight` or
-/// `with_registers_for_four` with this type (the search for neighbours is the same with its own); the
-/// portable form is inlined into its caller.
+/// The sums of some particles of a block. In a profile this is `with_registers_for_eight` or
+/// `with_registers_for_four` with this type (the search for neighbours has its own type); the portable form
+/// is inlined into its caller.
 struct Particles<'a, K, T: PairSum<S, O>, S, O> {
     sweep: &'a Sweep<'a, K, T, S>,
     block: &'a Block,
@@ -165,7 +165,8 @@ impl<K: Kernel, T: PairSum<S, O>, S: Numbers, O> OnLanes for Particles<'_, K, T,
                 let other = &columns[column as usize];
                 let r = position - other.position.spread::<V>();
                 let mut r2 = r.x * r.x + r.y * r.y;
-                // A particle is out of its own reach. Members stand first in a list: this is predicted.
+                // Moves a particle out of its own support. Members are first in a list: the branch is
+                // predicted.
                 let member = (column as usize).wrapping_sub(self.of.start + start);
                 if member < GROUP {
                     r2 += V::load(&APART[GROUP - member..]);
@@ -197,7 +198,7 @@ mod tests {
 
     const DX: f64 = 0.1;
 
-    /// Particles of a lattice that is out of order, with velocities and densities to match: all different.
+    /// Particles off a lattice, all with different velocities and densities.
     fn columns<T: Term<()>>(term: &T, side: usize) -> Vec<Column<T::Derived>> {
         let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let column = |k: usize| {
@@ -224,7 +225,7 @@ mod tests {
         neighbours
     }
 
-    /// Σ W in the place of the rate of the density: most terms have nothing of a particle with itself.
+    /// Σ W in place of dρ/dt: most terms are 0 for a particle with itself.
     #[derive(Clone)]
     struct Weights;
 
@@ -239,7 +240,7 @@ mod tests {
         }
     }
 
-    /// Nor is a particle that a group lacks a neighbour.
+    /// Empty lanes of a group are not neighbours either.
     #[test]
     fn no_particle_is_a_neighbour_of_itself() {
         let columns = columns(&Weights, 23);

@@ -18,7 +18,7 @@ const BLOCK: usize = 512;
 /// A body with the stored energy `L`, or several that do not touch each other.
 #[derive(Clone, Debug)]
 pub struct Body<L> {
-    /// Its reference.
+    /// The reference configuration.
     pub reference: Reference,
     moduli: Moduli,
     /// c \[Pa\].
@@ -32,7 +32,7 @@ pub struct Body<L> {
 }
 
 impl<L: Law> Body<L> {
-    /// Of this reference. `strength` is χ, see [`hourglass`].
+    /// A body without displacement. `strength` is χ, see [`hourglass`].
     pub fn new(reference: Reference, moduli: Moduli, strength: f64, parallel: bool) -> Self {
         let displacements = vec![Vector2::zeros(); reference.places.len()];
         let hourglass = hourglass(moduli.shear, strength, reference.gradient_factor());
@@ -61,7 +61,7 @@ impl<L: Law> Body<L> {
         });
     }
 
-    /// Takes over where particles are, and images with them.
+    /// Sets the displacements of particles and images from the state.
     fn displace(&mut self, state: &[Evolved<Symmetric>]) {
         let of = self.displacements.iter_mut().zip(&self.reference.places);
         for ((displacement, place), evolved) in of.zip(state) {
@@ -73,7 +73,7 @@ impl<L: Law> Body<L> {
         }
     }
 
-    /// Where particles and images are \[m\].
+    /// Positions of particles and images \[m\].
     pub fn positions(&self) -> impl Iterator<Item = Vector2<f64>> {
         self.reference.places.iter().zip(&self.displacements).map(|(place, u)| place + u)
     }

@@ -40,7 +40,7 @@ impl Kirchhoff {
     }
 }
 
-/// A displacement gradient, and what all laws compute from it.
+/// A displacement gradient, with quantities that all laws use.
 #[derive(Clone, Copy, Debug)]
 pub struct Strain {
     /// H = F − 1.
@@ -52,7 +52,7 @@ pub struct Strain {
 }
 
 impl Strain {
-    /// Of this displacement gradient.
+    /// The strain of this displacement gradient.
     #[inline(always)]
     pub fn new(gradient: Matrix2<f64>) -> Self {
         let h = &gradient;
@@ -68,13 +68,13 @@ impl Strain {
 
 /// A stored energy per reference volume, w(F).
 pub trait Law: Copy + Send + Sync + 'static {
-    /// Its name in settings and reports.
+    /// Name in settings and reports.
     const NAME: &'static str;
-    /// Its stored energy as an equation.
+    /// Stored energy as an equation.
     const ENERGY: &'static str;
     /// Its energies of compression and of shear \[J/m³\], whose sum is w.
     fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2];
-    /// τ = (∂w/∂F) Fᵀ \[Pa\]. NaN where a law has none, because the material is turned inside out.
+    /// τ = (∂w/∂F) Fᵀ \[Pa\]; NaN if the law has none, because the material is turned inside out.
     fn stress(moduli: &Moduli, strain: &Strain) -> Kirchhoff;
 }
 
@@ -85,7 +85,7 @@ fn artanh_over(z: f64) -> f64 {
     if z > 0.08 {
         return libm::atanh(z) / z;
     }
-    // The omitted rest is less than z¹⁴/15, 3e-17.
+    // The omitted rest is below z¹⁴/15, 3e-17.
     let z2 = z * z;
     let (z4, third) = (z2 * z2, 1.0 + z2 / 3.0);
     let far = 1.0 / 9.0 + z2 / 11.0 + z4 / 13.0;
@@ -99,8 +99,8 @@ fn ln_1p(x: f64) -> f64 {
     if z.abs() > 0.08 { libm::log1p(x) } else { 2.0 * z * artanh_over(z.abs()) }
 }
 
-/// w = K (J − 1 − ln J) + μ |dev ln V|² with V = b^½ (Hencky 1928): the pressure K(1/J − 1) is that of
-/// equation (12), and the strain is logarithmic.
+/// w = K (J − 1 − ln J) + μ |dev ln V|² with V = b^½ (Hencky 1928): the pressure K(1/J − 1) of equation (12)
+/// and a logarithmic strain.
 #[derive(Clone, Copy, Debug)]
 pub struct Hencky;
 
@@ -137,8 +137,8 @@ impl Law for Hencky {
     }
 }
 
-/// w = λ (tr E)²/2 + μ E:E with E = (FᵀF − 1)/2 and λ = K − 2μ/3. It softens in compression: for tests and
-/// as the outermost of the laws.
+/// w = λ (tr E)²/2 + μ E:E with E = (FᵀF − 1)/2 and λ = K − 2μ/3. It softens in compression; for tests, and
+/// as the extreme among the laws.
 #[derive(Clone, Copy, Debug)]
 pub struct SaintVenantKirchhoff;
 

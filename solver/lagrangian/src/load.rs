@@ -6,17 +6,17 @@ use touchstone_solver::{Evolved, Smoothing, Symmetric, WendlandC2};
 
 use crate::{law::Moduli, reference::Reference};
 
-/// Particles as loads see them.
+/// Particles as input of loads.
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded<'a> {
-    /// Where they are.
+    /// Present state.
     pub state: &'a [Evolved<Symmetric>],
-    /// Where they are without stress, and what does not change.
+    /// Reference configuration.
     pub reference: &'a Reference,
 }
 
 impl Loaded<'_> {
-    /// The vector from particle j to i, or to the nearest copy of it.
+    /// The vector from particle j, or its nearest periodic copy, to i.
     fn between(&self, i: usize, j: usize, place: impl Fn(usize) -> Vector2<f64>) -> Vector2<f64> {
         let mut r = place(i) - place(j);
         for axis in 0..2 {
@@ -68,8 +68,8 @@ impl Load for Weight {
     }
 }
 
-/// The stiffness of contact, k = (K + 4μ/3)/4 \[Pa\]: two faces that overlap by o push each other apart, with
-/// the force k o on what stands for the size s of a face at small o.
+/// The stiffness of contact, k = (K + 4μ/3)/4 \[Pa\]: two faces with a small overlap o repel each other with
+/// the force k o for each length s of a face.
 ///
 /// Two bodies that meet send fronts that rise at the rate 2 k/(ρ c_p dx), and a lattice carries waves of up
 /// to half its largest frequency, about c_p/dx, with little dispersion. A harder contact leaves energy in
@@ -81,16 +81,16 @@ pub fn contact_stiffness(moduli: &Moduli) -> f64 {
 /// Contact between the faces of bodies, also of a body with itself: without friction and attraction.
 ///
 /// The density of other faces at a face particle a is ψ_a = Σ_b (s_b/s) W(|x_a − x_b|/s), with sizes s_a and
-/// s_b, whose mean is s, and the kernel W, which reaches 2 s. Beside a straight row of particles at the
-/// distance d it is Ψ(d) on the mean. Along the row it varies so little that the pressure of faces that
-/// overlap by 5, 20 and 40 % of s varies by 0.7, 2 and 4 %: particles do not catch on each other. Where ψ
-/// exceeds Ψ(s), faces overlap by about o = e Ψ/|Ψ'| with e = ψ/Ψ(s) − 1, and the energy
+/// s_b, their mean s, and the kernel W with support 2 s. At the distance d from a straight row of particles
+/// its mean is Ψ(d). Along the row it varies little: the pressure of faces that overlap by 5, 20 and 40 % of
+/// s varies by 0.7, 2 and 4 %, so particles do not catch on each other. Where ψ exceeds Ψ(s), faces overlap
+/// by about o = e Ψ/|Ψ'| with e = ψ/Ψ(s) − 1, and the energy
 ///
 /// U = ½ k Σ_a s_a² (Ψ/Ψ')² (e_a²/2 + e_a³/6)
 ///
 /// is stored, half in each of two faces: k o²/2 at first, and steeper later, so that faces do not pass
-/// through each other. Its forces are central, so momenta are kept. Particles of one body that are nearer
-/// than twice the reach in the reference do not see each other: their distance is the business of the stress.
+/// through each other. The forces are central, so momenta are conserved. Particles of one body that are
+/// nearer than twice the reach in the reference have no contact: the stress acts between them.
 #[derive(Clone, Copy, Debug)]
 pub struct BetweenFaces {
     /// k \[Pa\].
@@ -100,10 +100,10 @@ pub struct BetweenFaces {
     row: [f64; 2],
 }
 
-/// Distance at which faces see each other over the size of their particles.
+/// Reach of contact over the size of the particles.
 const REACH: f64 = 2.0;
 
-/// Two particles that see each other.
+/// Two particles in contact reach.
 struct Seen {
     who: [usize; 2],
     /// From the second to the first \[m\].
@@ -114,7 +114,7 @@ struct Seen {
 
 /// Ψ(d) and −Ψ'(d) of a straight row of particles at the distance d, in units of their size.
 fn row(kernel: &Smoothing<WendlandC2>, d: f64) -> [f64; 2] {
-    // The mean over places along the row, by a sum that is exact to 1e-6: the kernel has two derivatives.
+    // The mean over positions along the row, by a sum that is exact to 1e-6: the kernel has two derivatives.
     let across = (-200..200).map(|k| (f64::from(k) + 0.5) * 0.01);
     across.fold([0.0; 2], |[seen, slope], x| {
         let r2 = d * d + x * x;
@@ -123,7 +123,7 @@ fn row(kernel: &Smoothing<WendlandC2>, d: f64) -> [f64; 2] {
 }
 
 impl BetweenFaces {
-    /// Of this stiffness \[Pa\], see [`contact_stiffness`].
+    /// Contact of this stiffness \[Pa\], see [`contact_stiffness`].
     pub fn new(stiffness: f64) -> Self {
         let kernel = Smoothing::<WendlandC2>::new(1.0);
         Self { stiffness, kernel, row: row(&kernel, 1.0) }
@@ -138,13 +138,13 @@ impl BetweenFaces {
     }
 
     /// The longest stable step while bodies press against each other with this pressure \[Pa\] \[s\], from
-    /// that of the lattice that is compressed by it; an estimate, which a test finds within 3 %. The
-    /// largest eigenvalue of a sum is at most the sum of the largest ones, ω² = ω_l² + λ/(ρ s²), and that
-    /// of the second derivatives of U at two straight rows is at most
+    /// the limit of the compressed lattice; an estimate, which a test confirms within 3 %. The largest
+    /// eigenvalue of a sum is at most the sum of the largest ones, ω² = ω_l² + λ/(ρ s²). For the second
+    /// derivatives of U at two straight rows it is at most
     ///
     /// λ = ½ k (Ψ/Ψ')² ((1 + e)(|Σ ∇W| + Σ |∇W|)² + 4 (e + e²/2) Σ |∇∇W|)/Ψ²
     ///
-    /// by the norms of their rows (Gershgorin), with sums over the particles that one particle sees.
+    /// by the norms of their rows (Gershgorin), with sums over the particles in reach of one particle.
     pub fn step_limit(&self, of_lattice: f64, density: f64, size: f64, pressure: f64) -> f64 {
         // Nearer than 0.4 sizes the pressure hardly rises any more.
         let halve = |[near, far]: [f64; 2], _| {
@@ -173,12 +173,12 @@ impl BetweenFaces {
         2.0 / (4.0 / (of_lattice * of_lattice) + stiffness / (density * size * size)).sqrt()
     }
 
-    /// All that see each other, in an order that depends on the state alone.
+    /// All pairs in contact reach, in an order that depends on the state alone.
     fn seen(&self, on: &Loaded) -> Vec<Seen> {
         let Reference { domain, sizes, faces, .. } = on.reference;
         let axis = usize::from(domain.period[0].is_some());
         let reach = REACH * sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
-        // Where the other axis is periodic, a copy may be near although the particle is not.
+        // Where the other axis is periodic, a copy may be near even if the particle is not.
         let aside = if domain.period[1 - axis].is_some() { f64::INFINITY } else { reach };
         let place = |i: &u32| (on.state[*i as usize].position, *i as usize);
         let mut sorted: Vec<(Vector2<f64>, usize)> = faces.iter().map(place).collect();

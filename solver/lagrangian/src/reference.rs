@@ -1,5 +1,5 @@
-//! The reference configuration: who the neighbours of a particle are, with which weight, and what inverts
-//! the moments of its neighbourhood. It is found once, and nothing of it changes.
+//! The reference configuration: neighbours of each particle, their weights, and the inverse of the moments.
+//! Computed once, then constant.
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_lanes::LANES;
@@ -10,10 +10,10 @@ use touchstone_solver::{
     walls::Map,
 };
 
-/// An image of a particle, or of an image of it: mirrored at a wall, or a period away.
+/// An image of a particle or of an earlier image: mirrored at a wall, or a period away.
 #[derive(Clone, Copy, Debug)]
 pub struct Image {
-    /// The particle or the earlier image that it follows.
+    /// The particle or earlier image that it copies.
     pub source: usize,
     /// Q, so that its displacement is Q u.
     pub displaced: Matrix2<f64>,
@@ -22,8 +22,8 @@ pub struct Image {
 }
 
 impl Image {
-    /// At a wall that holds the body the displacement is odd, u' = −u, and so 0 on the wall. Where the body
-    /// slips along the wall it is mirrored with the place.
+    /// At a wall that holds the body the displacement is odd, u' = −u, and so 0 on the wall. Along a wall
+    /// with slip the displacement is mirrored like the place.
     fn new(source: usize, map: &Map, slips: bool) -> Self {
         let one = Matrix2::identity();
         let (mirrored, held) = match map {
@@ -159,7 +159,7 @@ impl Reference {
         self.inverse.iter().zip(&self.volumes).map(of)
     }
 
-    /// G₁ = Σ V F X² of a particle inside: the largest, for it is less at faces.
+    /// G₁ = Σ V F X² of a particle inside: the maximum, because the sum is smaller at faces.
     pub fn gradient_factor(&self) -> f64 {
         self.factors().fold(0.0, f64::max)
     }

@@ -18,7 +18,7 @@ use crate::{
     reference::Reference,
 };
 
-/// The method that finds the neighbours of the reference: no terms, so that nothing else is compiled.
+/// The scheme for the neighbour search in the reference: without terms, so that nothing else is compiled.
 type Frame<K, W> = touchstone_solver::Compose<K, (), (), W, Leapfrog, Symmetric>;
 
 /// A scene of elastic solids.
@@ -27,17 +27,16 @@ pub struct SolidScene<W, C> {
     pub h: f64,
     /// The domain, periodic or open in each direction.
     pub domain: Domain,
-    /// The particles, without stress where they are: this is their reference. Results list them in the same
-    /// order.
+    /// The particles in their reference, without stress. Results list them in the same order.
     pub particles: Vec<Particle<Symmetric>>,
     /// The number of the body of each particle, from 0; empty if there is one body.
     pub bodies: Vec<u32>,
-    /// Planes: [`touchstone_solver::Ghosts`] hold the body, along [`touchstone_solver::SlipGhosts`] it
+    /// Planes: [`touchstone_solver::Ghosts`] hold the body; along [`touchstone_solver::SlipGhosts`] it
     /// slides.
     pub walls: W,
     /// The moduli.
     pub moduli: Moduli,
-    /// χ, the strength of what resists modes that deform no particle, see the page of the crate.
+    /// χ, the strength of the resistance to hourglass modes, see the crate's documentation.
     pub hourglass: f64,
     /// Weight and contact.
     pub loads: C,

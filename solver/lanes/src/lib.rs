@@ -1,10 +1,10 @@
-//! Lanes: the number type of the pair loop and of the search for pairs of an SPH solver, of one pair (`f64`),
-//! of four at once ([`Portable`], and another type where the processor has registers for four) or of eight
-//! (where it has registers for eight).
+//! Lanes: the number type of the pair loop and of the neighbour search of an SPH solver. A lane type holds
+//! one pair (`f64`), four ([`Portable`], and a second type for processors with registers for four) or eight
+//! (processors with registers for eight).
 //!
-//! Every kernel and term is written once, generic over [`Lane`]. Tests read it as scalar code; the
-//! pair sweep runs it on as many pairs at once as the processor can by [`on_widest`]. No form contracts
-//! `a * b + c`, and no sum depends on the number of lanes, so the bits do not depend on the machine.
+//! Every kernel and term is written once, generic over [`Lane`]. Tests call it as scalar code; the pair sweep
+//! calls it by [`on_widest`] on the widest registers of the processor. No operation contracts `a * b + c`,
+//! and no sum depends on the number of lanes, so the bits do not depend on the machine.
 
 use std::ops::Neg;
 
@@ -41,7 +41,7 @@ pub trait Lane:
 {
     /// How many lanes there are.
     const LANES: usize;
-    /// The first of these numbers, as many as there are lanes.
+    /// The first numbers, one a lane.
     fn load(from: &[f64]) -> Self;
     /// Writes the numbers to the first places of these.
     fn store(self, to: &mut [f64]);
@@ -53,10 +53,10 @@ pub trait Lane:
     fn abs(self) -> Self;
     /// The larger of two numbers, neither of which may be NaN.
     fn at_least(self, floor: Self) -> Self;
-    /// Bit k says whether the k-th number is below the bound. For the search of neighbours; no term needs it.
+    /// Bit k is set if number k is below the bound. For the neighbour search.
     fn bits_below(self, bound: f64) -> usize;
 
-    /// Reads two numbers a lane that stand side by side.
+    /// Reads two adjacent numbers a lane.
     #[inline(always)]
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] {
         [Self::gather(|k| read(k)[0]), Self::gather(|k| read(k)[1])]
@@ -70,13 +70,13 @@ pub trait Lane:
         numbers[k]
     }
 
-    /// Writes those of `columns`, one a lane, whose bit is set in order to the front of `places`, of which it
-    /// may overwrite as many as there are lanes. Returns how many. For the search of neighbours, too.
+    /// Packs the columns (one a lane) whose bit is set, in order, to the front of `places`; may overwrite as
+    /// many entries as there are lanes. Returns their number. For the neighbour search.
     #[inline(always)]
     fn pack(columns: &[u32], bits: usize, places: &mut [u32]) -> usize {
         let mut count = 0;
         for (k, &column) in columns.iter().enumerate() {
-            // Always written, kept if it is to be: no branch to mispredict.
+            // Always written, counted only if kept: no branch to mispredict.
             places[count] = column;
             count += bits >> k & 1;
         }
@@ -90,9 +90,10 @@ pub trait Lane:
     }
 }
 
-/// A loop that is written once for lanes of any type.
+/// A loop written once for every lane type.
 pub trait OnLanes {
-    /// Does it. To be inlined always: what is not is right, but slow, compiled for every processor.
+    /// Runs the loop. Must be inlined, with everything it calls: code outside is correct, but compiled
+    /// without the wide registers.
     fn run<V: Lane>(self);
 }
 
@@ -113,7 +114,7 @@ pub fn on_four(work: impl OnLanes) {
     work.run::<Portable>();
 }
 
-/// Implements [`Lane`], inlined always: what each operation is for the type.
+/// Implements [`Lane`] with the given expressions; all operations are inlined.
 macro_rules! lane {
     (for $Type:ty, $lanes:literal: fn all($x:ident: f64) -> Self = $all:expr;
      $(fn $name:ident($($takes:tt)*) $(-> $Gives:ty)? = $is:expr;)+) => {
@@ -173,8 +174,8 @@ lane! {
         self.0.simd_lt(wide::f64x4::splat(bound)).to_bitmask() as usize;
 }
 
-/// The sum of four lanes, always in the same order: of [`on_four`] alone, for no sum may depend on the number
-/// of lanes.
+/// The sum of four lanes, always in one order. Only for [`on_four`]: no sum may depend on the number of
+/// lanes.
 #[inline(always)]
 pub fn total<V: Lane>(lanes: V) -> f64 {
     const { assert!(V::LANES == LANES) };

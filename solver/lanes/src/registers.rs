@@ -20,10 +20,10 @@ fn has() -> [bool; 2] {
     [is_x86_feature_detected!("avx2"), eight]
 }
 
-/// Runs a loop compiled for the widest such registers; gives it back where there are none.
+/// Runs a loop on the widest registers that the processor has; returns the loop if there are none.
 pub(crate) fn run<W: OnLanes>(work: W) -> Option<W> {
     match has() {
-        // SAFETY: each where the features that it enables are there.
+        // SAFETY: called only if the processor has the features that the function enables.
         [true, true] => unsafe { with_registers_for_eight(work) },
         [true, false] => unsafe { with_registers_for_four(work) },
         [false, _] => return Some(work),
@@ -34,7 +34,7 @@ pub(crate) fn run<W: OnLanes>(work: W) -> Option<W> {
 /// Runs the loop on four lanes, with 32 registers where the processor has them.
 pub(crate) fn run_four<W: OnLanes>(work: W) -> Option<W> {
     match has() {
-        // SAFETY: each where the features that it enables are there.
+        // SAFETY: called only if the processor has the features that the function enables.
         [true, true] => unsafe { with_many_registers_for_four(work) },
         [true, false] => unsafe { with_registers_for_four(work) },
         [false, _] => return Some(work),
@@ -70,8 +70,8 @@ pub struct Xmm([__m128d; 2]);
 ///
 /// # Safety
 ///
-/// Private: no value of this type is made, and nothing of it called, but under the functions above, where the
-/// processor has AVX2. That is what every `unsafe` for it relies on.
+/// Private: values of this type are made, and its functions called, only under the functions above, on
+/// processors with AVX2. Every `unsafe` block of this type relies on this.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 struct Ymm(__m256d);
@@ -90,17 +90,17 @@ macro_rules! operators {
     ($Register:ident, $lanes:literal, $Held:ty;
      $($Op:ident $op:ident $OpAssign:ident $op_assign:ident = |$a:ident, $b:ident| $is:expr;)+) => {
         impl $Register {
-            /// As many numbers.
+            /// One number a lane.
             #[inline(always)]
             fn of_array(numbers: [f64; $lanes]) -> Self {
-                // SAFETY: both are as many f64 in the same order.
+                // SAFETY: both types hold `$lanes` f64 in one order.
                 Self(unsafe { transmute::<[f64; $lanes], $Held>(numbers) })
             }
 
             /// The numbers.
             #[inline(always)]
             fn to_array(self) -> [f64; $lanes] {
-                // SAFETY: both are as many f64 in the same order.
+                // SAFETY: both types hold `$lanes` f64 in one order.
                 unsafe { transmute(self.0) }
             }
         }
@@ -184,7 +184,7 @@ lane! {
     };
 }
 
-// SAFETY: see `Ymm`; what is transmuted is four `u32` in the same order. Roots are correctly rounded, as for
+// SAFETY: see `Ymm`; the transmuted value is four `u32` in one order. Roots are correctly rounded, as for
 // f64.
 lane! {
     for Ymm, 4:
@@ -194,7 +194,7 @@ lane! {
     fn gather(read: impl Fn(usize) -> f64) -> Self =
         Self(unsafe { _mm256_setr_pd(read(0), read(1), read(2), read(3)) });
     fn gather_pair(read: impl Fn(usize) -> [f64; 2]) -> [Self; 2] = {
-        // Neighbours 0 and 2, and 1 and 3, each with its two numbers as they stand in memory.
+        // Neighbours 0 and 2, and 1 and 3, each with its two numbers in the order of memory.
         let ([a, b], [c, d]) = (read(0), read(2));
         let ([e, f], [g, h]) = (read(1), read(3));
         let (even, odd) = unsafe { (_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)) };
@@ -220,7 +220,7 @@ lane! {
     };
 }
 
-// SAFETY: see `Zmm`; what is transmuted is eight `u32` in the same order.
+// SAFETY: see `Zmm`; the transmuted value is eight `u32` in one order.
 lane! {
     for Zmm, 8:
     fn all(x: f64) -> Self = Self(unsafe { _mm512_set1_pd(x) });
@@ -262,12 +262,12 @@ mod tests {
     const A: [f64; 8] = [-0.0, 1.0 / 3.0, -1e-300, 2e200, 0.7, -3.3e7, 0.0, 5e-324];
     const B: [f64; 8] = [0.0, -7.1, 3e-310, 1e150, -0.0, 1e-3, 2.5, 4e30];
 
-    /// What every operation makes of A and B, as many lanes of type `V` at a time as there are.
+    /// The bits of every operation on A and B, with lanes of type `V`.
     fn results<V: Lane>() -> Vec<u64> {
         (0..A.len()).step_by(V::LANES).flat_map(|first| results_from::<V>(first)).collect()
     }
 
-    /// What every operation makes of the numbers from number `first` on, a lane after the other.
+    /// The bits of every operation on the numbers from `first` on, lane by lane.
     fn results_from<V: Lane>(first: usize) -> Vec<u64> {
         let [a, b] = [A, B].map(|numbers| V::load(&numbers[first..]));
         let (mut sum, mut less, mut times, mut over) = (a, a, a, a);
@@ -297,7 +297,7 @@ mod tests {
         (0..V::LANES).flat_map(|k| [of_lane(k), vec![bits(stored[k])]].concat()).collect()
     }
 
-    /// Of each choice of as many columns as there are lanes, those that are packed.
+    /// Packs every subset of as many columns as there are lanes.
     fn check_packing<V: Lane>() {
         let columns: Vec<u32> = (0..V::LANES as u32).map(|k| 9 + 2 * k).collect();
         for bits in 0..1_usize << V::LANES {

@@ -24,11 +24,11 @@ use crate::{
 #[derive(Debug)]
 pub struct Leapfrog<K = ForwardKick>(PhantomData<K>);
 
-/// How a [`Leapfrog`] advances velocities while positions and densities stay as they are.
+/// Advances the velocities of a [`Leapfrog`] at fixed positions and densities.
 pub trait Kick<P: Physics>: 'static {
-    /// Name of the leapfrog that has it.
+    /// Name of the leapfrog with this kick.
     const NAME: &'static str;
-    /// Buffers beside the memory of the leapfrog; `()` for none.
+    /// Buffers in addition to the memory of the leapfrog; `()` for none.
     type Memory: Memory<P::Extra>;
 
     /// Advances the velocities of fluid particles, and then moves the particles with them.
@@ -43,13 +43,14 @@ pub trait Kick<P: Physics>: 'static {
 /// The times of a [`Kick`].
 #[derive(Clone, Copy, Debug)]
 pub struct KickTimes {
-    /// By which velocities are advanced \[s\].
+    /// Time step of the velocities \[s\].
     pub velocity: f64,
-    /// By which particles then move with them \[s\].
+    /// Time step of the positions, with the new velocities \[s\].
     pub position: f64,
 }
 
-/// v + dt a(v): forces that depend on the velocity use that of half a step earlier, first order in dt.
+/// v + dt a(v): forces that depend on the velocity use the velocity of half a step earlier; first order in
+/// dt.
 #[derive(Debug)]
 pub struct ForwardKick;
 
@@ -89,9 +90,9 @@ fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Fn(usize, &mut Evolved<X>, &
 /// Velocities that are behind the other quantities.
 #[derive(Default)]
 pub struct Staggered {
-    /// By how much \[s\]; 0 before the first step.
+    /// The lag \[s\]; 0 before the first step.
     pub(super) lag: f64,
-    /// The velocities of the fluid as they were before they were synchronised, until the next step \[m/s\].
+    /// Velocities of the fluid before synchronisation, held until the next step \[m/s\].
     held: Vec<Vector2<f64>>,
 }
 

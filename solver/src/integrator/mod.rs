@@ -27,9 +27,9 @@ use crate::{
 
 /// An explicit time integration of (x, v, ρ) of the physics `P`.
 pub trait Integrator<P: Physics>: 'static {
-    /// Its name in settings and reports.
+    /// Name in settings and reports.
     const NAME: &'static str;
-    /// Data that it keeps from one step to the next, and buffers that steps use again; `()` for none.
+    /// Data kept from one step to the next, and reusable buffers; `()` for none.
     type Memory: Memory<P::Extra>;
 
     /// Advances the state by dt \[s\].
@@ -40,7 +40,7 @@ pub trait Integrator<P: Physics>: 'static {
         dt: f64,
     ) -> Stepped;
 
-    /// Brings every quantity to the same time, until the next step, and refreshes the derived data.
+    /// Brings every quantity to one time, until the next step, and refreshes the derived data.
     fn synchronise(
         engine: &mut Engine<P>,
         _memory: &mut Self::Memory,
@@ -49,16 +49,16 @@ pub trait Integrator<P: Physics>: 'static {
         engine.begin(state)
     }
 
-    /// Rates of each fluid particle in the state that was synchronised last, where dx/dt does not include v.
-    /// The pair sweeps are those of a step.
+    /// Rates of each fluid particle in the last synchronised state, from the pair sweeps of a step. dx/dt
+    /// excludes v.
     fn rates(engine: &Engine<P>) -> Vec<Rate<P::Extra>> {
         engine.rates_in_one_sweep()
     }
 }
 
-/// The memory of an integrator. A checkpoint holds the part of it on which later steps depend.
+/// The memory of an integrator. A checkpoint holds the part on which later steps depend.
 pub trait Memory<X: Numbers>: Default + Send + Sync {
-    /// Writes that part to a checkpoint, which holds the particles as they are at the end of a step.
+    /// Writes this part to a checkpoint, which already holds the particles at the end of a step.
     fn save(&self, _to: &mut Checkpoint<X>) {}
 
     /// The memory at a checkpoint.
@@ -114,7 +114,7 @@ where
     type Integrator = I;
 }
 
-/// The physics of the scheme `S`, the same type for all schemes that differ only in their integrator.
+/// The physics of the scheme `S`: one type for all schemes that differ only in their integrator.
 pub type PhysicsOf<S> = Compose<
     <S as Physics>::Kernel,
     <S as Physics>::Forces,
@@ -124,7 +124,7 @@ pub type PhysicsOf<S> = Compose<
     <S as Physics>::Extra,
 >;
 
-/// Advances a particle by dt \[s\]. Like all updates it does not depend on the scheme, and is compiled once.
+/// Advances a particle by dt \[s\]. Like every update it does not depend on the scheme and is compiled once.
 fn advance<X: Numbers>(dt: f64) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
     move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| *evolved = evolved.advanced(dt, rate)
 }

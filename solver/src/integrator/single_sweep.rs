@@ -12,22 +12,22 @@ use crate::{
     physics::{Physics, State},
 };
 
-/// Forces and drift from one pair sweep at (xⁿ, vⁿ⁻½, ρ̃ⁿ): with a the forces and D the drift of it,
+/// Forces a and drift D from one pair sweep at (xⁿ, vⁿ⁻½, ρ̃ⁿ):
 ///
 /// ρⁿ = ρⁿ⁻¹ + dt Dⁿ, ρ̃ⁿ⁺¹ = ρⁿ + dt (2 Dⁿ − Dⁿ⁻¹), vⁿ⁺½ = vⁿ⁻½ + dt a, xⁿ⁺¹ = xⁿ + dt vⁿ⁺½,
 ///
-/// and the same for what terms integrate of their own. The density ρ̃ from which forces follow is
-/// extrapolated, because the drift of a step becomes known only in the sweep of the next one. At the end of a
-/// step it is replaced, so that no error of extrapolation accumulates.
+/// and for the extra fields as for the density. The density ρ̃, on which forces depend, is extrapolated,
+/// because the drift of a step is known only after the sweep of the next one. ρ̃ is replaced at the end of
+/// each step, so errors of extrapolation do not accumulate.
 ///
-/// A step costs about 0.7 of that of [`super::Leapfrog`], which sweeps twice. Viscous forces have the same
-/// limit. Sound has about a third of it: stable up to ω dt = 1/√2, where the leapfrog is up to 2; below, it
-/// is damped by (ω dt)⁴/2 a step. Of first order in dt, because Dⁿ has positions half a step later than its
-/// velocities.
+/// A step costs about 0.7 of a step of [`super::Leapfrog`], which sweeps twice. The limit of viscous forces
+/// is equal; the limit of sound is about a third: stable up to ω dt = 1/√2, where the leapfrog is stable up
+/// to 2. Below the limit sound is damped by (ω dt)⁴/2 a step. First order in dt, because the positions of Dⁿ
+/// are half a step later than its velocities.
 #[derive(Debug)]
 pub struct SingleSweep;
 
-/// Of the particles that have rates, in the order of storage; empty before the first step.
+/// One entry for each particle with rates, in the order of storage; empty before the first step.
 impl<X: Numbers> Memory<X> for Vec<PreviousStep<X>> {
     fn save(&self, to: &mut Checkpoint<X>) {
         to.past.clone_from(self);
@@ -68,7 +68,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         }
         let update = |i: usize, evolved: &mut Evolved<_>, rate: &Rate<_>| {
             if i < fluid {
-                // Beyond v, which the sweep has added as it was before.
+                // dx/dt beyond v: the sweep has added the velocity before the kick.
                 let shift = rate.position - evolved.velocity;
                 evolved.kick(kick, rate);
                 evolved.position += (evolved.velocity + shift) * dt;
@@ -76,7 +76,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
             (evolved.density, evolved.extra) = (rate.density, rate.extra);
         };
         engine.sweep_all(state, &each(update));
-        // A rate is that of the middle of the last step; it is extrapolated to the middle of this one.
+        // The rate belongs to the middle of the last step and is extrapolated to the middle of this one.
         let ahead = if known > 0.0 { kick / known } else { 0.0 };
         for (evolved, past) in state.iter_mut().zip(past) {
             let rate = (evolved.density, evolved.extra);

@@ -2,7 +2,7 @@
 
 use super::{In, Kernel, Lane, Numbers, Pair};
 
-/// An addition of [`super::Pressure`] to the pair pressure, or of [`super::CauchyStress`] to the pair stress,
+/// Addition to the pair pressure of [`super::Pressure`] or to the pair stress of [`super::CauchyStress`]
 /// where the material is in tension: nothing, or an artificial stress Rᵢⱼ φᵢⱼⁿ with (21) Rᵢⱼ = Rᵢ + Rⱼ. `S`
 /// is `f64` for a pressure and [`super::Symmetric`] for a stress.
 pub trait Tensile<S: Numbers>: Copy + Send + Sync + 'static {
@@ -10,7 +10,7 @@ pub trait Tensile<S: Numbers>: Copy + Send + Sync + 'static {
     type Derived: Numbers;
     /// From p/ρ², σ/ρ² or σ of a particle; the result has the unit of that.
     fn derived(&self, stress: S) -> Self::Derived;
-    /// Rᵢⱼ φᵢⱼⁿ, in the same unit.
+    /// Rᵢⱼ φᵢⱼⁿ, in the unit of [`Tensile::Derived`].
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>) -> In<S, V>;
 }
 

@@ -7,9 +7,9 @@ use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
 /// (16) Πᵢⱼ = −ζ₁ (cᵢ+cⱼ)(hᵢ+hⱼ)/\[2(ρᵢ+ρⱼ)\] ψᵢⱼ + ζ₂ (hᵢ+hⱼ)²/\[2(ρᵢ+ρⱼ)\] ψᵢⱼ²,
 /// (17) ψᵢⱼ = vᵢⱼ·rᵢⱼ/(dᵢⱼ² + η²) where vᵢⱼ·rᵢⱼ < 0, else 0; η² = 0.01 h² (inferred).
 ///
-/// Identical to Monaghan's form with α = ζ₁, β = ζ₂. Central, so it conserves angular momentum. With
-/// `ALWAYS` ψ is not 0 where particles recede from each other: odd in v, and with β = 0 linear, so that its
-/// symbol and its time-step limit are exact.
+/// Identical to Monaghan's form with α = ζ₁, β = ζ₂. Central, so angular momentum is conserved. With `ALWAYS`
+/// ψ acts also on particles that recede from each other: odd in v, and linear for β = 0, so that its symbol
+/// and its time-step limit are exact.
 #[derive(Clone, Copy, Debug)]
 pub struct ArtificialViscosity<E, const ALWAYS: bool = false> {
     /// ζ₁ = α \[-\].

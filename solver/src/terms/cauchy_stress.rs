@@ -5,7 +5,7 @@ use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Symmetric, Tensil
 /// (9) dvᵢᵃ/dt = Σⱼ mⱼ (σᵢᵃᵇ/ρᵢ² + σⱼᵃᵇ/ρⱼ²) ∂Wᵢⱼ/∂xᵢᵇ \[m/s²\], (10) σᵃᵇ = −p δᵃᵇ + Sᵃᵇ, and the stress
 /// part of (15) with R ≠ ().
 ///
-/// S is what the scheme integrates as `X`, by [`super::JaumannRate`]. The pair force need not be
+/// The scheme integrates S as its extra field `X` by [`super::JaumannRate`]. The pair force need not be
 /// central: linear momentum is conserved exactly, angular momentum is not.
 #[derive(Clone, Copy, Debug)]
 pub struct CauchyStress<E, R = ()> {
@@ -16,7 +16,7 @@ pub struct CauchyStress<E, R = ()> {
 }
 
 impl<E: EquationOfState, R: Tensile<Symmetric>> Term<Symmetric> for CauchyStress<E, R> {
-    /// σ/ρ² \[m⁵/(kg s²)\] and what the artificial stress derives.
+    /// σ/ρ² \[m⁵/(kg s²)\] and the derived data of the artificial stress.
     type Derived = (Symmetric, R::Derived);
     type Sum = Vector2<f64>;
 

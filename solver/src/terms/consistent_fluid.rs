@@ -1,7 +1,7 @@
 //! Terms of a fluid that are exact for linear fields (schemes of Negi & Ramachandran 2022).
 //!
-//! Momentum is not conserved: the forces of a pair are not opposite any more, and nothing pushes crowded
-//! particles apart. These terms need [`super::Shifting`].
+//! Momentum is not conserved: the forces of a pair are not opposite, and no force separates crowded
+//! particles. These terms need [`super::Shifting`].
 
 use super::{
     Common, EquationOfState, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2,
@@ -11,7 +11,7 @@ use super::{
 /// Least trace of the moments: 2 inside a body of particles.
 const LEAST_TRACE: f64 = 1e-3;
 
-/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`crate::Pressure`]. Where neighbours lie on a line, 0.
+/// dvᵢ/dt += −∇p/ρᵢ \[m/s²\], in place of [`crate::Pressure`]; 0 where neighbours are on one line.
 #[derive(Clone, Copy, Debug)]
 pub struct ConsistentPressure<E> {
     /// Equation of state p(ρ).
@@ -44,8 +44,8 @@ impl<X, E: EquationOfState> Term<X> for ConsistentPressure<E> {
 }
 
 /// dvᵢ/dt += −(4ν/tr M) Σⱼ Vⱼ F (vᵢⱼ − (rᵢⱼ·∇)v) \[m/s²\], in place of [`crate::Viscosity`]: 0 for a linear
-/// field on any particles, exact for a parabola where M is a number times the unit matrix, as on a
-/// lattice. Where neighbours lie on a line, without the second part.
+/// field on any particles, exact for a parabola where M is a multiple of the unit matrix, as on a lattice.
+/// Where neighbours are on one line, the second part is omitted.
 #[derive(Clone, Copy, Debug)]
 pub struct ConsistentViscosity {
     /// Kinematic viscosity ν \[m²/s\].
@@ -79,7 +79,7 @@ impl<X> Term<X> for ConsistentViscosity {
     }
 }
 
-/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`crate::Continuity`]. Where neighbours lie on a line, 0.
+/// dρᵢ/dt += −ρᵢ ∇·v \[kg/m³/s\], in place of [`crate::Continuity`]; 0 where neighbours are on one line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConsistentContinuity;
 

@@ -3,14 +3,14 @@
 //!
 //! Gᵢ = Σⱼ Vⱼ vᵢⱼ ⊗ (M⁻¹ᵢ F rᵢⱼ),
 //!
-//! and the power of the stress is Σ Vᵢ σᵢ : Gᵢ. What multiplies vᵢ in it is the force
+//! and the power of the stress is Σ Vᵢ σᵢ : Gᵢ. The factor of vᵢ in this power is the force
 //!
 //! mᵢ dvᵢ/dt = −Σⱼ Vᵢ Vⱼ (σᵢ M⁻¹ᵢ + σⱼ M⁻¹ⱼ) F rᵢⱼ,
 //!
-//! so that Σ m v·dv/dt = −Σ V σ : G at every state. The forces of a pair are opposite. Their torque is
-//! Σ r × m dv/dt = −Σ Vᵢ (the antisymmetric part of σᵢ M⁻¹ᵢ Mᵢ = σᵢ), which is 0. So linear and angular
-//! momentum are exact on any particles (Bonet & Lok 1999). Particles whose neighbours lie on a line have
-//! neither a gradient nor a stress that acts.
+//! so that Σ m v·dv/dt = −Σ V σ : G at every state. The forces of a pair are opposite. Their torque is Σ r ×
+//! m dv/dt = −Σ Vᵢ (the antisymmetric part of σᵢ M⁻¹ᵢ Mᵢ = σᵢ), which is 0. So linear and angular momentum
+//! are exact on any particles (Bonet & Lok 1999). Particles with all neighbours on one line have no gradient
+//! and no stress.
 
 use super::{
     Common, EquationOfState, In, JaumannRate, Kernel, Lane, Pair, Rate, Symmetric, Tensile, Term,
@@ -18,7 +18,7 @@ use super::{
     moments::{inverse, weights},
 };
 
-/// (11) with Gᵢ in place of the gradient, in place of [`JaumannRate`]. Its density is that of
+/// (11) with the gradient Gᵢ, in place of [`JaumannRate`]. Requires the density of
 /// [`crate::ConsistentContinuity`].
 #[derive(Clone, Copy, Debug)]
 pub struct ConsistentJaumannRate(pub JaumannRate);
@@ -61,7 +61,7 @@ pub struct ConjugateStress<E, R = ()> {
 }
 
 impl<E: EquationOfState, R: Tensile<Symmetric>> Term<Symmetric> for ConjugateStress<E, R> {
-    /// The rows of σ M⁻¹ \[Pa\], and what the artificial stress derives from σ.
+    /// The rows of σ M⁻¹ \[Pa\], and the derived data of the artificial stress.
     type Derived = ((Vector2<f64>, Vector2<f64>), R::Derived);
     type Sum = Vector2<f64>;
     const NORMALISES: bool = true;

@@ -26,9 +26,9 @@ impl Rest for () {
 /// A column of fluid at rest under gravity: (⁰ρ/⁰c²) \[w(ρⱼ) − w(ρᵢ) − g·(rⱼ − rᵢ)\] in place of
 /// ρⱼ − ρᵢ, w the enthalpy of (7).
 ///
-/// At rest ∇w = g, so every pair of particles has 0, wherever they are and however far the column is
-/// compressed. For ρ − ⁰ρ ≪ ⁰ρ it is the hydrostatic correction of Fourtakas et al. 2019. Where g is not
-/// what the pressure bears, as in free fall, it is the density of a column that is kept.
+/// At rest ∇w = g, so the term is 0 for every pair of particles at any compression of the column. For ρ − ⁰ρ
+/// ≪ ⁰ρ it is the hydrostatic correction of Fourtakas et al. 2019. Where pressure does not balance g, as in
+/// free fall, the term still drives the density to a hydrostatic profile.
 #[derive(Clone, Copy, Debug)]
 pub struct Hydrostatic {
     /// Gives w(ρ).
@@ -54,13 +54,13 @@ impl Rest for Hydrostatic {
 
 /// dρᵢ/dt += 2 δ h ⁰c Σⱼ Vⱼ F(dᵢⱼ) (ρⱼ − ρᵢ) \[kg/m³/s\] (Molteni & Colagrossi 2009).
 ///
-/// Damps pressure noise at the scale of h and leaves the velocity alone. As it stands it levels out the
+/// Damps pressure noise at the scale of h and does not change the velocity. With `R` = `()` it levels out the
 /// density of a hydrostatic column; with [`Hydrostatic`] it keeps the column.
 #[derive(Clone, Copy, Debug)]
 pub struct DensityDiffusion<R = ()> {
     /// δ h ⁰c \[m²/s\]; δ = 0.1 by custom.
     pub diffusivity: f64,
-    /// The state that is left alone.
+    /// The state of rest, on which the term is 0.
     pub rest: R,
 }
 

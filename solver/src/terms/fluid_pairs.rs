@@ -4,10 +4,9 @@ use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 
 /// A term without its pairs with boundary particles, [`crate::Role::Wall`] and [`crate::Role::Interface`].
 ///
-/// Boundary particles stand still however the fluid slides past them, so artificial viscosity makes it stick
-/// to them. Without these pairs it exchanges momentum within the fluid only. Each column carries the share in
-/// which the others see it, 1 of a particle of the fluid and 0 of a boundary particle, which multiplies its
-/// mass and its volume.
+/// Boundary particles do not move while fluid slides past them, so artificial viscosity would make fluid
+/// stick to them. Without these pairs artificial viscosity exchanges momentum within the fluid only. Each
+/// column carries a factor of its mass and volume: 1 for a fluid particle, 0 for a boundary particle.
 #[derive(Clone, Copy, Debug)]
 pub struct FluidPairs<T>(pub T);
 
@@ -69,8 +68,8 @@ mod tests {
         ArtificialViscosity::new(0.3, 0.7, 1.5 * DX, EOS)
     }
 
-    /// Fluid in a periodic channel, off its lattice by up to half of `disorder` spacings and off its velocity
-    /// by as many m/s, above rows of boundary particles in these roles.
+    /// Fluid in a periodic channel, displaced from a lattice by up to half of `disorder` spacings, with a
+    /// velocity disturbed by up to this number in m/s, above rows of boundary particles in these roles.
     fn particles(disorder: f64, boundary: &[Role]) -> Vec<Particle> {
         let mut random = random(1);
         let mut random = || random() * disorder;
@@ -125,8 +124,7 @@ mod tests {
         ExtrapolatingWall::new(EOS, Vector2::zeros())
     }
 
-    /// Artificial viscosity saw the boundary particles stand, and water that slid along them at one speed
-    /// lost its energy.
+    /// Without [`FluidPairs`], water that slides at one speed along boundary particles loses energy.
     #[test]
     fn a_layer_that_slides_at_one_speed_along_boundary_particles_lost_energy() {
         let slides = || particles(0.0, &WALL);
@@ -156,7 +154,7 @@ mod tests {
         assert!(power(&found) < 0.0, "and energy is lost where particles of the fluid approach");
     }
 
-    /// Of particles beyond the reach of the wall, and of all without one.
+    /// For particles beyond the reach of the wall, and for all particles without a wall.
     #[test]
     fn pairs_of_the_fluid_have_the_same_bits() {
         let bits = |rate: &Rate<()>| [rate.velocity.x, rate.velocity.y].map(f64::to_bits);

@@ -5,7 +5,7 @@ use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 /// (11) dSᵃᵇ/dt = 2μ (εᵃᵇ − δᵃᵇ εᶜᶜ/3) + Sᵃᶜ Ωᵇᶜ + Ωᵃᶜ Sᶜᵇ \[Pa/s\], with ε and Ω the symmetric and the
 /// antisymmetric part of ∂ᵇvᵃ = Σⱼ (mⱼ/ρⱼ)(vⱼᵃ − vᵢᵃ) ∂Wᵢⱼ/∂xᵢᵇ.
 ///
-/// The 1/3 is that of plane strain: Sᶻᶻ = −(Sˣˣ + Sʸʸ) is implied.
+/// The 1/3 is for plane strain: Sᶻᶻ = −(Sˣˣ + Sʸʸ) is implied.
 #[derive(Clone, Copy, Debug)]
 pub struct JaumannRate {
     /// μ \[Pa\].
@@ -13,7 +13,7 @@ pub struct JaumannRate {
 }
 
 impl Term<Symmetric> for JaumannRate {
-    /// S, for the particle's own rotation; neighbours do not read it.
+    /// S, for the particle's own rotation; neighbours do not use it.
     type Derived = Symmetric;
     /// ∇u and ∇v \[1/s\].
     type Sum = (Vector2<f64>, Vector2<f64>);

@@ -1,8 +1,8 @@
 //! Terms: the pair sums of the equations, one file each.
 //!
-//! A term is written once, generic over the lane: the type for one pair or for several at a time. A
-//! physics contains tuples of terms. The empty tuple `()` costs nothing, and a term that is not in a tuple
-//! is not in the program. The pair sweep in `sweep.rs` uses terms only through the trait [`Term`].
+//! A term is written once, generic over the lane: the type for one pair or for several at a time. A physics
+//! contains tuples of terms. The empty tuple `()` costs nothing, and a term in no tuple is not in the
+//! program. The pair sweep in `sweep.rs` uses terms only through the trait [`Term`].
 
 mod artificial_stress;
 mod artificial_viscosity;
@@ -54,8 +54,8 @@ use crate::{
     particles::{Column, Common, Rate},
 };
 
-/// Particles i, one a lane, and a neighbour j of each, which in a pair sweep is the same for all, as a term
-/// sees them that derives `D`.
+/// Particles i, one a lane, and a neighbour j of each (one neighbour for all lanes in a pair sweep), with the
+/// derived data `D` of a term.
 pub struct Pair<'k, V: Lane, K, D: Numbers = ()> {
     /// rᵢⱼ = rᵢ − rⱼ \[m\].
     pub r: Vector2<V>,
@@ -76,7 +76,7 @@ pub struct Pair<'k, V: Lane, K, D: Numbers = ()> {
 }
 
 impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
-    /// These particles as another term sees them, with its derived data.
+    /// These particles with the derived data of another term.
     #[inline(always)]
     pub fn with<E: Numbers>(&self, derived: [In<E, V>; 2]) -> Pair<'k, V, K, E> {
         let Self { r, r2, v, f, own, other, kernel, .. } = *self;
@@ -96,7 +96,8 @@ impl<'k, V: Lane, K: Kernel, D: Numbers> Pair<'k, V, K, D> {
     }
 }
 
-/// One term of the equations. `X` holds the extra fields that a particle integrates besides x, v and ρ.
+/// One term of the equations. `X` holds the extra fields that a particle integrates in addition to x, v and
+/// ρ.
 pub trait Term<X>: Clone + Send + Sync + 'static {
     /// The derived data of a particle that its neighbours read for this term.
     type Derived: Numbers;
@@ -115,10 +116,10 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
         const { assert!(size_of::<Self::Derived>() == 0, "a term with derived numbers derives them") };
         Self::Derived::default()
     }
-    /// Changes the derived data of a boundary particle, after they were derived.
+    /// Changes the derived data of a boundary particle.
     #[inline(always)]
     fn set_on_boundary(_derived: &mut Self::Derived) {}
-    /// Puts the inverse of the [`moments`] of the particle into its derived data, after they were derived.
+    /// Stores the inverse of the [`moments`] of the particle in its derived data.
     #[inline(always)]
     fn set_inverse(_derived: &mut Self::Derived, _inverse: Symmetric) {}
     /// Adds the contributions of the neighbours j of `pair` to the sums.
@@ -129,7 +130,7 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     );
     /// Adds the rates that follow from the sum to `rate`.
     fn finish(&self, own: &Common, derived: Self::Derived, sum: Self::Sum, rate: &mut Rate<X>);
-    /// Adds the rates that depend on where a particle is \[m\], such as those of a force field.
+    /// Adds rates that depend on the position of a particle \[m\], such as a force field.
     #[inline(always)]
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
 }
@@ -250,7 +251,7 @@ mod tests {
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2, numbers::Buffer};
     use touchstone_lanes::{OnLanes, Portable, on_widest};
 
-    /// Up to eight neighbours, number k of field f; one is at the same place as the particle.
+    /// Field number `field` of neighbour k of up to eight; neighbour 3 is at the place of the particle.
     fn number(field: usize, k: usize) -> f64 {
         let x = ((7 * field + 3 * k + 1) as f64 * 0.618_033_988_749_895).fract();
         match field {

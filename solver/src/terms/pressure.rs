@@ -22,7 +22,7 @@ impl<E> Pressure<E> {
 }
 
 impl<X, E: EquationOfState, R: Tensile<f64>> Term<X> for Pressure<E, R> {
-    /// p/ρ² \[m⁵/(kg s²)\] and what the artificial stress derives.
+    /// p/ρ² \[m⁵/(kg s²)\] and the derived data of the artificial stress.
     type Derived = (f64, R::Derived);
     type Sum = Vector2<f64>;
 

@@ -6,11 +6,11 @@ use super::{Common, In, Kernel, Lane, Pair, Rate, Shifting, Symmetric, Term, Vec
 /// The change of velocity that belongs to shifting: dvᵢ/dt += (δuᵢ·∇)v \[m/s²\], δu the velocity of
 /// [`Shifting`].
 ///
-/// A particle that is moved by δu beside the flow carries its velocity to where the fluid has another
-/// one; with this term it takes the velocity of its new place (quasi-Lagrangian form, Sun et al. 2019).
-/// The gradient is ∇v = [Σⱼ Vⱼ vᵢⱼ ⊗ F rᵢⱼ] [Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ]⁻¹, exact for a linear field on any
-/// particles; where they lie on a line it is taken as 0. Belongs into the forces, beside the same
-/// [`Shifting`] in the drift. Momentum is no longer conserved exactly.
+/// A particle shifted by δu carries its velocity to a place with another fluid velocity; with this term it
+/// takes the velocity of its new place (quasi-Lagrangian form, Sun et al. 2019). The gradient is ∇v = [Σⱼ Vⱼ
+/// vᵢⱼ ⊗ F rᵢⱼ] [Σⱼ Vⱼ rᵢⱼ ⊗ F rᵢⱼ]⁻¹, exact for a linear field on any particles, and 0 where neighbours are
+/// on one line. A term of the forces, used with an equal [`Shifting`] in the drift. Momentum is not conserved
+/// exactly.
 #[derive(Clone, Copy, Debug)]
 pub struct ShiftAdvection(pub Shifting);
 

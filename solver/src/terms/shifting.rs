@@ -4,10 +4,9 @@ use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 
 /// Particle shifting: drᵢ/dt −= A v_max h Σⱼ Vⱼ \[1 + 0.2 (Wᵢⱼ/W(⁰r))⁴\] ∇ᵢWᵢⱼ \[m/s\].
 ///
-/// A correction between steps: it moves particles from where they crowd to where they are missing,
-/// and changes no velocity and no density (Lind et al. 2012; the bracket, Monaghan 2000, keeps pairs
-/// apart). A particle of a perfect lattice feels nothing. It is summed in the drift sweep, so that it
-/// costs no pair sweep of its own.
+/// A correction between steps: moves particles from crowded to sparse places without changing velocity or
+/// density (Lind et al. 2012; the bracket, Monaghan 2000, keeps pairs apart). It is 0 on a perfect lattice. A
+/// term of the drift, so it needs no pair sweep of its own.
 #[derive(Clone, Copy, Debug)]
 pub struct Shifting {
     amplitude: f64,

@@ -1,7 +1,7 @@
 //! Forces in two parts, of which one is stiff.
 
-/// The forces `E` and the stiff force `T`, whose sum it is as a term. [`crate::SuperSteps`] integrates `T`
-/// over steps that are longer than the limit of an explicit integrator.
+/// The sum of the forces `E` and the stiff force `T`. [`crate::SuperSteps`] integrates `T` over steps longer
+/// than the limit of an explicit integrator.
 #[derive(Clone, Copy, Debug)]
 pub struct Split<E, T>(
     /// All forces but the stiff one.

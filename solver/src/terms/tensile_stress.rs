@@ -4,9 +4,9 @@ use std::marker::PhantomData;
 
 use super::{Kernel, Lane, Pair, Symmetric, Tensile};
 
-/// The part of a stress that pulls, in the axes in which (20) asks for tension.
+/// The tensile part of a stress, in the axes in which (20) tests for tension.
 pub trait Axes: Copy + Send + Sync + 'static {
-    /// σ where it is in tension, 0 where it is in compression, in any unit.
+    /// σ where in tension, 0 where in compression, in any unit.
     fn tension(stress: Symmetric) -> Symmetric;
 }
 
@@ -14,7 +14,7 @@ pub trait Axes: Copy + Send + Sync + 'static {
 #[derive(Clone, Copy, Debug)]
 pub struct Principal;
 
-/// Component by component, as the seed writes (20): where σᵃᵇ > 0. Turning the axes changes it.
+/// Component by component, as the paper writes (20): where σᵃᵇ > 0. Not frame-invariant.
 #[derive(Clone, Copy, Debug)]
 pub struct Componentwise;
 

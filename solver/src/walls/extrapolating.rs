@@ -14,23 +14,22 @@ use crate::{
     terms::Pair,
 };
 
-/// Walls represented by layers of boundary particles, [`crate::Role::Wall`], behind the surface, the first
-/// half a spacing behind it. They do not move, and no quantity of theirs is integrated. Before each sweep,
-/// these quantities are extrapolated to them, only from the fluid particles f within their support:
+/// Walls represented by layers of boundary particles, [`crate::Role::Wall`], the first half a spacing behind
+/// the surface. They do not move and integrate nothing. Before each sweep, these quantities are extrapolated
+/// to them from the fluid particles f within their support:
 ///
-/// - p_w = Σ_f \[p_f + ρ_f (g − a_w)·r_wf\] W_wf / Σ_f W_wf, and from it the density, ρ_w = ρ(p_w);
+/// - p_w = Σ_f \[p_f + ρ_f (g − a_w)·r_wf\] W_wf / Σ_f W_wf, and the density ρ_w = ρ(p_w);
 /// - with `U` = [`NoSlip`] u_w = 2 u_wall − Σ_f u_f W_wf / Σ_f W_wf, which all terms read in place of the
-///   velocity of the wall particle, u_wall. With `U` = [`CurvedNoSlip`] it is that of a parabola instead.
-///   With `U` = `()` the particle keeps that velocity and nothing is summed, which suffices without
-///   viscosity.
+///   velocity of the wall, u_wall. With `U` = [`CurvedNoSlip`] u_w is the velocity of a parabola instead.
+///   With `U` = `()` u_w = u_wall and no velocity is summed, which is sufficient without viscosity.
 ///
 /// A wall particle without fluid in its support keeps its initial velocity and density. The fluid
 /// does not read these, because the particle is not a neighbour of any fluid particle either.
 #[derive(Clone, Copy, Debug)]
 pub struct ExtrapolatingWall<E, U = ()> {
-    /// Gives p(ρ) and ρ(p): that of the pressure term.
+    /// Equation of state p(ρ), ρ(p) of the pressure term.
     pub eos: E,
-    /// g − a_w: the body force less the acceleration of the wall \[m/s²\].
+    /// g − a_w: body force minus acceleration of the wall \[m/s²\].
     pub acceleration: Vector2<f64>,
     /// p_w is not below this \[Pa\]: 0 where there is a free surface, above which the wall would suck
     /// the fluid up; −∞ by default.
@@ -46,10 +45,10 @@ impl<E, U: Default> ExtrapolatingWall<E, U> {
     }
 }
 
-/// How an [`ExtrapolatingWall`] extrapolates the velocity: not at all (`()`), [`NoSlip`] or [`CurvedNoSlip`].
+/// Extrapolation of the velocity to an [`ExtrapolatingWall`]: none (`()`), [`NoSlip`] or [`CurvedNoSlip`].
 pub trait WallVelocity: Copy + Send + Sync + 'static {
-    /// From a wall particle to its foot, the nearest point of the surface, at which its sums are then made
-    /// \[m\]; `()` where it needs none.
+    /// From a wall particle to its foot, the nearest point of the surface and centre of its sums \[m\]; `()`
+    /// if sums are centred at the particle.
     type Foot: Numbers;
     /// Sums of (u_wall − u_f) W.
     type Sum: Numbers;
@@ -98,11 +97,11 @@ impl WallVelocity for NoSlip {
     }
 }
 
-/// u_w = u_wall − a + b/2 of the field u_wall + a η + b η²/2 + c ξ η that is fitted by least squares, with
-/// weights V W, to the fluid around the foot of the wall particle: η is the distance from the surface and ξ
-/// that along it, over the depth of the wall particle. Exact for every field of second degree that is u_wall
-/// on a plane surface. Each wall particle needs its foot, see [`crate::scene::Setting::feet`]; where too few
-/// particles are near to tell a from b, b and c are 0.
+/// u_w = u_wall − a + b/2 of the field u_wall + a η + b η²/2 + c ξ η, fitted by least squares with weights V
+/// W to the fluid around the foot of the wall particle. η is the distance from the surface and ξ the distance
+/// along it, over the depth of the wall particle. Exact for every field of second degree that is u_wall on a
+/// plane surface. Each wall particle needs its foot, see [`crate::scene::Setting::feet`]. With too few
+/// particles to separate a from b, b and c are 0.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CurvedNoSlip;
 
@@ -165,7 +164,7 @@ impl<X, E: EquationOfState, U: WallVelocity> Walls<X> for ExtrapolatingWall<E, U
 impl<E: EquationOfState, U: WallVelocity> Extrapolation for ExtrapolatingWall<E, U> {
     const FEET: bool = U::FEET;
     type Foot = U::Foot;
-    /// Σ W \[1/m²\], Σ \[p + ρ (g − a_w)·r\] W \[Pa/m²\], and what is summed of the velocity.
+    /// Σ W \[1/m²\], Σ \[p + ρ (g − a_w)·r\] W \[Pa/m²\], and the sums of the velocity.
     type Sum = (f64, f64, U::Sum);
 
     fn foot(foot: Option<&Vector2<f64>>) -> U::Foot {
@@ -237,7 +236,7 @@ mod tests {
         Ok(simulation)
     }
 
-    /// The largest difference between the velocity of a wall particle that fluid sees and the field.
+    /// The largest difference between the extrapolated velocity of a wall particle and the field.
     fn off<U: WallVelocity + Default>(
         rows: usize,
         disorder: f64,
@@ -264,7 +263,7 @@ mod tests {
         assert!(found < 1e-13, "one row tells no curvature: {found:e}");
     }
 
-    /// Of a parabola above a wall on a lattice the viscous force (6) is the same beside the wall as inside.
+    /// For a parabola above a wall on a lattice, the viscous force (6) next to the wall is the force inside.
     #[test]
     fn the_viscous_force_beside_a_curved_wall_velocity_is_that_inside() {
         let parabola = |x: Vector2<f64>| Vector2::new(3.0 * x.y - 9.0 * x.y * x.y, 0.0);

@@ -33,8 +33,8 @@ impl PlaneWall {
         (point - self.point).dot(&self.normal)
     }
 
-    /// Puts a particle that has crossed the wall in the place of its mirror particle, which came out of the
-    /// wall when it went in, and turns what it has of a velocity into the wall.
+    /// Moves a particle that has crossed the wall to the place of its mirror particle, which left the wall
+    /// when the particle entered it, and reverses its velocity into the wall.
     #[inline(always)]
     pub(crate) fn put_back<X>(&self, particle: &mut Evolved<X>) {
         let depth = self.depth(particle.position);
@@ -55,10 +55,10 @@ pub(crate) fn corners(walls: &[PlaneWall]) -> impl Iterator<Item = [&PlaneWall; 
     pairs.filter(|[a, b]| a.normal.dot(&b.normal).abs() <= RIGHT_ANGLE)
 }
 
-/// Walls represented by mirror (ghost) particles: each particle within the list radius of a wall has an
-/// image across the wall with the density and pressure of its original (inferred) and a velocity by `SLIPS`,
-/// see [`Ghosts`] and [`SlipGhosts`]. In the plane of the wall a particle feels equal forces from both sides,
-/// so it may cross it: it then has no image, which would lie in the fluid.
+/// Walls represented by mirror (ghost) particles: each particle within the list radius of a wall has an image
+/// across the wall with the density and pressure of its original (inferred) and a velocity by `SLIPS`, see
+/// [`Ghosts`] and [`SlipGhosts`]. In the plane of the wall a particle has equal forces from both sides, so it
+/// may cross the wall: it then has no image, which would be in the fluid.
 ///
 /// Where two walls meet at a right angle, the fluid between them, a particle within that radius of both
 /// has an image across both as well: the mirror particle of its mirror particle, half a turn about the
@@ -78,14 +78,14 @@ pub type Ghosts = Mirrors<false>;
 /// v − 2\[(v − U)·n\]n = v − 2(v·n)n, and across a corner −v. The motion U of a wall along itself, and its
 /// curvature, have no effect.
 ///
-/// When a particle has crossed the wall, the next step begins with it in the place of its mirror particle,
-/// which came out when it went in, with its velocity across the wall reversed. (Along walls to which the
-/// fluid sticks it stays lost. Images with the opposite velocity make the density of particles in the plane
-/// noisy: of ten dam breaks two diverge, and three with particles put back, six with particles stopped.)
+/// If a particle has crossed the wall, the next step begins with the particle at the place of its mirror
+/// particle and its velocity across the wall reversed. (At a no-slip wall it stays lost: images with the
+/// opposite velocity make the density of particles in the plane noisy. Of ten dam breaks two diverge, and
+/// three with particles put back, six with particles stopped.)
 ///
-/// Pressure (5) and continuity (3) then do no work on these walls, in any arrangement before them: what
-/// the image of j does to i is the mirror of what the image of i does to j. Images of a no-slip wall do work
-/// on the velocity along it (what is left of −2 Σ m m' (p'/ρ'²) v_t·∇W).
+/// Pressure (5) and continuity (3) then do no work on these walls in any arrangement of particles: the action
+/// of the image of j on i is the mirror of the action of the image of i on j. Images of a no-slip wall do
+/// work on the velocity along it (the remainder of −2 Σ m m' (p'/ρ'²) v_t·∇W).
 pub type SlipGhosts = Mirrors<true>;
 
 impl<X, const SLIPS: bool> Walls<X> for Mirrors<SLIPS> {
@@ -118,7 +118,7 @@ mod tests {
         vec![wall(0.0, 0.0, y), wall(0.0, 0.0, x), wall(1.0, 0.0, -x)]
     }
 
-    /// Disordered water in the tank, each velocity the next number of `random`, or all the same.
+    /// Disordered water in the tank, with velocities from `random`, or one for all.
     fn water(uniform: Option<Vector2<f64>>) -> Vec<Particle> {
         let mut random = random(1);
         crate::lattice(Vector2::repeat(0.05), 0.1, 10, 6)
@@ -131,8 +131,8 @@ mod tests {
             .collect()
     }
 
-    /// What pressure and continuity together do to kinetic and compression energy, over what each does;
-    /// and the largest |dρ/dt| of particles that no side reaches.
+    /// The change of kinetic plus compression energy by pressure and continuity, over the change by each; and
+    /// the largest |dρ/dt| of particles beyond the reach of all sides.
     fn work_and_rate<W: Walls<()>>(walls: W, particles: Vec<Particle>) -> [f64; 2] {
         let (pressure, domain) = (Pressure::new(EOS), Domain::open());
         let scene = Scene::<Method<W>>::new(0.15, domain, particles, pressure, Continuity, walls);
@@ -207,8 +207,8 @@ mod tests {
         assert!(slips < 1e-12 && sticks > 1.0, "a drag of {slips:e} and of {sticks:e}");
     }
 
-    /// A particle behind the bottom repelled the water above it twice: from its own place, and as an image in
-    /// the midst of the water.
+    /// A particle behind the bottom must not act twice on the water above it, from its own place and as an
+    /// image inside the water.
     #[test]
     fn a_particle_that_has_crossed_acts_from_its_own_place_alone() {
         let floor = tank()[..1].to_vec();
@@ -234,8 +234,8 @@ mod tests {
         assert!(off < 1e-12, "the sum of image and pair is {off:e} off the force of both");
     }
 
-    /// The lowest row of a layer that was stretched sank through the floor of a dam break, 4 spacings deep at
-    /// a/dx = 69, because beyond the plane nothing but other particles acts on it.
+    /// Beyond the plane only other particles act on a particle: without the correction the lowest row of a
+    /// stretched layer sinks through the floor of a dam break, 4 spacings deep at a/dx = 69.
     #[test]
     fn a_particle_that_crosses_a_wall_is_put_back_where_its_mirror_particle_comes_out() {
         let (pressure, domain) = (Pressure::new(EOS), Domain::open());
@@ -265,7 +265,7 @@ mod tests {
         }
     }
 
-    /// A layer one row thick falls on the floor and is stretched along it, as under a dam break.
+    /// A layer one row thick that falls on the floor and is stretched along it, as under a dam break.
     #[test]
     fn no_particle_of_a_thin_layer_that_is_pressed_on_a_wall_and_stretched_is_lost() {
         let layer = crate::lattice(Vector2::new(0.025, 0.004), 0.05, 20, 1).map(|place| {

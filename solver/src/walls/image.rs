@@ -25,7 +25,7 @@ impl Map {
         Self::Corner([*a, *b], a.point - b.normal * b.depth(a.point))
     }
 
-    /// Where the image of a point is \[m\].
+    /// The place of the image of a point \[m\].
     #[inline(always)]
     pub fn place(&self, point: Vector2<f64>) -> Vector2<f64> {
         match self {
@@ -35,7 +35,7 @@ impl Map {
         }
     }
 
-    /// The walls across which it mirrors.
+    /// The walls of this mirror or corner.
     #[inline(always)]
     pub(crate) fn walls(&self) -> &[PlaneWall] {
         match self {
@@ -45,10 +45,10 @@ impl Map {
         }
     }
 
-    /// The image of a column, `slip` being [`super::Walls::SLIPS`]. Scalars (density, pressure) are those
-    /// of the source. Of a source that has crossed a wall the image would lie in the fluid: it has neither
-    /// mass nor volume, and so acts on nothing. `motion` is 1, or 0 where velocities are differences of two
-    /// states: U and ∂²v/∂n² are then 0.
+    /// The image of a column, `slip` being [`super::Walls::SLIPS`]. Density and pressure are equal to the
+    /// source's. If the source has crossed the wall, its image would be in the fluid: it gets no mass and no
+    /// volume, and acts on nothing. `motion` is 1, or 0 where velocities are differences of two states: U and
+    /// ∂²v/∂n² are then 0.
     #[inline(always)]
     pub fn apply<S: Numbers>(&self, source: &Column<S>, slip: bool, motion: f64) -> Column<S> {
         let v = source.velocity;

@@ -23,10 +23,10 @@ use crate::{
 
 /// How a scene treats its walls.
 pub trait Walls<X>: Clone + Send + Sync + 'static {
-    /// The terms by which wall particles evolve, or `()` if there are none; then no pair sweep over wall
-    /// particles is compiled. They read no derived data.
+    /// The terms by which wall particles evolve, without derived data; with `()` no pair sweep over wall
+    /// particles is compiled.
     type Terms: Term<X>;
-    /// How wall particles get velocity and density from the fluid; `()` if they do not.
+    /// Extrapolation of velocity and density from the fluid to wall particles; `()` for none.
     type Extrapolation: Extrapolation;
     /// The values of [`Walls::Terms`].
     fn terms(&self) -> Self::Terms;
@@ -45,8 +45,8 @@ pub trait Walls<X>: Clone + Send + Sync + 'static {
 pub trait Extrapolation: Copy + Send + Sync + 'static {
     /// Whether nothing is extrapolated.
     const IS_EMPTY: bool = false;
-    /// Whether the sums are made at the foot of each wall particle, the nearest point of the surface, in
-    /// place of its own: [`crate::scene::Setting::feet`].
+    /// Whether the sums are formed at the foot of each wall particle, the nearest point of the surface:
+    /// [`crate::scene::Setting::feet`].
     const FEET: bool = false;
     /// From a wall particle to its foot \[m\]; `()` where the sums do not need it.
     type Foot: Numbers;
@@ -65,7 +65,7 @@ pub trait Extrapolation: Copy + Send + Sync + 'static {
 pub struct WallState {
     /// Density \[kg/m³\].
     pub density: f64,
-    /// Velocity beyond that of the wall \[m/s\].
+    /// Velocity minus the velocity of the wall \[m/s\].
     pub velocity: Vector2<f64>,
 }
 
