@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p touchstone-solver --example couette_only`
 //!
-//! The program holds what `Couette` names and nothing else: no other term, wall or integrator.
+//! The program contains the code of `Couette` and of no other term, wall or integrator.
 
 use std::error::Error;
 
@@ -13,7 +13,7 @@ use touchstone_solver::{
     QuinticSpline, Scene, Stepper, Tait, Viscosity, lattice,
 };
 
-/// Kernel, forces, what else changes in time, walls, integrator.
+/// Kernel, forces, drift, walls, integrator.
 type Couette = Compose<QuinticSpline, (Pressure<Tait>, Viscosity), Continuity, Ghosts, Leapfrog>;
 
 /// Runs the flow and prints its distance from the straight line.

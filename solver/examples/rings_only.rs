@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p touchstone-solver --example rings_only`
 //!
-//! The program holds what `Rubber` names and nothing else: no wall, no exponent of an equation of
-//! state, no viscosity of a fluid. Nothing is periodic, so no column is an image.
+//! The program contains the code of `Rubber` only: no wall, no exponent of an equation of state, no viscosity
+//! of a fluid. Nothing is periodic, so no column is an image.
 
 use std::{error::Error, f64::consts::TAU};
 
@@ -14,7 +14,7 @@ use touchstone_solver::{
     Symmetric, Xsph,
 };
 
-/// Kernel, forces, what else changes in time, walls, integrator, what a particle carries besides.
+/// Kernel, forces, drift, walls, integrator, extra fields.
 type Rubber = Compose<
     CubicSpline,
     (CauchyStress<Linear, PrincipalStress>, ArtificialViscosity<Linear>),

@@ -205,7 +205,7 @@ fn the_work_of_the_forces_is_what_the_stress_stores() {
     assert!(artificial.abs() > 1e-4, "artificial stress is not conjugate: {artificial:e}");
 }
 
-/// Asked for alone, the forces of a scene sum their own moments.
+/// The rates of single terms use moments of their own.
 #[test]
 fn the_rates_of_the_terms_alone_are_those_of_a_step() {
     for domain in [Domain::open(), Domain::torus(1.0, 1.0)] {

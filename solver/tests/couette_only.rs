@@ -1,5 +1,5 @@
-//! A program holds what its scheme names and nothing else: the example's symbols, read from the
-//! program of this test, which is a module of the example and links nothing more.
+//! A program contains the code of the scheme that it names and no other. The symbols are read from the
+//! program of this test, which includes the example as a module and links nothing more.
 
 #[cfg(all(target_os = "linux", target_pointer_width = "64", target_endian = "little"))]
 mod symbols;

@@ -47,7 +47,7 @@ fn builds<W: Walls<()>>(domain: Domain, walls: W, velocity: V2) -> f64 {
     let (_, exact) = run(0.0, 0.5);
     let off = |places: &[V2]| {
         let pairs = places.iter().zip(&exact);
-        // Whole periods are no difference.
+        // Modulo whole periods.
         let gap = |(a, b): (&V2, &V2)| (a - b).map(|x| x - x.round()).norm();
         pairs.map(gap).fold(0.0, f64::max) / DX
     };
@@ -97,9 +97,8 @@ fn met<W: Walls<()>>(walls: &W, count: usize, axis: usize, gap: f64, list: [f64;
     simulation.particles().into_iter().map(|p| p.position / DX).collect()
 }
 
-/// From twelve distances, so that blocks meet on lists of any age: where they end, lists that are kept do
-/// not change, unless they are kept for four times too long: what a particle misses by then is no neighbour
-/// of the others of its group either.
+/// From twelve distances, so that blocks meet with lists of any age. Kept lists do not change the result
+/// unless they are kept for four times too long, when members of one group miss neighbours.
 fn check_meetings<W: Walls<()>>(walls: &W, count: usize, axis: usize) {
     let [mut kept, mut stale] = [0.0_f64; 2];
     for k in 0..12 {
@@ -136,8 +135,8 @@ fn blocks_that_meet_along_one_axis_only_end_where_they_do_without_kept_lists() {
     }
 }
 
-/// Its particles do not move against each other, so their displacements are a point: lists kept as long as
-/// the point has no extent ended the run at half a period.
+/// Its particles do not move relative to each other, so the bounding box of their displacements is a point
+/// and lists stay valid. A displacement of half a period without new lists must not count as a divergence.
 #[test]
 fn water_that_moves_by_more_than_a_period_is_not_taken_for_lost() {
     let water = lattice(V2::repeat(0.5 * DX), DX, 8, 8);
@@ -147,7 +146,7 @@ fn water_that_moves_by_more_than_a_period_is_not_taken_for_lost() {
     let mut simulation = scene.build().expect("a sound scene");
     let outcome = simulation.advance(1.0, DT, &mut ());
     assert_eq!(outcome, Outcome::Reached, "after {} s of 1 s", simulation.time());
-    // A particle crosses the skin, twice what lists allow for, in 4 steps.
+    // A particle crosses the skin, twice the allowed distance of lists, in 4 steps.
     let Work { steps, list_builds, .. } = simulation.work();
     let expected = steps / 4..=steps / 3 + 1;
     assert!(expected.contains(&list_builds), "{list_builds} builds, expected {expected:?}");

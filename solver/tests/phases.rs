@@ -1,4 +1,4 @@
-//! A watch is called at the start of each phase of a step; lists are those that sweeps go through.
+//! A watch is called at the start of each phase of a step; the neighbour lists are the lists of the sweeps.
 
 use std::sync::{Arc, Mutex};
 
@@ -31,7 +31,7 @@ fn simulation<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     Scene::new(H, domain, particles, pressure, Continuity, walls).build().expect("a scene")
 }
 
-/// The phases of one step, without the repetitions of one after itself, and those of bringing all to a time.
+/// The phases of one step, without repetitions, and the phases of a synchronisation.
 fn phases<W: Walls<()>, I: Integrator<Method<W, ()>>>(
     simulation: &mut Simulation<Method<W, I>>,
 ) -> Vec<Phase> {

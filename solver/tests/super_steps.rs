@@ -1,4 +1,4 @@
-//! Super-time-stepping of viscosity against what it must do exactly.
+//! Super-time-stepping of viscosity against its exact properties.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
@@ -14,7 +14,8 @@ type Plain<W> = Compose<CubicSpline, (Others, Viscosity), Continuity, W, Leapfro
 const N: usize = 16;
 const DX: f64 = 1.0 / N as f64;
 const H: f64 = 1.3 * DX;
-/// So slow that no particle moves by one bit: the forces are linear, so the digits are those of any speed.
+/// So slow that no particle moves by one bit: the forces are linear, so the digits do not depend on the
+/// speed.
 const SLOW: f64 = 1e-30;
 /// 2 over the largest eigenvalue of the lattice at ν = 1 and h = 1.3 dx, less 5 %.
 const EXPLICIT: f64 = 0.34 * H * H;
@@ -195,7 +196,7 @@ fn a_steady_flow_between_moving_walls_is_that_of_the_plain_leapfrog() {
     check(ExtrapolatingWall::<_, NoSlip>::new(eos, Vector2::zeros()), &with_plates(rest()));
 }
 
-/// Every velocity after a kick is a mean of those before it, whatever dt.
+/// Every velocity after a kick is a mean of velocities before it, at any dt.
 #[test]
 fn velocities_do_not_overshoot_their_neighbours() {
     let step = |x: Vector2<f64>| if (0.3..0.7).contains(&x.y) { SLOW } else { 0.0 };
@@ -286,7 +287,7 @@ fn a_run_goes_on_from_a_checkpoint_with_the_same_bits() {
     }
 }
 
-/// With an explicit limit that is stated too long, stages are too few, and the run says that it diverged.
+/// With an overestimated explicit limit there are too few stages, and the run diverges.
 #[test]
 fn a_limit_that_is_stated_too_long_ends_as_a_divergence() {
     let run = |stated: f64| {

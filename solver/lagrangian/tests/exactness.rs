@@ -37,7 +37,7 @@ fn a_linear_deformation_is_exact_at_every_particle_and_has_no_hourglass_energy()
         energies.hourglass,
         energies.shear
     );
-    // The density of every particle is that of the deformation, and the stress is uniform.
+    // The density of every particle follows from the deformation, and the stress is uniform.
     let ratio = (Matrix2::identity() + gradient).determinant();
     assert!(solid.data().fluid().all(|(_, e)| (e.density * ratio / DENSITY - 1.0).abs() < 1e-13));
 }
@@ -113,7 +113,7 @@ fn forces_at_planes_and_across_periods_are_derivatives_of_the_stored_energy() {
     );
 }
 
-/// Two blocks side by side, half a spacing too close to each other, beside a plane.
+/// Two blocks side by side, half a spacing too close to each other, and a plane.
 fn two<C: Load>(loads: C) -> SolidScene<Open, C> {
     let left = block(4, 5, 0.1);
     let right = left.iter().map(|p| touchstone_solver::Particle {
@@ -168,7 +168,7 @@ fn linear_and_angular_momentum_are_those_of_no_force_at_every_state() {
     check::<Hencky, _>(two(contact()));
 }
 
-/// Bodies that overlap push, bodies that do not touch do nothing, whatever their distance: nothing pulls.
+/// Overlapping bodies repel each other; bodies apart do not act on each other at any distance.
 #[test]
 fn contact_pushes_and_never_pulls() {
     for apart in [0.0, 0.3, 0.9, 1.3, 2.0, 9.0] {
@@ -189,8 +189,8 @@ fn contact_pushes_and_never_pulls() {
     }
 }
 
-/// Of straight faces the push is that of the pressure, wherever particles of one stand beside those of the
-/// other: particles do not catch on each other.
+/// The force between straight faces equals the pressure at any relative position of their particles:
+/// particles do not catch on each other.
 #[test]
 fn faces_that_slide_along_each_other_feel_the_same_pressure_everywhere() {
     let domain = Domain { low: Vector2::zeros(), period: [None, Some(6.0)] };
@@ -252,8 +252,8 @@ fn bodies_that_collide_keep_momentum_and_energy_and_part() {
     assert!(off < 1e-12, "momentum {:?} is {off:e} off 0.02 of the mass, upwards", momentum / mass);
 }
 
-/// A hook, bent so far that its two ends touch: they push each other apart, and what is a neighbour in the
-/// reference never does.
+/// A hook, bent so far that its two ends touch: they repel each other, but neighbours in the reference do
+/// not.
 #[test]
 fn a_body_touches_itself_where_it_is_no_neighbour() {
     let hook = || {
@@ -286,8 +286,8 @@ fn near(at: &[Vector2<f64>], most: f64, is_pair: impl Fn(usize, usize) -> bool) 
 }
 
 /// A step sweeps twice over the neighbours of the reference, for gradients and for forces, and twice over the
-/// faces that see each other, for ψ and for the forces of the contact. Pairs of two bodies are no neighbours
-/// in the reference, although they are near there.
+/// faces in contact reach, for ψ and for the forces of contact. Particles of two bodies are not neighbours in
+/// the reference, even if they are near each other there.
 #[test]
 fn a_step_counts_each_sweep_over_the_reference_and_over_the_contact() {
     let scene = two(contact());

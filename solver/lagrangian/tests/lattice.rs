@@ -141,7 +141,7 @@ fn the_step_limit_is_that_of_theory() {
 fn pressed() -> (Block<Hencky, BetweenFaces>, BetweenFaces) {
     let mut particles = block(8, 5, 0.0);
     for p in particles.iter_mut().filter(|p| p.position.x > 4.0) {
-        // Beside the gaps of the other face: where particles stand opposite each other, faces slip.
+        // Opposite to the gaps of the other face: where particles are opposite each other, faces slip.
         p.position += Vector2::new(-0.6, 0.5);
     }
     let plane = |x, normal| PlaneWall::new(Vector2::new(x, 0.0), normal, Vector2::zeros());
@@ -187,7 +187,8 @@ fn fastest(solid: &mut Block<Hencky, BetweenFaces>) -> f64 {
     squared
 }
 
-/// The limit is that of the fastest mode of the bodies and their contact together, which the rule estimates.
+/// The limit follows from the fastest mode of the bodies and their contact together, which the rule
+/// estimates.
 #[test]
 fn the_step_limit_of_bodies_in_contact_is_that_of_their_fastest_mode() {
     let (mut solid, contact) = pressed();

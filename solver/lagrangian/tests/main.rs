@@ -1,4 +1,4 @@
-//! Properties of the total Lagrangian solid, as one program: what several of them use is compiled once.
+//! Properties of the total Lagrangian solid, in one program: shared code is compiled once.
 
 mod common;
 mod exactness;

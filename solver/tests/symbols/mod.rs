@@ -1,8 +1,8 @@
 //! The symbols of the program that a test runs in: Linux, 64 bits, little-endian.
 
-/// How many symbols of this program hold the type `name`. Every mangling keeps the names of types as
-/// they are, after something that is no letter; schemes stand in the symbols of what is dropped and
-/// of what is not inlined.
+/// The number of symbols of this program with the type `name`. Every mangling keeps the names of types, after
+/// a character that is no letter; schemes are in the symbols of drop functions and of functions that are not
+/// inlined.
 pub fn held(name: &str) -> usize {
     let program = std::env::current_exe().expect("a path");
     let symbols = symbols(&std::fs::read(program).expect("a program"));

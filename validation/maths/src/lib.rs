@@ -6,8 +6,7 @@ pub mod geometry;
 pub mod metrics;
 pub mod theory;
 
-/// The two ends of an interval that was halved so many times: `is_low` holds at the lower one, and not at the
-/// upper one.
+/// The ends of an interval after `times` halvings: `is_low` holds at the lower end and not at the upper end.
 fn halved([mut low, mut high]: [f64; 2], times: usize, is_low: impl Fn(f64) -> bool) -> [f64; 2] {
     for _ in 0..times {
         let middle = 0.5 * (low + high);

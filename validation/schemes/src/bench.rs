@@ -1,9 +1,9 @@
-//! Scenes for measuring speed: what `touchstone doctor --bench` times.
+//! Scenes for measuring speed, used by `touchstone doctor --bench`.
 //!
-//! The scene is a torus of particles on a square lattice in a slow shear, cubic spline with
-//! h/dx = 1.2, so 20 neighbours within the support; continuity, pressure and Morris viscosity. Steps
-//! are so short that lists are never rebuilt: what is measured is the right-hand side. Building lists
-//! is measured by [`Rebuilding`], an integrator that does nothing else.
+//! The scene is a torus of particles on a square lattice in a slow shear, cubic spline with h/dx = 1.2, so 20
+//! neighbours within the support; continuity, pressure and Morris viscosity. Steps are so short that lists
+//! are never rebuilt: the measured time is the right-hand side. [`Rebuilding`], an integrator that does
+//! nothing else, measures the building of lists.
 
 use std::time::Instant;
 use touchstone_base::functions::sin;
@@ -53,8 +53,7 @@ impl<P: Physics> Integrator<P> for Rebuilding {
     }
 }
 
-/// Seconds a step of the next so many; NaN if they are not made to the end, for steps that are not made take
-/// no time.
+/// Seconds a step over the next `steps` steps; NaN if the run diverges.
 fn batch<S: Scheme>(simulation: &mut Simulation<S>, dt: f64, steps: u64) -> f64 {
     let until = simulation.time() + steps as f64 * dt;
     let start = Instant::now();
@@ -71,7 +70,7 @@ pub fn seconds_per_step<S: Scheme>(simulation: &mut Simulation<S>, dt: f64, budg
     (0..4).map(|_| batch(simulation, dt, steps)).fold(first, f64::min)
 }
 
-/// What one scene came to.
+/// Results of one scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Speed {
     /// Particles.

@@ -11,15 +11,15 @@ use crate::{Method, methods, stepped};
 pub type Fluid<B, R = ()> = (Pressure<Tait, R>, Viscosity, B);
 /// Forces of a flow that no force drives.
 pub type Pairs = (Pressure<Tait>, Viscosity);
-/// What stabilises the modern variants.
+/// Density diffusion and shifting, the stabilisers of the modern variants.
 pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
-/// The same with a continuity that is exact for linear fields.
+/// [`Stabilised`] with a continuity that is exact for linear fields.
 pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
 /// The paper's: cubic spline and predictor-corrector.
 pub type Seed<F, D, W = Ghosts> = Compose<CubicSpline, F, D, W, PredictorCorrector>;
 /// Quintic spline and, as a rule, leapfrog.
 pub type Modern<F, D, W = Ghosts, I = Leapfrog> = Compose<QuinticSpline, F, D, W, I>;
-/// Quintic spline, leapfrog and super-time-stepping of viscosity beside the forces `E`.
+/// Quintic spline, leapfrog, forces `E`, and viscosity by super-time-stepping.
 pub type Stiff<E> = Modern<Split<E, Viscosity>, Stabilised, Ghosts, Leapfrog<SuperSteps>>;
 
 type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
@@ -35,17 +35,17 @@ const _: () = assert!(size_of::<<Stabilised as Term<()>>::Derived>() == 0);
 pub struct OfChannels {
     /// The paper's.
     pub seed: Method,
-    /// The same with interface and wall particles.
+    /// `seed` with interface and wall particles.
     pub interface_wall: Method,
     /// Wendland's kernel and leapfrog.
     pub wendland: Method,
     /// Quintic spline and leapfrog.
     pub plain: Method,
-    /// The same with walls that extrapolate.
+    /// `plain` with extrapolating walls.
     pub extrapolating: Method,
-    /// `plain` with what stabilises.
+    /// `plain` with [`Stabilised`].
     pub modern: Method,
-    /// The same with one pair sweep a step.
+    /// `modern` with one pair sweep a step.
     pub single_sweep: Method,
     /// `modern` with super-time-stepping.
     pub stiff: Method,
@@ -66,9 +66,9 @@ fn of_channels<F: FromMedium + Term<()>, E: FromMedium + Term<()>>() -> OfChanne
 }
 
 methods! { of_channels => OfChannels:
-    /// Those of a flow that a plate drives.
+    /// Flow driven by a plate.
     couette: Pairs, Pressure<Tait>;
-    /// Those of a flow that a body force drives.
+    /// Flow driven by a body force.
     poiseuille: Fluid<BodyForce>, (Pressure<Tait>, BodyForce);
 }
 methods! { stepped => Method:
@@ -88,33 +88,33 @@ methods! { stepped => Method:
 
     /// The cavity by the paper's method.
     cavity_seed: Seed<Pairs, Continuity, InterfaceWall>;
-    /// The cavity with walls that extrapolate, and what stabilises.
+    /// The cavity with extrapolating walls and [`Stabilised`].
     cavity_modern: Modern<Pairs, Stabilised, Mean>;
-    /// The same where shifting carries the velocity of the new place.
+    /// `cavity_modern` with shifting that advects the velocity.
     cavity_carried: Modern<Carried, Stabilised, Mean>;
-    /// The same with sums that are exact for linear fields.
+    /// `cavity_carried` with sums that are exact for linear fields.
     cavity_consistent: Modern<Consistent, ConsistentDrift, Mean>;
 
     /// Vortices without a stabiliser.
     vortices_plain: Modern<Pairs, Continuity, Open>;
-    /// Vortices with what stabilises.
+    /// Vortices with [`Stabilised`].
     vortices_modern: Modern<Pairs, Stabilised, Open>;
-    /// The same where shifting carries the velocity of the new place.
+    /// `vortices_modern` with shifting that advects the velocity.
     vortices_carried: Modern<Carried, Stabilised, Open>;
-    /// The same with sums that are exact for linear fields.
+    /// `vortices_carried` with sums that are exact for linear fields.
     vortices_consistent: Modern<Consistent, ConsistentDrift, Open>;
 
     /// The manufactured flow by the paper's method, with ghosts.
     manufactured_seed: Seed<Fluid<Source>, Continuity>;
-    /// The same with interface and wall particles.
+    /// `manufactured_seed` with interface and wall particles.
     manufactured_seed_interface: Seed<Fluid<Source>, Continuity, InterfaceWall>;
-    /// The manufactured flow with what stabilises, and ghosts.
+    /// The manufactured flow with [`Stabilised`] and ghosts.
     manufactured_modern: Modern<Fluid<Source>, Stabilised>;
-    /// The same with interface and wall particles.
+    /// `manufactured_modern` with interface and wall particles.
     manufactured_modern_interface: Modern<Fluid<Source>, Stabilised, InterfaceWall>;
     /// The manufactured flow with sums that are exact for linear fields, and ghosts.
     manufactured_consistent: Modern<Exact, ConsistentDrift>;
-    /// The same with interface and wall particles.
+    /// `manufactured_consistent` with interface and wall particles.
     manufactured_consistent_interface: Modern<Exact, ConsistentDrift, InterfaceWall>;
 }
 

@@ -55,10 +55,10 @@ methods! { driven => HillMethod:
     plain: Modern<Pairs, Continuity, Mean>;
     /// `modern` with interface and wall particles.
     interface_wall: Modern<Pairs, Stabilised, InterfaceWall>;
-    /// With what stabilises.
+    /// With [`Stabilised`].
     modern: Modern<Pairs, Stabilised, Mean>;
     /// Where shifting carries the velocity of the new place, and walls know how the velocity bends.
     carried: Modern<Carried, Stabilised, Curved>;
-    /// The same with sums that are exact for linear fields.
+    /// `carried` with sums that are exact for linear fields.
     consistent: Modern<Consistent, ConsistentDrift, Curved>;
 }

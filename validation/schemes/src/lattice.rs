@@ -23,9 +23,9 @@ type Summing<K> = Compose<K, (), Summation<K>, Open, Leapfrog>;
 methods! { stepped => Method:
     /// The equations with the cubic spline and the leapfrog.
     cubic: Plain<CubicSpline>;
-    /// The same with the predictor-corrector.
+    /// [`cubic`] with the predictor-corrector.
     midpoint: Plain<CubicSpline, PredictorCorrector>;
-    /// The same with one pair sweep a step.
+    /// [`cubic`] with one pair sweep a step.
     single_sweep: Plain<CubicSpline, SingleSweep>;
     /// [`cubic`] with the quintic spline.
     quintic: Plain<QuinticSpline>;
@@ -33,7 +33,7 @@ methods! { stepped => Method:
     wendland: Plain<WendlandC2>;
     /// [`cubic`] with density diffusion.
     diffusive: Diffusive<Equations>;
-    /// The same with artificial viscosity on every pair.
+    /// [`diffusive`] with artificial viscosity on every pair.
     damped: Diffusive<Damped>;
     /// [`cubic`] with super-time-stepping.
     super_stepping:
@@ -47,14 +47,14 @@ methods! { stepped => Method:
     wendland_corrected: Corrected<WendlandC2>;
     /// Densities that are sums of masses, with the cubic spline.
     cubic_sum: Summing<CubicSpline>;
-    /// The same with the quintic spline.
+    /// [`cubic_sum`] with the quintic spline.
     quintic_sum: Summing<QuinticSpline>;
-    /// The same with Wendland's function.
+    /// [`cubic_sum`] with Wendland's function.
     wendland_sum: Summing<WendlandC2>;
 }
 
-/// ρ ← Σ m W within a step of [`summing_step`]: no scheme of this program has it, but those of other codes
-/// do.
+/// ρ ← Σ m W within a step of [`summing_step`], the density of many other codes; the schemes of the benchmarks
+/// integrate (3) instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Summation<K> {
     kernel: Smoothing<K>,
@@ -62,9 +62,9 @@ pub struct Summation<K> {
     rate: f64,
 }
 
-/// The time step with which operators are measured, 1e-6 h/c₀ \[s\]: so short that nothing changes by more
-/// than 1e-5 of itself, which is what the gates allow, and long enough for velocities and densities to change
-/// by more than their round-off.
+/// The time step for the measurement of operators, 1e-6 h/c₀ \[s\]: short enough that nothing changes by more
+/// than 1e-5 of its value, the bound of the gates, and long enough that velocities and densities change by
+/// more than their round-off.
 pub fn summing_step(medium: &Medium) -> f64 {
     1e-6 * medium.h / medium.eos.sound_speed
 }

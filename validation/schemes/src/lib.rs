@@ -1,9 +1,9 @@
-//! The schemes that the cases run: a line of types each, and what has to know these types.
+//! The schemes of the cases, a line of types each, and the code that needs these types.
 //!
-//! A scheme is a type, and all that steps it is compiled for it, which is most of what compiling takes. Here
-//! it is compiled once and gets a function that gives it as a [`Method`], without its type. So a change of a
-//! case, or a test of one, compiles no scheme again. What a variant is called, what it is for, and its
-//! settings are said by its case.
+//! A scheme is a type, and everything that steps it is compiled for this type, which takes most of the time
+//! of a build. This crate compiles each scheme once and returns it as a [`Method`] without its type. So a
+//! change of a case or of its tests compiles no scheme again. Names, descriptions and settings of variants
+//! belong to the cases.
 
 pub mod bench;
 pub mod flow;
@@ -20,7 +20,7 @@ fn stepped<S: Standard>() -> Method<S::Extra> {
     Method::of::<S>()
 }
 
-/// Functions that give methods, each by this function that is generic over what names the scheme.
+/// Declares functions that return methods, each by the given generic function of the types of the scheme.
 macro_rules! methods {
     ($of:ident => $Method:ty: $($(#[doc = $doc:literal])+ $name:ident: $($Scheme:ty),+;)+) => {$(
         $(#[doc = $doc])+

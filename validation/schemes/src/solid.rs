@@ -1,11 +1,12 @@
 //! The elastic solid of the paper, and with gradients that are exact for linear fields and forces that are
 //! conjugate to them.
 //!
-//! What stabilises the latter is that of `plain`, for a reason. A wave without a gradient symbol, such as
-//! opposite velocities side by side, changes no stress. In tension σ it grows at the rate s,
-//! s² = 0.33 σ/(ρ dx²) at h = 1.5 dx, however gradients are corrected, since on a lattice correction is a
-//! factor. Artificial stress in principal axes (ξ = 0.3, n = 4) lowers the largest s² to 0.18, and artificial
-//! viscosity makes what is left slow. So tearing is delayed and not removed, as without correction.
+//! The stabilisers of the corrected variants are the stabilisers of `plain`, for a reason. A wave without a
+//! gradient symbol, such as alternating velocities, changes no stress. In tension σ it grows at the rate s,
+//! s² = 0.33 σ/(ρ dx²) at h = 1.5 dx, with any correction of gradients, because a correction is a factor on a
+//! lattice. Artificial stress in principal axes (ξ = 0.3, n = 4) lowers the largest s² to 0.18, and
+//! artificial viscosity slows the remaining growth. So tearing is delayed and not prevented, as without
+//! correction.
 
 use touchstone_harness::method::{Boundary, FirstRow, Medium};
 use touchstone_solver::{walls::Walls, *};
@@ -16,7 +17,7 @@ type Method = crate::Method<Symmetric>;
 
 /// (9), (10) and (12) with the artificial stress `R`, and (15) with (16) and (17).
 type Stabilised<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>);
-/// The same of a body that has weight.
+/// Forces of a body with weight.
 type Heavy<R> = (CauchyStress<Linear, R>, ArtificialViscosity<Linear>, BodyForce);
 /// The paper's terms: the forces `F` and XSPH (22).
 type Rubber<F, I = PredictorCorrector, W = Open> =
@@ -24,7 +25,7 @@ type Rubber<F, I = PredictorCorrector, W = Open> =
 /// The leapfrog without XSPH.
 type Leaping<F, W = Open> =
     Compose<CubicSpline, F, (Continuity, JaumannRate), W, Leapfrog, Symmetric>;
-/// The same with corrected gradients.
+/// Rubber with corrected gradients.
 type Corrected<F> = Compose<
     CubicSpline,
     F,
@@ -43,11 +44,11 @@ methods! { stepped => Method:
     leapfrog: Rubber<Stabilised<PrincipalStress>, Leapfrog>;
     /// The paper's, clamped.
     clamped_seed: Rubber<Stabilised<PrincipalStress>, PredictorCorrector, Clamp>;
-    /// The same of a body that has weight.
+    /// The paper's method for a clamped body with weight.
     heavy_seed: Rubber<Heavy<PrincipalStress>, PredictorCorrector, Clamp>;
     /// The terms of [`leapfrog`] without XSPH, clamped.
     clamped_plain: Leaping<Stabilised<PrincipalStress>, Clamp>;
-    /// The same with corrected gradients, not clamped.
+    /// Corrected gradients, not clamped.
     corrected: Corrected<(ConjugateStress<Linear, PrincipalStress>, ArtificialViscosity<Linear>)>;
     /// (3), (9)–(12) alone, stepped by the leapfrog: nothing stabilises, and nothing dissipates.
     bare: Leaping<CauchyStress<Linear>>;
@@ -60,17 +61,17 @@ pub fn free() -> [Method; 2] {
     [seed(), bare()]
 }
 
-/// The same of clamped bodies.
+/// Corrected gradients, clamped, without and with weight.
 pub fn clamped() -> [Method; 2] {
     [clamped_seed(), clamped_bare()]
 }
 
-/// Walls of an elastic body: particles of [`touchstone_solver::Role::Wall`] that stand still and continue the
-/// body, so that it is held where they begin. Their density and their stress follow the motion of the
-/// free particles by (3) and (11), so that they pull as well as push.
+/// Walls of an elastic body: fixed particles of [`touchstone_solver::Role::Wall`] that continue the body and
+/// hold it. Their density and stress follow the motion of the free particles by (3) and (11), so that they
+/// pull as well as push.
 ///
-/// A wall row reads no shown numbers, so the rotation of S in (11) is left out for them: it is of
-/// second order in the strain, and what is held hardly rotates.
+/// Terms of walls read no derived data, so the rotation of S in (11) is omitted for these particles: it is of
+/// second order in the strain, and a clamped end hardly rotates.
 #[derive(Clone, Copy, Debug)]
 pub struct Clamp {
     /// μ \[Pa\].

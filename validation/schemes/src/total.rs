@@ -15,9 +15,9 @@ use crate::methods;
 
 type Method = crate::Method<Symmetric>;
 
-/// h/dx: with a support of two spacings a particle sees the eight around it, the fewest with which all of its
-/// neighbours along both axes and diagonals count. Gradients at free surfaces are one-sided, and their error
-/// grows with the reach.
+/// h/dx: with a support of two spacings a particle has eight neighbours, the fewest that include all
+/// neighbours along both axes and diagonals. Gradients at free surfaces are one-sided, and their error grows
+/// with the support.
 pub const H_OVER_DX: f64 = 1.0;
 
 /// Densities over that without stress beyond which a run has diverged. Energy grows without bound as a body
@@ -25,13 +25,13 @@ pub const H_OVER_DX: f64 = 1.0;
 /// density, and at five times the density no usual step is stable.
 const DENSITIES: [f64; 2] = [0.2, 5.0];
 
-/// What names the parts of the method.
+/// The parts of the method by name.
 type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
 
 methods! { bodies => Method:
     /// Bodies with the stored energy of Hencky.
     hencky: Hencky;
-    /// The same with that of Saint Venant and Kirchhoff.
+    /// Bodies with the stored energy of Saint Venant and Kirchhoff.
     saint_venant_kirchhoff: SaintVenantKirchhoff;
 }
 
@@ -66,8 +66,9 @@ fn bodies<L: Law>() -> Method {
     Method { properties, build: build::<L> }
 }
 
-/// The bending stiffness of a plate of so many layers over that of an elastic plate, with what the method is
-/// used with: below 1, for a face takes its strain from a little inside.
+/// The bending stiffness of a plate of these layers over the stiffness of an elastic plate, with the support
+/// and hourglass modulus of the method: below 1, because the gradient at a face is the gradient a little
+/// inside.
 pub fn bending(layers: usize, poisson: f64) -> f64 {
     bending::stiffness::<WendlandC2>(H_OVER_DX, layers, poisson)
 }
@@ -107,8 +108,8 @@ fn step_limit(medium: &Medium) -> f64 {
     2.0 * medium.dx * (medium.density / stiffness).sqrt()
 }
 
-/// What [`fastest_of_block`] finds for h/dx and moduli \[Pa\]. It takes as long as hundreds of steps of a
-/// small body, and runs of many settings ask for the same, so it is kept.
+/// [`fastest_of_block`] for h/dx and moduli \[Pa\], cached: it takes as long as hundreds of steps of a small
+/// body, and runs of many settings need equal values.
 fn stiffness(of: [f64; 3]) -> f64 {
     static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
     let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
@@ -120,8 +121,8 @@ fn stiffness(of: [f64; 3]) -> f64 {
     stiffness
 }
 
-/// The same of bodies that press against each other with this pressure \[Pa\], from the limit of the
-/// compressed lattice.
+/// The time-step limit of bodies that press against each other with this pressure \[Pa\], from the limit of
+/// the compressed lattice \[s\].
 pub fn limit_in_contact(lattice: f64, medium: &Medium, pressure: f64) -> f64 {
     let contact = BetweenFaces::new(contact_stiffness(&moduli(medium)));
     contact.step_limit(lattice, medium.density, medium.dx, pressure)

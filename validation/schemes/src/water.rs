@@ -9,19 +9,20 @@ use crate::{Method, methods};
 
 /// (14) with (7), (16), (17), and gravity; `R` is the artificial stress (18), (19).
 type Water<R = (), V = ArtificialViscosity<Tait>> = (Pressure<Tait, R>, V, BodyForce);
-/// What the paper describes.
+/// The paper's method.
 type Seed<W> =
     Compose<CubicSpline, Water<ArtificialStress>, (Continuity, Xsph), W, PredictorCorrector>;
 /// Density diffusion that leaves a column at rest alone.
 type Diffusion = DensityDiffusion<Hydrostatic>;
-/// The viscosity of water that slips along boundary particles: it leaves them out, because they stand still.
+/// The viscosity of water that slips along boundary particles: pairs with boundary particles, which do not
+/// move, are omitted.
 type Slipping = FluidPairs<ArtificialViscosity<Tait>>;
 type Walls = ExtrapolatingWall<Tait>;
 /// The settings of `modern` and its relatives.
 type Modern<D = (Continuity, Diffusion), W = Walls, V = Slipping> =
     Compose<WendlandC2, Water<(), V>, D, W, Leapfrog>;
 
-/// A method whose simulations can say what each term does to the energy.
+/// A method with an energy budget by term.
 pub type WaterMethod = Method<(), dyn Metered<()>>;
 
 fn metered<S>() -> WaterMethod
@@ -42,11 +43,11 @@ methods! { metered => WaterMethod:
     free_seed: Seed<Open>;
     /// Wendland kernel, walls that extrapolate, density diffusion.
     modern: Modern;
-    /// The same with artificial viscosity between water and walls too.
+    /// `modern` with artificial viscosity between water and walls.
     sticking: Modern<(Continuity, Diffusion), Walls, ArtificialViscosity<Tait>>;
     /// `modern` with the density diffusion of Molteni and Colagrossi.
     molteni: Modern<(Continuity, DensityDiffusion)>;
-    /// The same without walls.
+    /// `molteni` without walls.
     free: Modern<(Continuity, DensityDiffusion), Open, ArtificialViscosity<Tait>>;
     /// (3), (5) and (7) alone, without walls.
     plain: Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;

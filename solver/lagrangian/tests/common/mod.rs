@@ -72,7 +72,7 @@ pub fn put<L: Law, C: Load>(
 /// Mass, position, velocity and force.
 pub type State = (f64, Vector2<f64>, Vector2<f64>, Vector2<f64>);
 
-/// Of all particles in the order of storage.
+/// For all particles in the order of storage.
 pub fn forces<L: Law, C: Load>(solid: &Block<L, C>) -> Vec<State> {
     let rates = solid.total_rates();
     let all = solid.data().fluid().zip(&rates);

@@ -29,7 +29,7 @@ impl EllipticDrop {
         Self { strain, a: radius, b: radius }
     }
 
-    /// The same drop a time \[s\] later, by the classical Runge–Kutta method.
+    /// The drop after another `time` \[s\], by the classical Runge–Kutta method.
     pub fn after(self, time: f64) -> Self {
         let steps = (STEPS * (self.strain * time).abs()).ceil().max(1.0);
         let dt = time / steps;

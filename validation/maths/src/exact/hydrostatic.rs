@@ -6,7 +6,7 @@ use touchstone_solver::Tait;
 /// A column, compressed by its own weight.
 #[derive(Clone, Copy, Debug)]
 pub struct Hydrostatic {
-    /// Equation of state (7), with γ > 1; ⁰ρ and ⁰c are those of the surface, where p = 0.
+    /// Equation of state (7), with γ > 1; ⁰ρ and ⁰c are the values at the surface, where p = 0.
     pub eos: Tait,
     /// Gravity g \[m/s²\].
     pub gravity: f64,

@@ -9,7 +9,7 @@ use touchstone_base::functions::ln_1p;
 
 use crate::halved;
 
-/// What follows from moduli, density and speed.
+/// Stress and wave speed of an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
     /// −σ of the contact \[Pa\].

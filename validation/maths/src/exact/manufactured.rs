@@ -3,9 +3,9 @@
 //! u = U (½ sin 2πy cos 2πx, sin² πy sin 2πx), p = 2 ρνU/L sin⁴ πy cos² 2πx between the walls y = 0 and
 //! y = L, with x and y in units of L.
 //!
-//! u is 0 at the walls, has no divergence, and p is constant along streamlines and has no gradient at the
-//! walls. So the flow satisfies the equations of a weakly compressible fluid, whatever its sound speed, with
-//! the force f = (u·∇)u + ∇p/ρ − ν∇²u and no source of mass.
+//! u is 0 at the walls and has no divergence; p is constant along streamlines and has no gradient at the
+//! walls. So the flow satisfies the equations of a weakly compressible fluid with any sound speed, with the
+//! force f = (u·∇)u + ∇p/ρ − ν∇²u and no source of mass.
 
 use std::f64::consts::{PI, TAU};
 use touchstone_base::functions::{cos, sin};

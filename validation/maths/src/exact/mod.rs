@@ -1,4 +1,4 @@
-//! Exact solutions of the continuous equations: what a run is compared with.
+//! Exact solutions of the continuous equations, the references of runs.
 
 pub mod elliptic_drop;
 pub mod hydrostatic;

@@ -19,8 +19,8 @@ const TAIL: f64 = 1e-14;
 /// terms for [`TAIL`].
 const IMAGES_BELOW: f64 = 0.1;
 
-/// The smallest number of terms n ≥ 1 with `tail(n)` < [`TAIL`], where `tail` bounds what the first
-/// n terms leave out and falls with n.
+/// The smallest number of terms n ≥ 1 with `tail(n)` < [`TAIL`], where `tail` bounds the remainder after n
+/// terms and falls with n.
 fn terms_for(tail: impl Fn(f64) -> f64) -> usize {
     (1..).find(|n| tail(*n as f64) < TAIL).unwrap_or(1)
 }
@@ -228,7 +228,7 @@ mod tests {
             assert_eq!(terms, [1677, 168, 17, 1]);
         }
 
-        /// The tail bound is one: what n terms leave out is never larger.
+        /// The remainder after n terms never exceeds the bound of the tail.
         #[test]
         fn truncation_error_is_visible_and_bounded() {
             let t = 1e-3;

@@ -1,4 +1,4 @@
-//! Rows of particles along a smooth curve and beside it, each spaced evenly by its own arc length.
+//! Rows of particles along and parallel to a smooth curve, each with even spacing in its own arc length.
 
 use nalgebra::Vector2;
 use touchstone_base::functions::{cos, sin};
@@ -9,14 +9,14 @@ type Point = Vector2<f64>;
 /// Samples of the curve a spacing of particles. A chord of 1/32 of a spacing is shorter than its arc by
 /// 4e-5 of itself even where the radius of curvature is one spacing.
 const SAMPLES: f64 = 32.0;
-/// A point at a depth is kept if no part of the curve is nearer than this share of the depth: what
-/// samples leave of a curve that bends.
+/// A point at a depth is kept if no part of the curve is nearer than this fraction of the depth: the margin
+/// for the error of a sampled curve.
 const NEARER: f64 = 1.0 - 1e-4;
 
 /// A plane curve with the fluid on its left, sampled so finely that it counts as smooth.
 ///
-/// It closes on itself, or goes on in the next period. Parts that come near each other must be near
-/// along the curve as well: rows of two sides of a thin wall would run into each other.
+/// The curve is closed or continues in the next period. Parts that are near each other must be near along the
+/// curve as well: rows on two sides of a thin wall would overlap.
 pub struct Curve {
     points: Vec<Point>,
     /// From the first point to the one after the last; 0 for a closed curve \[m\].
@@ -28,15 +28,15 @@ pub struct Curve {
 pub struct Row {
     /// Distance behind the curve, on its right \[m\]; negative in the fluid.
     pub depth: f64,
-    /// Arc length between neighbours \[m\]: that of the row over its number of particles.
+    /// Arc length between neighbours \[m\]: length of the row over its number of particles.
     pub spacing: f64,
     /// The particles, in the direction of the curve.
     pub points: Vec<Point>,
 }
 
 impl Row {
-    /// Its particles, each with its share of the area of a row that is `dx` \[m\] wide: fluid before the
-    /// curve, interface on it, wall behind it.
+    /// Its particles, each with its part of the area of a row of width `dx` \[m\]: fluid before the curve,
+    /// interface on the curve, wall behind it.
     pub fn particles(
         &self,
         dx: f64,
@@ -94,7 +94,7 @@ impl Curve {
         const STRIDE: isize = 64;
         let half = self.points.len() as isize / 2;
         let (from, to) = (-half, self.points.len() as isize + half);
-        // No point of so many chords is farther from their first one than this.
+        // No point of these chords is farther from the first one than this.
         let reach = self.chords(&self.points).map(|chord| chord.norm()).fold(0.0, f64::max)
             * (1.01 * STRIDE as f64);
         let on_chord = |k: isize, x: Point| {
@@ -121,9 +121,9 @@ impl Curve {
 
     /// The row at a depth \[m\], as near to the spacing `dx` \[m\] as a whole number of particles is.
     ///
-    /// Where the offset curve folds, deeper than its radius of curvature, what is nearer to the curve
-    /// than the depth is cut off: particles keep their distance on the concave side. Where it
-    /// spreads, there are more of them.
+    /// Where the offset curve folds, deeper than its radius of curvature, points nearer to the curve than the
+    /// depth are cut off: particles keep their distance on the concave side. On the convex side a row has
+    /// more particles.
     pub fn row(&self, depth: f64, dx: f64) -> Row {
         let offset = self.offset(depth, dx);
         let chords: Vec<Vector2<f64>> = self.chords(&offset).collect();
@@ -133,7 +133,7 @@ impl Curve {
         let (mut points, mut so_far) = (Vec::new(), 0.0);
         for (start, chord) in offset.iter().zip(&chords) {
             let span = chord.norm();
-            // Half a spacing from the start: the same for a curve and its mirror image.
+            // Half a spacing from the start, so that a mirrored curve has mirrored particles.
             let next = |placed: &Vec<Point>| (placed.len() as f64 + 0.5) * spacing;
             while next(&points) <= so_far + span && (points.len() as f64) < count {
                 points.push(start + chord * ((next(&points) - so_far) / span));
@@ -143,7 +143,7 @@ impl Curve {
         Row { depth, spacing, points }
     }
 
-    /// The samples moved to a depth \[m\], without those of folds.
+    /// The samples moved to a depth \[m\], without the samples in folds.
     fn offset(&self, depth: f64, dx: f64) -> Vec<Point> {
         let count = self.points.len() as isize;
         let moved = |k: isize| {
@@ -200,7 +200,7 @@ mod tests {
     impl Fitted {
         /// Rows at depth `first` dx, and on, behind the curve; six rows of fluid before it.
         fn new(curve: &Curve, dx: f64, first: f64, support: f64) -> Self {
-            // Interface particles stand for the row of the lattice that is on the curve.
+            // Interface particles replace the lattice row on the curve.
             let nearest = if first == 0.0 { 1.0 } else { first };
             let fluid = (0..6).map(|k| curve.row(-(nearest + f64::from(k)) * dx, dx));
             let mut rows: Vec<Row> = fluid.collect();
@@ -247,8 +247,8 @@ mod tests {
         }
     }
 
-    /// Neighbours of a row are one spacing apart along it, and that is dx within 1 %, or within what a
-    /// whole number of particles on a short row leaves.
+    /// Neighbours of a row are one spacing apart along it. The spacing is dx within 1 %, or within the
+    /// deviation that a whole number of particles on a short row implies.
     fn check_spacing(row: &Row, period: Vector2<f64>, dx: f64) {
         let next = row.points.iter().skip(1).copied().chain([row.points[0] + period]);
         for (a, b) in row.points.iter().zip(next) {
@@ -279,8 +279,7 @@ mod tests {
         }
     }
 
-    /// Of 10 spacings: the fluid outside sees a wall that gets shorter with its depth, inside one that
-    /// gets longer.
+    /// A circle with a radius of 10 spacings: rows outside shorten with the depth, rows inside lengthen.
     #[test]
     fn rows_along_a_circle_leave_no_gap_and_do_not_overlap() {
         let (centre, dx) = (Vector2::new(0.3, -0.7), 0.1);
@@ -307,8 +306,8 @@ mod tests {
         }
     }
 
-    /// Behind a bump that is narrower than the row is deep the offset curve folds over itself: what is
-    /// too near is cut off, and the rest keeps its distance from the curve.
+    /// Behind a bump narrower than the depth of the row the offset curve folds over itself: points too near
+    /// are cut off, and the others keep their distance from the curve.
     #[test]
     fn a_fold_is_cut_off() {
         let dx = 0.1;

@@ -47,7 +47,7 @@ impl Hill {
         let within = x.rem_euclid(self.period());
         let from_crest = within.min(self.period() - within) / self.height * TABULATED;
         let piece = self.pieces.iter().find(|piece| from_crest <= piece.end);
-        // The pieces end at the foot, and the clips of the table are those of every height.
+        // The pieces end at the foot; the table limits every piece to the height of the hill.
         let y = piece.map_or(0.0, |piece| piece.at(from_crest));
         y.clamp(0.0, TABULATED) / TABULATED * self.height
     }
@@ -64,8 +64,8 @@ impl Piece {
 mod tests {
     use super::*;
 
-    /// What the package states of the pieces: height, slope and curvature agree at the breaks, and the
-    /// wall comes down to 0. A digit that is wrong breaks it.
+    /// The conditions that the package states of the pieces: height, slope and curvature agree at the breaks,
+    /// and the wall ends at 0. A wrong digit violates them.
     #[test]
     fn the_pieces_join_with_their_slope_and_curvature() {
         let hill = Hill::new(1.0).expect("a sound reference");

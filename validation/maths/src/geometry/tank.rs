@@ -5,8 +5,8 @@ use touchstone_solver::{PlaneWall, Role, lattice};
 
 /// The inside of a tank, from its lower left corner at the origin.
 ///
-/// Particles stand on a square lattice of which the walls are lines, so bottom, sides and corners are
-/// rows of one lattice: no gap and no overlap.
+/// Particles are on a square lattice with the walls as lattice lines, so bottom, sides and corners are rows
+/// of one lattice, without gap or overlap.
 #[derive(Clone, Copy, Debug)]
 pub struct Tank {
     /// Spacings across the tank.
@@ -23,9 +23,9 @@ impl Tank {
         self.columns as f64 * self.dx
     }
 
-    /// For [`touchstone_solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, and
-    /// wall particles behind them, out to the `support` \[m\], which come last. The fluid's first row is at
-    /// dx, see [`Tank`].
+    /// For [`touchstone_solver::InterfaceWall`]: interface particles on bottom and sides, up to the rim, then
+    /// wall particles behind them, out to the `support` \[m\]. The first row of the fluid is at dx, see
+    /// [`Tank`].
     pub fn interface_walls(&self, support: f64) -> Vec<(Vector2<f64>, Role)> {
         let (mut walls, mut behind_them) = (Vec::new(), Vec::new());
         let behind = (support / self.dx - 1e-9).floor() as i32;

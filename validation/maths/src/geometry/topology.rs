@@ -1,15 +1,14 @@
-//! Pieces and holes of a body of particles: what tells a ring from a ring that is cut, which is one piece
-//! as well.
+//! Pieces and holes of a body of particles. A cut ring, which is one piece like a whole ring, has no hole.
 //!
-//! A particle stands for a disc of the radius 0.75 dx. Discs overlap where particles are within 1.5 dx of
-//! each other, so pieces of the union are what such bonds hold together, and a hole is there as long as one
-//! closed chain of bonds goes around it. The radius follows from two bounds:
+//! A particle represents a disc of the radius 0.75 dx. Discs overlap where particles are within 1.5 dx of
+//! each other, so a piece of the union is a set of particles connected by such bonds, and a hole exists as
+//! long as a closed chain of bonds encloses it. The radius follows from two bounds:
 //!
-//! - A body that is only strained must stay whole. One layer that is stretched to less than 1.5 of its
-//!   length keeps a ring closed; in bending a layer keeps its length or is shortened, so this is far off. No
-//!   gap at all is left in a square lattice whose cells a × b have a² + b² below (1.5 dx)²: at rest,
-//!   where it is (1.41 dx)², and to a stretch of 1.28 at constant area. What opens beyond that between
-//!   four particles is a pinhole, which counts as a hole only if it is as large as the caller asks.
+//! - A strained body must count as whole. A layer stretched to less than 1.5 of its length keeps a ring
+//!   closed; in bending a layer keeps its length or is shortened, so this is far off. A square lattice of
+//!   cells a × b with a² + b² below (1.5 dx)² has no gap at all: at rest, where the sum is (1.41 dx)², and up
+//!   to a stretch of 1.28 at constant area. A gap between four particles at larger stretch is a pinhole,
+//!   which counts as a hole only above the area that the caller states.
 //! - A cut must be open before it is two spacings wide. Rows that face each other 2 dx apart leave
 //!   0.5 dx between their discs, rows that are staggered by half a spacing 0.56 dx.
 //!
@@ -29,12 +28,12 @@ pub const BOND: f64 = 1.5;
 /// Distance of scan lines \[dx\].
 const LINE: f64 = 0.2;
 
-/// What the union of the discs about particles is made of.
+/// Pieces and holes of the union of discs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Topology {
     /// Parts that hold together.
     pub pieces: usize,
-    /// Parts of the background that are closed in, of at least the area that was asked for.
+    /// Enclosed parts of the background of at least the requested area.
     pub holes: usize,
 }
 
@@ -49,9 +48,8 @@ impl Topology {
         Self { pieces: pieces.len(), holes }
     }
 
-    /// The area \[m²\] below which a hole in a ring of these radii \[m\] does not count as the ring's: that
-    /// of a disc half as wide as the wall is thick, or a quarter of that of the hole at rest, if that is
-    /// less.
+    /// The least area \[m²\] of a hole that counts as the hole of a ring with these radii \[m\]: the area of
+    /// a disc half as wide as the wall is thick, or a quarter of the hole at rest if this is smaller.
     ///
     /// Pinholes and voids inside a wall that holds are far smaller. A ring that is pressed flat until its
     /// walls touch keeps a hole on either side; one without any would count as cut.
@@ -128,7 +126,7 @@ fn pieces(points: &[Point], reach: f64) -> Vec<Vec<Point>> {
     pieces
 }
 
-/// Things that are one as soon as they are joined; the first of them stands for all.
+/// Disjoint sets; the first element represents its set.
 struct Joined(Vec<usize>);
 
 impl Joined {
@@ -140,7 +138,8 @@ impl Joined {
         k
     }
 
-    /// The one that stands for both from now on, and the one that did so and no longer does.
+    /// Joins two sets; returns the representative of the union and the former representative of the other
+    /// set.
     fn join(&mut self, a: usize, b: usize) -> Option<(usize, usize)> {
         let (a, b) = (self.root(a), self.root(b));
         let (kept, gone) = (a.min(b), a.max(b));
@@ -205,8 +204,8 @@ fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
 /// The region outside of everything.
 const OUTSIDE: usize = 0;
 
-/// Regions of the background, joined as lines show that they are one; outside stays outside, for the
-/// first stands for all.
+/// Regions of the background, joined as lines connect them. The outside is the first element and so
+/// represents its set.
 struct Background {
     joined: Joined,
     /// \[m²\].
@@ -271,8 +270,8 @@ mod tests {
         points.iter().map(|p| rotation(angle) * p).collect()
     }
 
-    /// Opens the annulus at its left pole: what is above moves up and what is below moves down, so that
-    /// rows that were one spacing apart are `apart` \[dx\].
+    /// Opens the annulus at its left pole: the upper part moves up and the lower part down, so that adjacent
+    /// rows become `apart` \[dx\] apart.
     fn cut(apart: f64, angle: f64) -> Vec<Point> {
         let open = |p: &Point| {
             let moved = if p.x < 0.0 { 0.5 * (apart - 1.0) * DX * p.y.signum() } else { 0.0 };
@@ -379,7 +378,7 @@ mod tests {
         assert!((2.1..2.4).contains(&of_each), "{of_each} a particle");
         let rest = bonds.longest(&ring);
         assert!(rest > DX && rest <= 1.2 * DX, "{rest}");
-        // The bonds across the cut are longer by what it opened.
+        // The bonds across the cut are longer by the width of the gap.
         let opened = bonds.longest(&cut(4.0, 0.3)) / DX;
         assert!((4.0..4.1).contains(&opened), "{opened} dx");
         let swollen: Vec<Point> = ring.iter().map(|p| 1.5 * p).collect();

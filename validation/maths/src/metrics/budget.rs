@@ -1,16 +1,14 @@
-//! The energy budget by term: what each term of a scene does to the total energy, at one time and
-//! summed over a run.
+//! The energy budget by term: the power of each term of a scene, at one time and integrated over a run.
 //!
-//! With the slope ∂E/∂y of the energy of a particle, the power of a term is Σ ∂E/∂y · ẏ over the rates
-//! ẏ that this term gives by itself ([`Simulation::rates`]). Terms that exchange energy with each other
-//! share an item: pressure (5) and continuity (3) cancel in every pair of particles that both have, so
-//! what is left of them is the work of the walls. A body force is the slope of the potential energy and
-//! has no item.
+//! With the derivative ∂E/∂y of the energy of a particle, the power of a term is Σ ∂E/∂y · ẏ over the rates ẏ
+//! by this term alone ([`Simulation::rates`]). Terms that exchange energy with each other share an item:
+//! pressure (5) and continuity (3) cancel in every pair of particles that both include, so their sum is the
+//! work of the walls. A body force is part of the potential energy and has no item.
 //!
-//! Two pair sweeps are enough for water, one over all terms and one over pressure and continuity, because
-//! the power of a sweep has three parts: that of dv/dt, of dρ/dt and of dx/dt without v. XSPH alone gives
-//! the last one. What the first sweep has more than the second is artificial viscosity in dv/dt and density
-//! diffusion in dρ/dt. An artificial stress, which acts in dv/dt too, takes a sweep of its own.
+//! Two pair sweeps are sufficient for water, one over all terms and one over pressure and continuity, because
+//! the power of a sweep has three parts: by dv/dt, by dρ/dt and by dx/dt without v. Only XSPH contributes to
+//! the last one. The differences between the sweeps are artificial viscosity in dv/dt and density diffusion
+//! in dρ/dt. An artificial stress, which also acts in dv/dt, needs a third sweep.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
@@ -26,7 +24,7 @@ pub type Slope<'a, X> = &'a dyn Fn(f64, &Evolved<X>, &Rate<X>) -> f64;
 /// XSPH (22), and pressure against walls whose particles are outside of the energy budget.
 pub type Powers = [f64; 5];
 
-/// What the rates of one sweep do.
+/// Powers by the rates of one sweep.
 struct Sums {
     /// Powers of dv/dt, of dρ/dt and extra fields, and of dx/dt \[W/m\].
     power: [f64; 3],
@@ -65,7 +63,7 @@ fn sums<X: Numbers>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X
 /// Forces of water: pressure, with an artificial stress or without (`R = ()`), artificial viscosity if there
 /// is any, and a body force.
 pub trait WaterForces<X>: Term<X> {
-    /// Those of them that are sums over pairs.
+    /// The terms that are sums over pairs.
     fn pairs(&self) -> impl Term<X>;
     /// The pressure with its artificial stress.
     fn pressure(&self) -> Pressure<impl EquationOfState, impl Tensile<f64>>;
@@ -105,7 +103,7 @@ impl<X> WaterDrift<X> for (Continuity, Xsph) {}
 impl<X, R: Rest> WaterDrift<X> for (Continuity, DensityDiffusion<R>) {}
 impl<X, R: Rest> WaterDrift<X> for (Continuity, Xsph, DensityDiffusion<R>) {}
 
-/// A simulation of water that can say what each of its terms does to the energy.
+/// A simulation of water with an energy budget by term.
 pub trait Metered<X: Numbers>: Stepper<X> {
     /// The powers of its forces, of its drift and of the terms of its walls, after [`Stepper::advance`]
     /// reached a time; and the force of all pairs on the fluid \[N/m\].

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use touchstone_base::functions::{exp_m1, ln};
 use touchstone_solver::{EquationOfState, Evolved, Numbers, Rate, Stepper, Tait};
 
-/// What the energy of a particle depends on.
+/// Parameters of the energy of a particle.
 #[derive(Clone, Copy, Debug)]
 pub struct Water {
     /// Equation of state (7).
@@ -20,7 +20,7 @@ pub struct Energy {
     pub kinetic: f64,
     /// −Σ m g·x.
     pub potential: f64,
-    /// Σ m e with de = p dρ/ρ², wall particles included: they take up what water presses into them.
+    /// Σ m e with de = p dρ/ρ², including wall particles, which store the work of the water on them.
     pub compression: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The distance of a history from that of a reference, each at times of its own.
+//! The distance between a history and a reference sampled at other times.
 
 /// Times before the first or after the last sample by this share of the time between both are taken for its.
 const ROUND_OFF: f64 = 1e-6;
@@ -91,7 +91,7 @@ mod tests {
         let found = differences(&coarse, &fine).expect("enclosed");
         let expected = |k: usize| if k % 2 == 1 { 0.25 } else { 0.0 };
         assert!(found.iter().enumerate().all(|(k, d)| *d == expected(k)), "{found:?}");
-        // Samples at other times than those of the reference, and more of them, change nothing.
+        // More samples, at other times than the reference, change nothing.
         let ramp =
             |times: &mut dyn Iterator<Item = f64>| times.map(|t| (t, 2.0 * t - 1.0)).collect();
         let [fine, coarse]: [Vec<(f64, f64)>; 2] =

@@ -1,7 +1,7 @@
-//! Norms of the distance between measured and exact values, relative to a stated scale.
+//! Norms of the difference between measured and exact values, relative to a stated scale.
 
 /// Relative L2 error of values of equal weight, (Σ (uᵢ - eᵢ)²/n)^(1/2) over the root mean square of the exact
-/// values: ‖u - e‖₂/‖e‖₂. NaN of what cannot be compared, such as exact values that are all 0.
+/// values: ‖u - e‖₂/‖e‖₂. NaN for values that cannot be compared, such as exact values that are all 0.
 pub fn l2(measured: &[f64], exact: &[f64]) -> f64 {
     let scale = rms(exact.iter().copied());
     match is_comparable(measured, exact, scale) {
@@ -10,8 +10,8 @@ pub fn l2(measured: &[f64], exact: &[f64]) -> f64 {
     }
 }
 
-/// Relative L∞ error, max |uᵢ - eᵢ| / scale, with a scale in the unit of the values. NaN of what cannot be
-/// compared.
+/// Relative L∞ error, max |uᵢ - eᵢ| / scale, with a scale in the unit of the values. NaN for values that
+/// cannot be compared.
 pub fn linf(measured: &[f64], exact: &[f64], scale: f64) -> f64 {
     let differences = measured.iter().zip(exact).map(|(u, e)| ((u - e) / scale).abs());
     match is_comparable(measured, exact, scale) {
@@ -26,8 +26,8 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (sum / count).sqrt()
 }
 
-/// The largest of these numbers, none of which is negative; NaN if one is NaN, for what was not measured must
-/// not pass.
+/// The largest of these numbers, which are not negative; NaN if one is NaN, because a value that was not
+/// measured must not pass.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
 }

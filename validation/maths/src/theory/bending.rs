@@ -1,12 +1,12 @@
 //! Bending of a total Lagrangian plate of few layers.
 //!
-//! A plate of n layers of a square lattice of spacing 1, endless along x, is bent to the curvature 1: its
-//! displacements are u = (x y, w(y) − x²/2), where w, the displacement across, is that of least energy. With
-//! the symbols of the page of the crate `lagrangian`, the displacement gradient of a particle is exact for
-//! linear fields but not for x y: at a face, where neighbours are on one side, it is that of a place a little
-//! inside. All of H and of the residuals E is linear in w, so that the energy of a column of particles is a
-//! sum of squares, λ (tr H)²/2 + μ H:H + ¼ c Σ_b g |E|² a particle, whose least value is half of the bending
-//! stiffness. Frequencies go with its root, and deflections under a load with its inverse.
+//! A plate of n layers of a square lattice of spacing 1, infinite along x, is bent to the curvature 1: its
+//! displacements are u = (x y, w(y) − x²/2) with the displacement w across the plate of least energy. In the
+//! notation of the crate `lagrangian`, the displacement gradient of a particle is exact for linear fields but
+//! not for x y: at a face, where neighbours are on one side, it is the gradient a little inside. H and the
+//! residuals E are linear in w, so the energy of a column of particles is a sum of squares,
+//! λ (tr H)²/2 + μ H:H + ¼ c Σ_b g |E|² a particle, with the minimum of half the bending stiffness.
+//! Frequencies are proportional to its root, deflections under a load to its inverse.
 
 use nalgebra::{DMatrix, DVector, Vector2};
 use touchstone_lagrangian::body::hourglass;
@@ -17,7 +17,7 @@ use super::{
     lattice::{SquareLattice, near},
 };
 
-/// Σ a (l·w + m)²/2, so many unknowns w.
+/// Σ a (l·w + m)²/2 with a vector w of unknowns.
 struct Squares {
     /// Σ a l ⊗ l.
     matrix: DMatrix<f64>,
@@ -34,7 +34,7 @@ impl Squares {
         self.constant += a * m * m;
     }
 
-    /// The least value; the first unknown is 0, for the sum does not change with all of them together.
+    /// The minimum, with the first unknown 0: the sum depends only on differences of unknowns.
     fn least(self) -> f64 {
         let matrix = self.matrix.remove_row(0).remove_column(0);
         let vector = self.vector.remove_row(0);
@@ -43,8 +43,8 @@ impl Squares {
     }
 }
 
-/// The bending stiffness of a plate of so many layers, at least 2, over that of an elastic plate,
-/// E H³/(12 (1 − ν²)), with the modulus c = 8/3 χ μ/G₁ against modes that deform no particle.
+/// The bending stiffness of a plate of at least 2 layers over the stiffness of an elastic plate, E H³/(12 (1
+/// − ν²)), with the hourglass modulus c = 8/3 χ μ/G₁.
 pub fn stiffness<K: Kernel>(h_over_dx: f64, layers: usize, poisson: f64) -> f64 {
     // E = 1.
     let mu = 0.5 / (1.0 + poisson);
@@ -119,7 +119,7 @@ mod tests {
         }
     }
 
-    /// Whatever the kernel, with many layers.
+    /// With many layers, for every kernel.
     #[test]
     fn a_plate_of_many_layers_has_the_stiffness_of_an_elastic_plate() {
         assert!((stiffness::<WendlandC2>(1.0, 60, 0.3) - 1.0).abs() < 1e-4);

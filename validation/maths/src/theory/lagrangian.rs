@@ -1,9 +1,9 @@
 //! Waves of the total Lagrangian solid on a square lattice without stress.
 //!
-//! With q = g/G₁ the symbol of the corrected gradient and s = λ₀/2 that of the sum Σ V F (1 − cos k·X), the
-//! displacement u obeys ρ ω² u = (K + μ/3) q (q·u) + μ q² u + c (s − G₁ q²/2) u, where c = 8/3 χ μ/G₁ is the
-//! modulus against modes that deform no particle (page of the crate `lagrangian`). Longitudinal waves are
-//! the fastest of a lattice without faces; the leapfrog is stable up to dt = 2/ω.
+//! With the symbol q = g/G₁ of the corrected gradient and the symbol s = λ₀/2 of the sum Σ V F (1 − cos k·X),
+//! the displacement u satisfies ρ ω² u = (K + μ/3) q (q·u) + μ q² u + c (s − G₁ q²/2) u, where c = 8/3 χ μ/G₁
+//! is the hourglass modulus (documentation of the crate `lagrangian`). Longitudinal waves are the fastest of
+//! a lattice without faces; the leapfrog is stable up to dt = 2/ω.
 //!
 //! At faces and corners particles have fewer neighbours, and M⁻¹ is larger: a body has faster modes there
 //! than any wave inside, at a corner by a factor of 1.4 with Poisson's ratio 0.4 and of 1.8 with 0.4999.
@@ -19,11 +19,12 @@ use touchstone_solver::{
 
 use super::lattice::SquareLattice;
 
-/// χ, the strength of what resists modes that deform no particle. With 1 the error of long shear waves is
-/// of fourth order, but plates of few layers are too soft, because a face takes its strain from a little
-/// inside. With 4/3 the two nearly cancel: with a Poisson ratio of 0.4 the stiffness in bending is wrong by
-/// +0.6, -0.05 and -0.04 % with 5, 10 and 20 layers (χ = 1: -3.4, -1.15 and -0.32 %), see
-/// [`bending`](super::bending), and shear waves keep a third of the error that they have without it.
+/// χ, the strength of the resistance to hourglass modes, which deform no particle. With 1 the error of long
+/// shear waves is of fourth order, but plates of few layers are too soft, because the gradient at a face is
+/// the gradient a little inside. With 4/3 the two errors nearly cancel: with a Poisson ratio of 0.4 the error
+/// of the stiffness in bending is +0.6, -0.05 and -0.04 % with 5, 10 and 20 layers (χ = 1: -3.4, -1.15 and
+/// -0.32 %), see [`bending`](super::bending), and shear waves have a third of their error without the
+/// resistance.
 pub const HOURGLASS: f64 = 4.0 / 3.0;
 
 /// Neighbours of a particle of the block: index, vector, and weight F.

@@ -36,7 +36,7 @@ pub fn near<K: Kernel>(h_over_dx: f64) -> Vec<(Vector2<f64>, f64)> {
     weighted.filter(|(r, vf)| *vf > 0.0 && *r != Vector2::zeros()).collect()
 }
 
-/// A square lattice seen through a kernel.
+/// Symbols of a square lattice with a kernel.
 pub struct SquareLattice {
     /// h/dx.
     h: f64,
@@ -46,8 +46,8 @@ pub struct SquareLattice {
 }
 
 impl SquareLattice {
-    /// The lattice seen through kernel `K` with smoothing length `h_over_dx` \[dx\] and
-    /// η² = `eta2_over_h2` \[h²\]; both must be finite, the first positive, the second not negative.
+    /// The lattice with kernel `K`, smoothing length `h_over_dx` \[dx\] and η² = `eta2_over_h2` \[h²\]; both
+    /// must be finite, the first positive, the second not negative.
     pub fn of<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) -> Self {
         let eta2 = eta2_over_h2 * h_over_dx * h_over_dx;
         let site = |(r, vf): (Vector2<f64>, f64)| {
@@ -58,8 +58,8 @@ impl SquareLattice {
         Self { h: h_over_dx, correction: 1.0, sites }
     }
 
-    /// The same with gradients, and their conjugate forces, that are corrected by the inverse of the moments,
-    /// which on a lattice is 1/G₁ times the unit matrix.
+    /// This lattice with gradients, and their conjugate forces, corrected by the inverse of the moments, on a
+    /// lattice 1/G₁ times the unit matrix.
     #[must_use]
     pub fn corrected(self) -> Self {
         Self { correction: 1.0 / self.gradient_factor(), ..self }
@@ -104,7 +104,7 @@ impl SquareLattice {
         sum * (self.h * self.h)
     }
 
-    /// The largest λ₀(k) h² of all: that of a wave whose phase is 0 or π along each axis.
+    /// The largest λ₀(k) h² of all waves: for a wave with phase 0 or π along each axis.
     pub fn stiffest(&self) -> f64 {
         let along_y = Vector2::new(0.0, PI);
         self.diffusion(along_y).max(self.diffusion(Vector2::repeat(PI)))

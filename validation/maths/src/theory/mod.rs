@@ -1,5 +1,5 @@
-//! Exact solutions of the *discretised* equations on a lattice: what a correct program reproduces
-//! to round-off, and the part of its error that no correct program can avoid.
+//! Exact solutions of the *discretised* equations on a lattice, which a correct program reproduces to
+//! round-off: the part of the error that does not come from the program.
 
 pub mod bending;
 pub mod lagrangian;

@@ -1,8 +1,8 @@
 //! The stage polynomial of super-time-stepping, RKL2 (Meyer, Balsara & Aslam 2014), in closed form.
 
-/// The factor by which a kick of so many stages over dt multiplies a velocity that decays at the rate γ, with
-/// z = γ dt: R(z) = 1 − b + b P(1 − 4 z/(s² + s − 2)) with the Legendre polynomial P of degree s and
-/// b = (s² + s − 2)/(2 s (s + 1)).
+/// The factor by which a kick of s = `stages` stages over dt multiplies a velocity that decays at the rate γ,
+/// with z = γ dt: R(z) = 1 − b + b P(1 − 4 z/(s² + s − 2)) with the Legendre polynomial P of degree s and b =
+/// (s² + s − 2)/(2 s (s + 1)).
 ///
 /// R(z) = 1 − z + z²/2 + O(z³), and 0 < R(z) ≤ 1 as long as s stages are stable, z ≤ (s² + s − 2)/2.
 pub fn factor(stages: u32, z: f64) -> f64 {
@@ -65,9 +65,9 @@ mod tests {
         }
     }
 
-    /// Relative error of start-up Couette flow at νt/L² = 0.1 that the steps alone make, with so many of them
-    /// to each of 0.02, 0.05 and 0.1: waves decay by the factors of their kicks in place of exponentials. At
-    /// each of these times velocities are brought up to it, by half a kick before and half a one after.
+    /// Relative error of start-up Couette flow at νt/L² = 0.1 by the time steps alone, with `steps` steps to
+    /// each of 0.02, 0.05 and 0.1: waves decay by the factors of the kicks in place of exponentials. At each
+    /// of these times half a kick synchronises the velocities, and the next step begins with half a kick.
     fn error_of_start_up(rows: usize, steps: i32) -> f64 {
         use std::f64::consts::PI;
         use touchstone_base::functions::{exp, sin};

@@ -1,6 +1,6 @@
 //! Comparison with tables of the design notes, digit for digit.
 
-/// `value` with as many digits as `printed` has, in the same notation.
+/// `value` with the number of digits and the notation of `printed`.
 fn like(printed: &str, value: f64) -> String {
     let mantissa = printed.split('e').next().unwrap_or(printed);
     let decimals = mantissa.split('.').nth(1).map_or(0, str::len);
@@ -12,7 +12,7 @@ fn like(printed: &str, value: f64) -> String {
     }
 }
 
-/// Fails unless every value rounds to its printed form; "" stands for a gap in the table.
+/// Fails unless every value rounds to its printed form; "" is a gap in the table.
 pub fn assert_rounds_to(row: &str, printed: &[&str], computed: &[f64]) {
     assert_eq!(printed.len(), computed.len(), "{row}");
     for (printed, value) in printed.iter().zip(computed) {

@@ -5,11 +5,11 @@
 //!
 //! p' = -ω ĝ·v - γ_ρ p,  v' = ω ĝ p - Γ v,
 //!
-//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k), γ_ρ = δ h c₀ λ₀(k), symbols from
-//! [`super::lattice`]. The limit is the largest dt for which no k of the box grows. A periodic box
-//! of n × n particles has only the wave vectors 2π(i, j)/(n dx), so its limit is exact; an infinite
-//! lattice is the limit of large n. Moving, disordered or strongly compressed particles grow
-//! earlier: see the notes of each study.
+//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k), γ_ρ = δ h c₀ λ₀(k), symbols from [`super::lattice`].
+//! The limit is the largest dt for which no k of the box grows. A periodic box of n × n particles has only
+//! the wave vectors 2π(i, j)/(n dx), so its limit is exact; an infinite lattice is the limit of large n.
+//! Moving, disordered or strongly compressed particles become unstable at smaller steps: see the notes of
+//! each study.
 
 use super::{
     lattice::{SquareLattice, wave_vectors},
@@ -46,7 +46,7 @@ pub enum Integrator {
     PredictorCorrector,
     /// Staggered leapfrog with damping from the old velocity, continuity from the new one.
     Leapfrog,
-    /// The same with Morris' viscosity by super-time-stepping.
+    /// Leapfrog with Morris' viscosity by super-time-stepping.
     SuperLeapfrog,
     /// The leapfrog with one pair sweep a step, whose density is extrapolated.
     SingleSweep,
@@ -55,7 +55,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// Pair sweeps of a step that is so many times as long as [`explicit_limit`].
+    /// Pair sweeps of a step of `ratio` times [`explicit_limit`].
     pub fn sweeps(self, ratio: f64) -> f64 {
         match self {
             Self::Euler | Self::SingleSweep => 1.0,
@@ -67,7 +67,7 @@ impl Integrator {
 
 /// An integrator that has a theory of its time step.
 pub trait Stepping {
-    /// Which theory.
+    /// The theory of its stability.
     const THEORY: Integrator;
 }
 
@@ -113,17 +113,19 @@ pub struct Mode {
     pub explicit: f64,
 }
 
-/// The limit of a mechanism acting alone \[s\], 2 over the largest of its rates in `modes`; infinite for what
-/// is absent. The smallest is up to 28 % above the limit of all of them together, [`time_step_limit`].
+/// The limit of a mechanism acting alone \[s\], 2 over the largest of its rates in `modes`; infinite if it is
+/// absent. The smallest of these is up to 28 % above the limit of all mechanisms together,
+/// [`time_step_limit`].
 ///
-/// That of sound, 2/ω_max, is one of the leapfrog only: alone, sound grows at any dt under Euler and the
-/// predictor-corrector. That of viscosity, 2/(ν λ_max), is one of every integrator but super-time-stepping.
+/// The limit of sound, 2/ω_max, holds for the leapfrog only: sound alone grows at any dt under Euler and the
+/// predictor-corrector. The limit of viscosity, 2/(ν λ_max), holds for every integrator except
+/// super-time-stepping.
 pub fn limit_alone(modes: &[Mode], rate: fn(&Mode) -> f64) -> f64 {
     2.0 / modes.iter().map(rate).fold(0.0, f64::max)
 }
 
-/// The largest eigenvalue of a viscous term may be this much above that of the lattice: displacements by a
-/// tenth of a spacing raise it by 9 %, and rows that slide past each other lower it.
+/// Largest ratio of an eigenvalue of a viscous term to the lattice's: displacements by a tenth of a spacing
+/// raise it by 9 %, and rows that slide past each other lower it.
 const DISORDER: f64 = 1.1;
 
 /// The longest step of forward Euler for viscosity alone \[s\], from which super-time-stepping computes its
@@ -206,7 +208,7 @@ impl Mode {
         self.limit_below(integrator, f64::INFINITY)
     }
 
-    /// The same, or any longer step if it is longer than this.
+    /// The limit \[s\], or any step above `longest` if it is longer than this.
     fn limit_below(&self, integrator: Integrator, longest: f64) -> f64 {
         let limit = |s: Complex<f64>| match modulus(s) {
             0.0 => f64::INFINITY,
@@ -285,7 +287,8 @@ impl Mode {
     /// One step of the leapfrog: v with the old v and p, then p with the new v.
     fn leapfrog_step(&self, integrator: Integrator, dt: f64) -> Matrix3<f64> {
         let Self { omega, longitudinal, coupling, transverse, density, viscous, .. } = *self;
-        // Over which time the kick sums the forces beside viscosity, and what it leaves of the velocities.
+        // The time of the kick for the forces other than viscosity, and the remaining factor of the
+        // velocities.
         let (kick, left) = match integrator {
             Integrator::SuperLeapfrog if viscous * dt > 1e-9 => {
                 let left = super_steps::factor(stages(dt / self.explicit), viscous * dt);
@@ -404,10 +407,10 @@ mod tests {
         }
     }
 
-    /// With Wendland's kernel and h = dx, in its support of 2 h are the four nearest particles, with
-    /// F = 35/(4π h⁴) (1 - 1/2)³, and four across. The wave whose neighbours are opposite along both axes
-    /// has the largest eigenvalue: four times 2 · 2 F dx² = 35/(2π h²), to which those across add nothing.
-    /// The step of forward Euler is 2 over 1.1 times that: 0.3264 h²/ν.
+    /// With Wendland's kernel and h = dx, the support of 2 h contains the four nearest particles, with F =
+    /// 35/(4π h⁴) (1 - 1/2)³, and four on the diagonals. The wave with opposite neighbours along both axes
+    /// has the largest eigenvalue: four times 2 · 2 F dx² = 35/(2π h²), without a contribution of the
+    /// diagonals. The step of forward Euler is 2 over 1.1 times this: 0.3264 h²/ν.
     #[test]
     fn the_explicit_limit_is_that_of_the_stiffest_wave_and_a_tenth_for_disorder() {
         let lattice = SquareLattice::of::<WendlandC2>(1.0, 0.0);
@@ -442,10 +445,9 @@ mod tests {
         check::<WendlandC2>(2.0, ["1.761", "0.303"]);
     }
 
-    /// The theory beside the measurements of 2.1: 20 × 20 particles, cubic, h = 1.3 dx, c₀h/ν = ∞,
-    /// 10 and 1. The notes print 1.659 for 10, which is the infinite lattice (1.6595); the box of
-    /// the measurement (1.666) allows 1.6649. They print 0.3530 for 1, this is 0.3529 (measured
-    /// 0.3551).
+    /// The theory against the measurements of 2.1: 20 × 20 particles, cubic, h = 1.3 dx, c₀h/ν = ∞, 10 and 1.
+    /// The notes print 1.659 for 10, which is the infinite lattice (1.6595); the box of the measurement
+    /// (1.666) allows 1.6649. They print 0.3530 for 1; the theory gives 0.3529 (measured 0.3551).
     #[test]
     fn measured_box_matches_the_design_table() {
         let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
@@ -474,8 +476,8 @@ mod tests {
         assert_rounds_to("R4, R5", &["1.03", "0.347"], &computed);
     }
 
-    /// 2.1: at Courant number 0.5 a 20 × 20 box was stable for c₀h/ν = 40 and grew by 2.6e-3 a step
-    /// for 80. At 40 the fastest mode is the density checkerboard, which g does not see: neutral.
+    /// 2.1: at Courant number 0.5 a 20 × 20 box was stable for c₀h/ν = 40 and grew by 2.6e-3 a step for 80.
+    /// At 40 the fastest mode is the density checkerboard, for which g is 0: neutral.
     #[test]
     fn measured_threshold_of_the_predictor_corrector() {
         let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
@@ -558,7 +560,7 @@ mod tests {
         let growth = Mode { transverse: 1.0, ..sound }.growth(SingleSweep, 0.1);
         assert_relative_eq!(growth, -0.5e-4, max_relative = 0.01);
         assert_relative_eq!(oscillator(0.0, 1.0).limit(SingleSweep), 2.0, max_relative = 1e-6);
-        // Of the leapfrog 1.90, 1.24 and 0.198.
+        // The leapfrog has 1.90, 1.24 and 0.198.
         let coupled = [0.1, 1.0, 10.0].map(|gamma| oscillator(1.0, gamma).limit(SingleSweep));
         assert_rounds_to("single sweep", &["0.70", "0.65", "0.216"], &coupled);
     }
