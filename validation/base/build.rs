@@ -1,5 +1,4 @@
-//! Tells the library which compiler built it and for what, where what cannot be known is `unknown`, and packs
-//! the references.
+//! Passes the compiler and the target to the library, `unknown` if not known, and packs the references.
 
 use std::{env, fs, io, path::Path};
 

@@ -14,7 +14,7 @@ pub fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Writes the texts of these files, each after its name and that of its folder.
+/// Writes the texts of these files, each after its folder and name.
 pub fn write(name: &str, paths: &[PathBuf]) -> io::Result<()> {
     let out = Path::new(&env::var_os("OUT_DIR").unwrap_or_default()).join(name);
     let mut into = DeflateEncoder::new(fs::File::create(out)?, Compression::best());

@@ -1,4 +1,4 @@
-//! For build scripts: what they tell the compiler, where what cannot be known is `unknown`.
+//! For build scripts: instructions to the compiler, `unknown` for unknown values.
 
 use std::process::Command;
 
@@ -7,10 +7,10 @@ pub fn set(name: &str, value: Option<String>) {
     println!("cargo:rustc-env=TOUCHSTONE_{name}={}", value.as_deref().unwrap_or("unknown"));
 }
 
-/// What a command prints, if it is there and succeeds.
+/// The output of a command, if it exists and succeeds.
 pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;
-    // Only the first line: a second one would be a cargo instruction of its own.
+    // Only the first line: a second one would be a separate cargo instruction.
     output.status.success().then(|| text.trim().lines().next().unwrap_or_default().to_string())
 }

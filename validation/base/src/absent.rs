@@ -4,30 +4,30 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Why a metric is absent that takes long to measure, from a run of which only the headline was asked for.
+/// Reason for an absent metric that takes long to measure, in a run measured for its headline only.
 pub const NOT_ASKED: &str = "not asked for: --metrics all";
 
 /// Why a metric is absent; in documents a sentence.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "String", into = "String")]
 pub enum Absent {
-    /// It takes long to measure, and the run was asked for its headline alone.
+    /// Takes long to measure, and the run was measured for its headline only.
     NotAsked,
-    /// Of a submission: the case measures it after every step.
+    /// Submission: the case measures this metric after every step.
     EveryStep,
-    /// Of a submission: it needs the sums of this program's own terms.
+    /// Submission: the metric needs the sums of this program's own terms.
     OwnTerms,
-    /// Of a submission: it compares with the theory of this program's own method.
+    /// Submission: the metric compares with the theory of this program's own method.
     OwnTheory,
-    /// Of a submission that is a profile or a series: it follows from particles.
+    /// Submission of a profile or a series: the metric needs particles.
     OfParticles,
-    /// Of a submission: it rests on a column, or on more times, that were not handed in.
+    /// Submission: the metric needs a column, or times, that the submission lacks.
     NotGiven(String),
     /// The outcome of the run, or its settings, give it no meaning.
     NoMeaning(String),
 }
 
-/// The sentences that say the same of every run.
+/// Reasons with one sentence for every run.
 const FIXED: [(Absent, &str); 5] = [
     (Absent::NotAsked, NOT_ASKED),
     (Absent::EveryStep, "it is measured after every step"),

@@ -1,5 +1,5 @@
-//! Values as bytes that keep every bit: what a checkpoint is made of. The bytes of a value say neither its
-//! type nor its fields, so only the build that wrote them reads them.
+//! Values as bytes that keep every bit: the content of a checkpoint. The bytes state neither types nor
+//! fields, so only the build that wrote them reads them.
 
 use std::collections::BTreeSet;
 
@@ -9,28 +9,28 @@ use thiserror::Error;
 
 use crate::record::{Cost, Record, Status};
 
-/// The bytes are not those of a value of the type that is read.
+/// The bytes are no value of the expected type.
 #[derive(Debug, Error)]
 #[error("{0} is expected where the bytes hold something else or end")]
 pub struct OtherBits(&'static str);
 
-/// A value that can write all that changes of it as bytes, and read it back with the same bits.
+/// A value that writes its changing part as bytes, and reads it back with the same bits.
 /// [`observed!`](crate::observed!) implements it for a struct.
 pub trait Bits {
     /// Appends all that changes.
     fn save(&self, to: &mut Vec<u8>);
 
-    /// Takes it over, and leaves what follows it.
+    /// Reads the value and leaves the bytes after it.
     ///
     /// # Errors
-    /// If the bytes end before it does, or cannot be those of such a value.
+    /// If the bytes end too early, or are no value of this type.
     fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits>;
 }
 
-/// Reads the next value, and leaves what follows it.
+/// Reads the next value and leaves the bytes after it.
 ///
 /// # Errors
-/// Those of [`Bits::restore`].
+/// The errors of [`Bits::restore`].
 pub fn read<T: Bits + Default>(from: &mut &[u8]) -> Result<T, OtherBits> {
     let mut value = T::default();
     value.restore(from)?;
@@ -116,7 +116,7 @@ impl<T: Bits + ?Sized> Bits for &mut T {
     }
 }
 
-/// As many values as there are.
+/// The length of a slice is fixed.
 impl<T: Bits> Bits for [T] {
     fn save(&self, to: &mut Vec<u8>) {
         self.iter().for_each(|value| value.save(to));
@@ -141,7 +141,7 @@ impl<T: Bits + Default> Bits for Vec<T> {
         self.as_slice().save(to);
     }
     fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        // Grows with what is there, whatever the length claims.
+        // Grows with the available bytes, not with the stated length.
         let count: usize = read(from)?;
         self.clear();
         for _ in 0..count {

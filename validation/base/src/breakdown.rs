@@ -1,9 +1,9 @@
-//! Where the time of a run went: an optional part of the cost in its record.
+//! Breakdown of the time of a run: an optional part of the cost in its record.
 
 use serde::{Deserialize, Serialize};
 
-/// Where the time of a run went. Seconds are wall seconds of the thread that steps: what is shared out to
-/// several threads is counted once, from when it is handed out until the last thread is done.
+/// Breakdown of the time of a run. Seconds are wall seconds of the thread that steps: work shared by several
+/// threads is counted once, from its start until the last thread has finished.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Breakdown {
@@ -15,8 +15,7 @@ pub struct Breakdown {
     pub steps: u64,
     /// builds of neighbour lists
     pub list_builds: u64,
-    /// neighbours visited for a fluid particle: its list is that of its group of particles that stand
-    /// together; mean over samples
+    /// neighbours visited for a fluid particle: the list of its group of particles; mean over samples
     #[serde(with = "crate::number")]
     pub neighbours: f64,
     /// share of these that is inside the support of the kernel; the others are within the skin or
@@ -24,8 +23,8 @@ pub struct Breakdown {
     #[serde(with = "crate::number")]
     pub inside: f64,
     /// bytes that a time step moves: each pair sweep over the fluid reads its lists and the columns of
-    /// particles and images once and updates the state, and the refresh before it reads the state and
-    /// writes the columns. Building lists is not counted; what caches hold is
+    /// particles and images once and updates the state, and the refresh before it reads the state and writes
+    /// the columns. Building lists is not counted; data in caches is
     #[serde(with = "crate::number")]
     pub bytes_a_step: f64,
 }
@@ -34,7 +33,7 @@ pub struct Breakdown {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {
-    /// what was done
+    /// name of the work
     pub name: String,
     /// how long it took in seconds
     #[serde(with = "crate::number")]

@@ -1,11 +1,10 @@
 //! Output files, each either complete or absent.
 //!
-//! A file is written under a temporary name in the folder of its final place, and renamed when complete. What
-//! is no regular file, such as a device, a pipe or a link, is never replaced.
-//! Temporary names are random, so they do not collide with those of another process or with files left by an
-//! earlier one. They are registered, so that the handler of an interrupt can call
-//! [`remove_unfinished`] before the process ends. Temporary files left by a process that was killed are
-//! removed by a later one.
+//! A file is written under a temporary name in its final folder, and renamed when complete. Devices, pipes,
+//! links and everything else that is not a regular file are never replaced. Temporary names are random, so
+//! they do not collide with names of another process or with files left by an earlier one. They are
+//! registered, so that the handler of an interrupt can call [`remove_unfinished`] before the process ends.
+//! Temporary files left by a killed process are removed by a later one.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), touchstone_base::files::FileError> {
@@ -37,7 +36,7 @@ pub enum FileError {
     Folder {
         /// the folder
         path: PathBuf,
-        /// what the system said
+        /// error of the system
         #[source]
         reason: io::Error,
     },
@@ -46,7 +45,7 @@ pub enum FileError {
     Unread {
         /// the file or folder
         path: PathBuf,
-        /// what the system said, or what is wrong with its content
+        /// error of the system, or the fault of the content
         #[source]
         reason: io::Error,
     },
@@ -55,7 +54,7 @@ pub enum FileError {
     File {
         /// the file
         path: PathBuf,
-        /// what the system said
+        /// error of the system
         #[source]
         reason: io::Error,
     },
@@ -82,16 +81,16 @@ fn remove_all(paths: &mut BTreeSet<PathBuf>) -> usize {
 /// Reads a regular file: a pipe in its place would be waited for without end.
 ///
 /// # Errors
-/// Those of the system; or if it is no regular file.
+/// Errors of the system; or if the path is no regular file.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_at_most(path, u64::MAX)
 }
 
-/// Reads at most so many bytes of a regular file. A file may be longer than its size says: one that grows,
-/// and files of the system whose size is 0.
+/// Reads up to `most` bytes of a regular file. A file may be longer than its stated size: a growing file, or
+/// a file of the system with size 0.
 ///
 /// # Errors
-/// Those of the system; or if it is no regular file, or longer.
+/// Errors of the system; or if the path is no regular file, or the file is longer.
 pub fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     check_regular(path, most)?;
     bytes_of(File::open(path)?, most)
@@ -107,28 +106,28 @@ fn bytes_of(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Reads a text of at most so many bytes from a regular file.
+/// Reads a text of up to `most` bytes from a regular file.
 ///
 /// # Errors
-/// Those of the system; or if it is no regular file, larger, or no UTF-8.
+/// Errors of the system; or if the path is no regular file, or the file is larger or not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     check_regular(path, most)?;
     text_of(File::open(path)?, most)
 }
 
-/// Reads a text of at most so many bytes.
+/// Reads a text of up to `most` bytes.
 ///
 /// # Errors
-/// Those of the system; or if there are more bytes, or they are no UTF-8.
+/// Errors of the system; or if there are more bytes, or they are not UTF-8.
 pub fn text_of(from: impl Read, most: u64) -> io::Result<String> {
     let text = String::from_utf8(bytes_of(from, most)?);
     text.map_err(|reason| io::Error::new(io::ErrorKind::InvalidData, reason.utf8_error()))
 }
 
-/// Refuses what is no regular file, or has more than so many bytes.
+/// Refuses everything but a regular file of up to `most` bytes.
 ///
 /// # Errors
-/// Those of the system, and this one.
+/// Errors of the system, and the refusal.
 pub fn check_regular(path: &Path, most: u64) -> io::Result<()> {
     let refused = |why: String| Err(io::Error::new(io::ErrorKind::InvalidData, why));
     let file = fs::metadata(path)?;
@@ -143,10 +142,10 @@ pub fn check_regular(path: &Path, most: u64) -> io::Result<()> {
 
 /// Begins the name of every temporary file; random letters and digits, a hyphen and the final name follow.
 const PREFIX: &str = ".unfinished-";
-/// A temporary file that nobody has written to for so long was left behind: writing one takes seconds.
+/// Age at which a temporary file counts as abandoned: writing a file takes seconds.
 const ORPHANED_AFTER: Duration = Duration::from_secs(3600);
 
-/// Is this the name of a temporary file of this program, of whatever version?
+/// Whether this is the name of a temporary file of any version of this program.
 fn is_temporary(name: &str) -> bool {
     let rest = name.strip_prefix(PREFIX).and_then(|rest| rest.split_once('-'));
     let is_random =
@@ -154,8 +153,8 @@ fn is_temporary(name: &str) -> bool {
     rest.is_some_and(|(random, of)| is_random(random) && !of.is_empty())
 }
 
-/// Removes temporary files that processes which were killed left in a folder. What cannot be looked at or
-/// removed stays: it is in nobody's way.
+/// Removes temporary files that killed processes left in a folder. Files that cannot be examined or removed
+/// stay; they do no harm.
 fn remove_orphans(folder: &Path) {
     let now = SystemTime::now();
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -175,7 +174,7 @@ fn remove_orphans(folder: &Path) {
 struct Temporary(PathBuf);
 
 impl Temporary {
-    /// A new file beside `path`. If its random name is taken, another one is tried.
+    /// A new file in the folder of `path`. If its random name is taken, another one is tried.
     fn beside(path: &Path) -> io::Result<(Self, File)> {
         let no_name = || io::Error::new(io::ErrorKind::InvalidInput, "the path has no file name");
         let name = path.file_name().ok_or_else(no_name)?.to_string_lossy();
@@ -240,8 +239,8 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write().map_err(|reason| FileError::File { path: path.into(), reason })
 }
 
-/// Does the path lead to what a process has opened, as `/dev/stdout` does? Two would write into a file behind
-/// it, one over the other.
+/// Whether the path is an open file of a process, as `/dev/stdout` is. Two writers of one file behind it
+/// would overwrite each other.
 fn is_opened(path: &Path) -> bool {
     let mut path = path.to_path_buf();
     while let Ok(target) = fs::read_link(&path) {
@@ -255,13 +254,13 @@ fn is_opened(path: &Path) -> bool {
     false
 }
 
-/// Writes to the end of what is no regular file.
+/// Writes to the end of a pipe, a device or another file that is not regular.
 fn write_into(path: &Path, found: &fs::Metadata, bytes: &[u8]) -> io::Result<()> {
     let _listening = read_by_somebody(path, found)?;
     OpenOptions::new().append(true).open(path)?.write_all(bytes)
 }
 
-/// Opens a pipe if somebody reads it: one that nobody reads would be waited for without end.
+/// Opens a pipe if it has a reader: opening a pipe without a reader would wait for ever.
 #[cfg(unix)]
 fn read_by_somebody(path: &Path, found: &fs::Metadata) -> io::Result<Option<File>> {
     use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
@@ -280,7 +279,7 @@ fn read_by_somebody(_: &Path, _: &fs::Metadata) -> io::Result<Option<File>> {
     Ok(None)
 }
 
-/// Refuses what is there and is no regular file: inside a folder for output, a link leads out of it.
+/// Refuses to replace anything but a regular file: a link inside an output folder leads out of it.
 fn check_replaceable(path: &Path) -> io::Result<()> {
     match path.symlink_metadata() {
         Ok(found) if !(found.is_file() || found.is_dir()) => {
@@ -305,8 +304,8 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Makes the folder if need be and writes a probe into it, which is removed again. So is what processes
-    /// that were killed left there.
+    /// Makes the folder if necessary, writes a probe into it and removes the probe and files left by killed
+    /// processes.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         fs::create_dir_all(path)
             .and_then(|()| probe(path))
@@ -327,8 +326,8 @@ impl OutputFolder {
         OutputFolder { path: path.into() }
     }
 
-    /// Says whether [`OutputFolder::create`] would succeed, and makes no folder: where there is none, the
-    /// nearest one above it must be writable.
+    /// Tests whether [`OutputFolder::create`] would succeed, without making the folder: if there is none, its
+    /// nearest parent must be writable.
     pub fn check(path: &Path) -> Result<(), FileError> {
         // The folder above a relative path is the empty path, which is the current folder.
         let exists = |path: &&Path| path.as_os_str().is_empty() || path.symlink_metadata().is_ok();
@@ -543,8 +542,8 @@ mod tests {
         assert!(lock(&UNFINISHED).is_empty());
     }
 
-    /// A process id repeats, in containers always: what a process that was killed left behind is in the way
-    /// of none that comes later, whatever their ids and counts.
+    /// Process ids repeat, in containers always: a file left by a killed process blocks no later process,
+    /// whatever their ids and counts.
     #[test]
     fn a_temporary_file_left_behind_does_not_block_its_folder() {
         let _turn = turn();

@@ -1,10 +1,9 @@
-//! Elementary functions with the same bits on every processor.
+//! Elementary functions with equal bits on every processor.
 //!
-//! The standard library hands `sin`, `exp` and the like to the C library, which chooses a form with or
-//! without FMA at run time: the last bit of a result depends on the processor. Those below are compiled
-//! from the Rust of the crate `libm`, which chooses nothing: `+`, `-`, `*`, `/` and integers alone.
-//! Whatever a state, a metric, a time step or a verdict depends on takes them from here; clippy refuses
-//! those of the standard library (`clippy.toml`).
+//! The standard library passes `sin`, `exp` and others to the C library, which chooses a form with or without
+//! FMA at run time, so the last bit of a result depends on the processor. The functions below are compiled
+//! from the Rust of the crate `libm`, with `+`, `-`, `*`, `/` and integers only. Every state, metric, time
+//! step and verdict uses these functions; clippy refuses the ones of the standard library (`clippy.toml`).
 //!
 //! Methods of `f64` that stay: `sqrt`, `abs`, `floor`, `ceil`, `round`, `trunc`, `%` and conversions are
 //! exact or correctly rounded everywhere; `powi` is a sequence of multiplications, fixed when compiled, and
@@ -34,7 +33,7 @@ pub fn modulus(z: Complex<f64>) -> f64 {
 
 /// The square root with a real part that is not negative.
 pub fn complex_sqrt(z: Complex<f64>) -> Complex<f64> {
-    // Of the two parts, the one whose sum does not cancel; the other from their product, Im z/2.
+    // The part with a sum that does not cancel; the other part is Im z/2 over this one.
     let large = (0.5 * (modulus(z) + z.re.abs())).sqrt();
     if large == 0.0 {
         return Complex::new(0.0, z.im);

@@ -1,8 +1,8 @@
 //! Gates: a metric, a bound, the kind of evidence behind the bound, and the reason for the bound.
 //!
-//! A gate passes only if the metric is a finite number inside the bound: NaN, infinity, a metric that was
-//! not measured, and a run that ended early fail. A known limitation has a bound of its own, and a number
-//! outside of that fails too.
+//! A gate passes only if the metric is a finite number inside the bound: NaN, infinity, a metric that was not
+//! measured, and a run that ended early fail. A known limitation has its own bound, and a number outside this
+//! bound fails too.
 //!
 //! ```
 //! use touchstone_base::gate::{Bound, Evidence, Gate, Verdict};
@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::record::{Record, Status};
 
-/// Where a metric must lie; the ends belong to the bound.
+/// Allowed values of a metric; the ends belong to the bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Bound {
@@ -48,10 +48,9 @@ impl Bound {
 
     /// The share of the allowance that a number inside leaves: 0 at an end, 1 as far inside as can be.
     ///
-    /// That is 1 − value/end (`Below`), 1 − end/value (`Above`), or the distance from the nearer end over
-    /// half the width (`Within`). There is none outside, where nothing is left; of a number that is expected
-    /// exactly (`Equals`), which allows nothing; and of a single end that is not above 0, of which nothing
-    /// is a share.
+    /// The margin is 1 − value/end (`Below`), 1 − end/value (`Above`), or the distance from the nearer end
+    /// over half the width (`Within`). `None` for a number outside the bound, for `Equals`, which has no
+    /// width, and for a single end that is not above 0.
     pub fn margin(self, value: f64) -> Option<f64> {
         let margin = match self {
             Bound::Below(high) if high > 0.0 => 1.0 - value / high,
@@ -62,8 +61,8 @@ impl Bound {
         self.contains(value).then_some(margin.min(1.0))
     }
 
-    /// What a change of the metric is compared with: the end (`Below`, `Above`), half the width (`Within`) or
-    /// the expected number (`Equals`), or 1 where that is zero.
+    /// Scale of a change of the metric: the end (`Below`, `Above`), half the width (`Within`) or the expected
+    /// number (`Equals`), or 1 if that is zero.
     pub fn scale(self) -> f64 {
         let scale = match self {
             Bound::Below(end) | Bound::Above(end) | Bound::Equals(end) => end.abs(),
@@ -130,22 +129,22 @@ pub fn four_digits(value: f64) -> String {
 pub enum Evidence {
     /// an exact solution of the equations
     Analytic,
-    /// a law that holds whatever the solution: conservation, symmetry, equal bits
+    /// a law that holds for every solution: conservation, symmetry, equal bits
     Invariant,
     /// the theory of the method: an order, a stability limit, a dispersion relation
     Theory,
     /// an experiment, or an independent computation with an uncertainty
     Reference,
-    /// what this program computed before: says changed, not wrong
+    /// an earlier result of this program: shows changes, not errors
     Regression,
 }
 
-/// Why numbers lie outside of their bounds, for any number of gates.
+/// Why numbers are outside their bounds, for any number of gates.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Cause {
     /// the cause, a sentence
     pub what: Cow<'static, str>,
-    /// what would remove it, a sentence
+    /// the remedy, a sentence
     pub mend: Cow<'static, str>,
     /// does it state where numbers are off, and not why?
     #[serde(default)]
@@ -153,7 +152,7 @@ pub struct Cause {
 }
 
 impl Cause {
-    /// A cause, and what would remove it.
+    /// A cause and its remedy.
     pub const fn new(what: &'static str, mend: &'static str) -> Self {
         Self { what: Cow::Borrowed(what), mend: Cow::Borrowed(mend), unexplained: false }
     }
@@ -179,24 +178,23 @@ pub struct Gate {
     pub id: String,
     /// name of the metric in the record
     pub metric: String,
-    /// where it must lie
+    /// allowed values
     pub bound: Bound,
-    /// how far outside the bound it is known to lie, from the evidence for the cause: outside of this, the
-    /// gate fails
+    /// bound of the known limitation, from the evidence for its cause: outside, the gate fails
     pub known: Option<Bound>,
     /// the kind of evidence behind the bound
     pub evidence: Evidence,
     /// why the bound is where it is
     pub because: String,
-    /// what causes the limitation, and where its bound comes from
+    /// cause of the limitation, and source of its bound
     pub reason: Option<String>,
-    /// is the bound of the limitation fitted to runs of this program, so that it says how far they lie
-    /// outside, and not how far the cause explains?
+    /// whether the bound of the limitation was fitted to runs of this program, and so measures them rather
+    /// than following from the cause
     #[serde(default)]
     pub fitted: bool,
     /// the cause that the limitation shares with other gates
     pub cause: Option<Cause>,
-    /// is it a control, which must lie outside its bound?
+    /// whether the gate is a control, which must be outside its bound
     pub control: bool,
     /// is a run that ends early the limitation or the failure that is expected?
     pub may_end_early: bool,
@@ -210,7 +208,7 @@ impl Gate {
     /// A gate that judges and whose metric must be there.
     ///
     /// # Panics
-    /// If the gate is unsound (see [`Gate::check`]): gates are written by us, not by users.
+    /// If the gate is unsound (see [`Gate::check`]): gates are part of the program, not input.
     pub fn new(
         id: impl Into<String>,
         metric: impl Into<String>,
@@ -239,18 +237,18 @@ impl Gate {
     /// a missing metric fail. The cause is shared with other limitations.
     ///
     /// # Panics
-    /// If the gate is unsound with it (see [`Gate::check`]).
+    /// If the gate is unsound with the limitation (see [`Gate::check`]).
     pub fn with_limitation(self, bound: Bound, reason: impl Into<String>, cause: &Cause) -> Self {
         let (known, reason, cause) = (Some(bound), Some(reason.into()), Some(cause.clone()));
         Gate { known, reason, cause, ..self }.sound()
     }
 
-    /// The same with a limitation whose bound is fitted to runs of this program.
+    /// Marks the bound of the limitation as fitted to runs of this program.
     pub fn fitted(self) -> Self {
         Gate { fitted: true, ..self }.sound()
     }
 
-    /// A control: a finite number outside the bound is what must come out.
+    /// Makes the gate a control: it requires a finite number outside the bound.
     pub fn expected_to_fail(self) -> Self {
         Gate { control: true, ..self }
     }
@@ -263,20 +261,20 @@ impl Gate {
         Gate { may_end_early: true, ..self }.sound()
     }
 
-    /// A code with another kernel, support or step is judged by this bound: an accuracy that any method of
-    /// this resolution has, for a reason of its own.
+    /// Adds the bound for codes with another kernel, support or step: an accuracy that any method of this
+    /// resolution reaches, with its own reason.
     ///
     /// # Panics
-    /// If the gate is unsound with it (see [`Gate::check`]).
+    /// If the gate is unsound with the bound (see [`Gate::check`]).
     pub fn of_others(self, bound: Bound, because: impl Into<String>) -> Self {
         let because = because.into();
         Gate { bound, because: because.clone(), ..self.clone() }.sound();
         Gate { of_others: Some((bound, because)), ..self }
     }
 
-    /// The gate by which the run of another code is judged, which `states` our kernel, support and step or
-    /// not; none if the bound rests on these alone, or on what this program computed before. What is known to
-    /// limit our method, or expected of it, is no excuse for another one: there the bound alone counts.
+    /// The gate for the run of another code; `states`: the code states our kernel, support and step. `None`
+    /// if the bound is justified by these alone, or by earlier results of this program. Limitations and
+    /// controls apply to our method only: for another code the bound alone counts.
     pub fn for_submission(self, states: bool) -> Option<Self> {
         let Gate { id, metric, bound, evidence, because, of_others, .. } = self;
         match of_others {
@@ -301,7 +299,7 @@ impl Gate {
     /// Has the gate a name, a metric, sound bounds and reasons?
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Checks the gate; an error is its fault.
     pub fn check(&self) -> Result<(), String> {
         let Gate { id, metric, bound, known, because, reason, .. } = self;
         let is_blank = |text: &str| text.trim().is_empty();
@@ -343,7 +341,7 @@ impl Gate {
         }
     }
 
-    /// Where the metric must lie, in words, with how far its limitation reaches.
+    /// The allowed values in words, with the bound of the limitation.
     pub fn bounds(&self) -> String {
         self.bounds_in(&four_digits)
     }
@@ -355,8 +353,8 @@ impl Gate {
         self.bound.in_words(number) + &self.known.map(known).unwrap_or_default()
     }
 
-    /// Judges a record: its metric by [`Gate::judge`] if the run reached its end, and otherwise the early
-    /// end, however good the run was until then: it fails unless the gate says what it is.
+    /// Judges a record: its metric by [`Gate::judge`] if the run reached its end. A run that ended early
+    /// fails, unless the gate judges this end.
     pub fn judge_record(&self, record: &Record) -> Judgement {
         let verdict = match (self.may_end_early, self.control) {
             _ if record.status == Status::Completed => {
@@ -369,7 +367,7 @@ impl Gate {
         Judgement { verdict, value: None, margin: None }
     }
 
-    /// Judges a metric. Whatever the gate is for, it passes only on a finite number inside its bound.
+    /// Judges a metric. Every gate passes only on a finite number inside its bound.
     ///
     /// | metric | plain gate | with a limitation | control |
     /// |---|---|---|---|
@@ -394,7 +392,7 @@ impl Gate {
     }
 }
 
-/// What came of a gate, mildest first.
+/// Result of a gate, in order of severity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -432,12 +430,12 @@ impl fmt::Display for Verdict {
 /// A verdict with the number it rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Judgement {
-    /// what came of it
+    /// the result
     pub verdict: Verdict,
     /// the metric, if it was measured
     #[serde(with = "crate::number::option")]
     pub value: Option<f64>,
-    /// what is left of the allowance, of the gate or else of its limitation, see [`Bound::margin`]
+    /// remaining margin inside the bound of the gate, or else of its limitation, see [`Bound::margin`]
     #[serde(with = "crate::number::option")]
     pub margin: Option<f64>,
 }
@@ -618,7 +616,7 @@ mod tests {
         ] {
             assert_eq!(gate(bound).judge(Some(value)).margin, margin, "{bound}: {value}");
         }
-        // Of a limitation, what is left until it fails.
+        // Remaining margin of a limitation.
         let limited =
             gate(Bound::Below(1.0)).with_limitation(Bound::Below(4.0), "it is known", &CAUSE);
         let margins = [0.5, 3.0, 5.0].map(|value| limited.judge(Some(value)).margin);

@@ -21,8 +21,8 @@ pub mod vtk;
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What a mutex holds. That a thread which had it has panicked does not matter: nothing is left half done
-/// where it is used, and the panic is told elsewhere.
+/// Locks a mutex. A panic of another thread that held it is ignored: no user of this function leaves data
+/// incomplete, and the panic is reported elsewhere.
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

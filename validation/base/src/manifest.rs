@@ -1,6 +1,6 @@
 //! The manifest: the program, compiler and machine that computed a result. An unknown entry is `unknown`.
 //!
-//! Nothing here names a person, a host or a folder, so that a record can be published as it is.
+//! A manifest names no person, host or folder, so that a record can be published unchanged.
 
 use std::fs;
 use std::sync::OnceLock;
@@ -30,8 +30,8 @@ pub struct Manifest {
     pub target: String,
     /// instruction sets that the compiler was allowed to use, for they decide on the speed
     pub features: Vec<String>,
-    /// instruction sets that the processor has, of those by which the solver or the C library choose a
-    /// form at run time; no bits depend on them
+    /// instruction sets of the processor by which the solver or the C library choose code at run time; no
+    /// bits depend on them
     #[serde(default)]
     pub cpu_features: Vec<String>,
     /// operating system
@@ -44,8 +44,8 @@ pub struct Manifest {
     pub threads: usize,
 }
 
-/// The sources of the program, which it tells at its start with [`tell_source`]: the commit belongs to the
-/// binary alone, so that one that changes no source rebuilds no library.
+/// The sources of the program, set at its start with [`tell_source`]: the commit is compiled into the binary
+/// only, so that a commit without a change of sources rebuilds no library.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Source {
     /// git commit
@@ -54,7 +54,7 @@ pub struct Source {
     pub dirty: Known,
 }
 
-/// What is said of what is not known.
+/// Text for unknown values.
 pub const UNKNOWN: &str = "unknown";
 
 impl Source {
@@ -63,7 +63,7 @@ impl Source {
 
 static SOURCE: OnceLock<Source> = OnceLock::new();
 
-/// States what the process was built from; the first answer stays.
+/// States the sources of this process; the first call counts.
 pub fn tell_source(source: Source) {
     let _ = SOURCE.set(source);
 }
@@ -82,7 +82,7 @@ pub enum Known {
 }
 
 impl Manifest {
-    /// The manifest of this process, for a run on so many threads.
+    /// The manifest of this process, for a run on `threads` threads.
     pub fn of_this_process(threads: usize) -> Self {
         let source = SOURCE.get().copied().unwrap_or(Source::UNKNOWN);
         let features = env!("TOUCHSTONE_FEATURES").split(',').map(String::from).collect();

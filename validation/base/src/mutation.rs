@@ -40,7 +40,7 @@ pub struct Disorder {
 pub enum Constant {
     /// viscosity
     Viscosity,
-    /// body force: gravity, or what drives a channel
+    /// body force: gravity, or the force that drives a channel
     BodyForce,
     /// velocity of the walls
     WallSpeed,
@@ -52,11 +52,11 @@ pub enum Constant {
     Density,
     /// shear modulus
     ShearModulus,
-    /// height of the scene: fluid, body and walls are stretched along y, at the same density
+    /// height of the scene: fluid, body and walls are stretched along y at constant density
     Height,
-    /// every sum over neighbours: the masses in them, at the same density
+    /// every sum over neighbours: their masses at constant density
     Normalisation,
-    /// smoothing length at the same spacing
+    /// smoothing length at constant spacing
     SmoothingLength,
     /// time step
     TimeStep,
@@ -110,7 +110,7 @@ impl fmt::Display for Constant {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Detect {
-    /// what is wrong
+    /// the constant with the error
     pub of: Constant,
     /// try only the largest error that may go undetected, in place of a bisection
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

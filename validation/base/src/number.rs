@@ -18,7 +18,7 @@ pub(crate) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 #[serde(try_from = "Form", into = "Form")]
 pub struct Number(pub f64);
 
-/// The JSON form of a number: what a reader of a record finds.
+/// The JSON form of a number.
 #[derive(Serialize, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
 #[serde(expecting = r#"expected a number or {"not_finite": "NaN" | "inf" | "-inf"}"#)]
@@ -66,7 +66,7 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D:
     Number::deserialize(deserializer).map(|number| number.0)
 }
 
-/// The same for an `Option<f64>`.
+/// The form of an `Option<f64>`.
 pub mod option {
     use super::{Deserialize, Deserializer, Number, Serialize, Serializer};
 
@@ -81,7 +81,7 @@ pub mod option {
     }
 }
 
-/// The same for a `Vec<f64>`.
+/// The form of a `Vec<f64>`.
 pub mod list {
     use super::{Deserialize, Deserializer, Number, Serializer};
 

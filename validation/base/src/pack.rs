@@ -5,7 +5,7 @@ use std::io::Read;
 
 use flate2::read::DeflateDecoder;
 
-/// The texts of a packed file by `FOLDER/FILE`. Tests read each of those that the program has.
+/// The texts of a packed file by `FOLDER/FILE`. Tests read every text of the program.
 pub fn read(packed: &[u8]) -> BTreeMap<String, String> {
     let mut all = String::new();
     let _ = DeflateDecoder::new(packed).read_to_string(&mut all);

@@ -1,6 +1,6 @@
-//! Random numbers that are the same on every machine and in every version: SplitMix64 (Steele, Lea &
-//! Flood 2014). Published results depend on randomly disturbed lattices, so an update of a library must not
-//! change the numbers.
+//! Random numbers equal on every machine and in every version: SplitMix64 (Steele, Lea & Flood 2014).
+//! Published results depend on randomly disturbed lattices, so an update of a library must not change the
+//! numbers.
 
 use crate::functions::{cos, ln};
 
@@ -23,7 +23,7 @@ impl Random {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Normal with mean 0 and standard deviation 1 (Box & Muller 1958).
+    /// A normal variate with mean 0 and standard deviation 1 (Box & Muller 1958).
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.uniform(), self.uniform());
         (-2.0 * ln(u)).sqrt() * cos(std::f64::consts::TAU * v)

@@ -1,8 +1,8 @@
 //! The record of a run, one JSON document: settings, outcome, metrics, cost, numerics, manifest.
 //!
-//! The document states its [`SCHEMA`]; a reader refuses any other. Its last key is the digest of all that is
-//! before it, so that a reader refuses a document that was damaged or changed. Floats are stored without
-//! loss. There is no `null`: a number that is not finite is written as `{"not_finite": "NaN"}` (see
+//! The document states its [`SCHEMA`]; a reader refuses any other. Its last key is the digest of everything
+//! before it, so that a reader refuses a damaged or changed document. Floats are stored without loss. There
+//! is no `null`: a number that is not finite is written as `{"not_finite": "NaN"}` (see
 //! [`number`](crate::number)), and the key of a value that does not exist is omitted.
 //!
 //! ```
@@ -43,13 +43,13 @@ pub enum RecordError {
     /// The document has another version.
     #[error("the record has schema {found}{}, but this program reads only schema {SCHEMA}", age(.found))]
     Schema {
-        /// what the document states
+        /// the stated schema
         found: String,
     },
     /// The document is not as it was written.
     #[error("the record does not have the digest that it states: it was damaged or changed")]
     Damaged,
-    /// A text has a character that nobody sees.
+    /// A text has an invisible character.
     #[error("{path} of the record has {what}")]
     Unseen {
         /// where it is
@@ -57,7 +57,7 @@ pub enum RecordError {
         /// the character
         what: String,
     },
-    /// Somewhere there is a `null`, which says neither what is missing nor why.
+    /// The document has a `null`, which states neither what is missing nor why.
     #[error("{path} of the record is null; omit the key or give a value")]
     Null {
         /// keys from the root, as in `/numerics/dt`
@@ -78,7 +78,7 @@ const SEAL: &str = ",\n  \"digest\": \"";
 /// The end of a document.
 const END: &str = "\n}\n";
 
-/// The document with the digest of what it was before as its last key.
+/// The document with its digest as last key.
 fn sealed(document: &str) -> String {
     let head = document.strip_suffix(END).unwrap_or(document);
     format!("{head}{SEAL}{}\"{END}", sha256(document.as_bytes()))
@@ -97,7 +97,7 @@ fn unsealed(text: &str) -> Option<String> {
 pub struct Record {
     /// version of the document
     pub schema: u32,
-    /// the run that it is of, whatever was measured of it
+    /// the run, without the measured part
     #[serde(flatten)]
     pub run: RunSpec,
     /// how the run ended
@@ -107,14 +107,15 @@ pub struct Record {
     /// results that this run gives no meaning, by name, and the reason why
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<String, Absent>,
-    /// what the run took
+    /// cost of the run
     pub cost: Cost,
-    /// what the run chose: `h/dx`, kernel, integrator, c0, dt; see [`number::json`](crate::number::json)
+    /// parameters of the method: `h/dx`, kernel, integrator, c0, dt; see
+    /// [`number::json`](crate::number::json)
     pub numerics: BTreeMap<String, Value>,
     /// curves by name
     #[serde(default)]
     pub profiles: BTreeMap<String, Profile>,
-    /// digest of the state at the end, see [`digest`]
+    /// digest of the final state, see [`digest`]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub state: Option<String>,
     /// program, compiler, machine
@@ -144,7 +145,7 @@ pub enum Status {
     },
     /// before the first step
     Refused {
-        /// which setting, its value, what is allowed
+        /// the setting, its value, and the allowed values
         reason: String,
     },
     /// by the user
@@ -219,7 +220,7 @@ pub struct MetricKey {
     formula: &'static str,
 }
 
-/// Whether a metric is one of these, at whatever time or other mark: `impulse@phase1` is an `impulse`.
+/// Whether a metric is one of these, at any time or other mark: `impulse@phase1` is an `impulse`.
 pub fn is_of(keys: &[MetricKey], name: &str) -> bool {
     keys.iter().any(|key| name.split('@').next() == Some(key.name))
 }
@@ -235,7 +236,7 @@ impl MetricKey {
         MetricName { key: self, name: format!("{}@{mark}", self.name), what: String::new() }
     }
 
-    /// The metric with what its formula leaves open as `{}`.
+    /// The metric with `what` in place of `{}` in its formula.
     pub fn of(self, what: impl fmt::Display) -> MetricName {
         MetricName { what: what.to_string(), ..self.into() }
     }
@@ -286,7 +287,7 @@ impl MetricName {
         self.key.formula.replace("{}", &self.what)
     }
 
-    /// Is a metric in a record or a gate this one, at whatever time or other mark?
+    /// Whether the name of a metric in a record or a gate belongs to this key, at any time or other mark.
     pub fn is(&self, name: &str) -> bool {
         is_of(&[self.key], name)
     }
@@ -319,7 +320,7 @@ fn is_unknown(seconds: &f64) -> bool {
     seconds.is_nan()
 }
 
-/// What a run took.
+/// Cost of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cost {
@@ -358,10 +359,10 @@ pub struct Cost {
     /// work; empty if the run was only made side by side with others
     #[serde(default, skip_serializing_if = "Vec::is_empty", with = "crate::number::list")]
     pub alone_s: Vec<f64>,
-    /// how often the run went on from a checkpoint; the times are then those of its parts together
+    /// number of restarts from a checkpoint; times are sums over all parts
     #[serde(default, skip_serializing_if = "is_default")]
     pub resumed: u32,
-    /// where the time went, if this was asked for
+    /// breakdown of the time, if requested
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub breakdown: Option<Breakdown>,
 }
@@ -408,7 +409,7 @@ impl Profile {
         Self::of_numbers(columns, rows.as_flattened())
     }
 
-    /// The same from the numbers of all rows, one after another.
+    /// The profile from the numbers of all rows, one after another.
     fn of_numbers(columns: &[(&str, &str)], numbers: &[f64]) -> Self {
         let column = |k: usize| numbers.iter().skip(k).step_by(columns.len()).copied().collect();
         let add = |profile: Self, (k, (name, unit)): (usize, &(&str, &str))| {
@@ -431,7 +432,7 @@ impl Profile {
     /// Looks for a number that is not finite.
     ///
     /// # Errors
-    /// Its column, its row from 1 on, and what it is.
+    /// Returns the column, the row from 1 on, and the value of the first number that is not finite.
     pub fn check_finite(&self) -> Result<(), String> {
         for Column { name, unit, values } in &self.columns {
             if let Some(row) = values.iter().position(|value| !value.is_finite()) {
@@ -446,7 +447,8 @@ impl Profile {
     }
 
     /// Comma-separated values, each column under `name[unit]`. A number is the shortest text that reads back
-    /// to the same bits; one that is not finite leaves a gap, and so does one that a shorter column lacks.
+    /// to the same bits; a number that is not finite, or beyond the end of a shorter column, is an empty
+    /// cell.
     pub fn to_csv(&self) -> String {
         let head = |column: &Column| format!("{}[{}]", column.name, column.unit);
         let heads: Vec<String> = self.columns.iter().map(head).collect();
@@ -472,19 +474,19 @@ impl Record {
         Self { status: Status::Refused { reason }, ..Self::of(spec, 1) }
     }
 
-    /// The run that it is of, whatever was measured of it.
+    /// The run, without the measured part.
     pub fn spec(&self) -> RunSpec {
         self.run.clone()
     }
 
-    /// How much was measured of the run: all, unless a metric is absent because it was not asked for.
+    /// The measured part of the run: all, unless a metric is absent because it was not requested.
     pub fn measured(&self) -> Measure {
         let is_part = self.absent.values().any(|reason| *reason == Absent::NotAsked);
         if is_part { Measure::Headline } else { Measure::All }
     }
 
-    /// Its settings with their types; the defaults of the case if they are of another case, which a caller
-    /// that asked for a run of its own case does not meet.
+    /// The settings as their type; defaults if they belong to another case, which does not happen to a caller
+    /// with a run of its own case.
     pub fn settings_as<T: Settings>(&self) -> T {
         settings::of_json(&self.run.settings).unwrap_or_default()
     }
@@ -494,7 +496,7 @@ impl Record {
         Self::of(&RunSpec::new(case, variant, settings), threads)
     }
 
-    /// The same of any run.
+    /// The manifest of any run.
     pub fn of(spec: &RunSpec, threads: usize) -> Self {
         Record {
             schema: SCHEMA,
@@ -517,7 +519,7 @@ impl Record {
         self.metrics.insert(name, Metric::new(value, key.unit, &formula));
     }
 
-    /// Puts a metric that has a value, else states why it has none.
+    /// Puts a metric with a value, else states the reason for its absence.
     pub fn put_or(&mut self, metric: impl Into<MetricName>, value: Option<f64>, reason: &str) {
         match value {
             Some(value) => self.put(metric, value),
@@ -543,7 +545,7 @@ impl Record {
         self.absent.extend(taken.map(|(name, _)| (name, reason.clone())));
     }
 
-    /// States that metrics are absent because they were not asked for.
+    /// States that metrics are absent because they were not requested.
     pub fn leave_unasked(&mut self, metrics: &[MetricKey]) {
         metrics.iter().for_each(|metric| self.leave_out(*metric, Absent::NotAsked));
     }
@@ -587,7 +589,7 @@ fn check(document: &Value) -> Result<(), RecordError> {
     }))
 }
 
-/// The path of the first flaw, and the character that nobody sees if it is none of a `null`.
+/// The path of the first flaw; with the invisible character, or `None` for a `null`.
 fn flaw(value: &Value) -> Option<(String, Option<String>)> {
     let below = |key: &str, child| flaw(child).map(|(path, what)| (format!("/{key}{path}"), what));
     let unseen = |text: &str| unseen(text).map(|what| (String::new(), Some(what)));
@@ -677,7 +679,8 @@ mod tests {
         }
     }
 
-    /// Whoever changes a record can make its digest anew: U+FFFE in it ended every later report.
+    /// The digest of a changed record can be recomputed, so it does not protect against U+FFFE, which ends a
+    /// report.
     #[test]
     fn a_text_with_a_character_that_nobody_sees_is_refused() {
         let text = record().to_json().unwrap();
@@ -728,7 +731,7 @@ mod tests {
         assert!(error.to_string().contains("unknown field `wall`"), "{error}");
     }
 
-    /// A document in which something stands in place of something else, with the digest of the changed one.
+    /// A document with one text replaced by another, and the digest of the result.
     fn changed(text: &str, from: &str, to: &str) -> String {
         sealed(&unsealed(text).unwrap().replace(from, to))
     }

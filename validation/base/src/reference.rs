@@ -1,8 +1,8 @@
 //! References: published or independently computed numbers, with provenance.
 //!
-//! The packages of `references/` (CSV tables beside a Frictionless `datapackage.json`; the format
-//! is described in its README) are embedded at compile time, so the program does not read them from disk.
-//! A package is refused if it states no provenance, or if a table differs from its description.
+//! The packages of `references/` (CSV tables with a Frictionless `datapackage.json`; the format is described
+//! in its README) are embedded at compile time, so the program does not read them from disk. A package
+//! without provenance, or with a table that differs from its description, is refused.
 //!
 //! ```
 //! use touchstone_base::reference::Reference;
@@ -40,15 +40,15 @@ pub struct Package {
     pub profile: Option<String>,
     /// name of the folder
     pub name: String,
-    /// what the numbers are, short
+    /// short description of the numbers
     #[serde(default)]
     pub title: String,
-    /// what the numbers are
+    /// description of the numbers
     #[serde(default)]
     pub description: String,
-    /// what stands behind them
+    /// grade of the source
     pub grade: Grade,
-    /// under what terms
+    /// licences of the numbers
     #[serde(default)]
     pub licenses: Vec<License>,
     /// where they come from
@@ -63,12 +63,12 @@ pub struct Package {
     /// how far they can be trusted
     #[serde(default)]
     pub uncertainty: String,
-    /// what a reader would get wrong
+    /// warnings for readers
     #[serde(default)]
     pub caveats: Vec<String>,
 }
 
-/// What stands behind the numbers of a reference.
+/// Grade of the source of a reference.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Grade {
@@ -140,7 +140,7 @@ pub struct Resource {
 pub struct Schema {
     /// in the order of the header
     pub fields: Vec<Field>,
-    /// what a gap looks like: only the empty cell
+    /// form of a gap: only the empty cell
     #[serde(default)]
     pub missing_values: Vec<String>,
 }
@@ -157,12 +157,12 @@ pub struct Field {
     /// SI or as the source has it, `-` for none
     #[serde(default)]
     pub unit: String,
-    /// what it is
+    /// description
     #[serde(default)]
     pub description: String,
 }
 
-/// What a column holds.
+/// Type of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FieldKind {
@@ -275,7 +275,7 @@ impl Reference {
     }
 
     /// Compares each row of the table `values` of another code with the row of the table `summary` that has
-    /// the same texts in the columns before `value`.
+    /// equal texts in the columns before `value`.
     fn distance(&self, other: &Reference) -> Result<Agreement, ReferenceError> {
         let (own, others) = (self.table("summary")?, other.table("values")?);
         let numbers = ["value", "uncertainty"];
@@ -388,7 +388,7 @@ fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|value: &f64| value.is_finite())
 }
 
-/// Refuses a package that does not say what, whence, how, how well and on what terms.
+/// Refuses a package without description, source, method, uncertainty or licence.
 fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError> {
     let stated = |what: &str, is_stated: bool| match is_stated {
         true => Ok(()),
@@ -418,7 +418,7 @@ fn check_provenance(name: &str, package: &Package) -> Result<(), ReferenceError>
     Ok(())
 }
 
-/// The place of a package among those that are embedded.
+/// The index of an embedded package.
 fn place(name: &str) -> Result<usize, ReferenceError> {
     let unknown = || {
         let known = Reference::names().join(", ");
@@ -458,7 +458,7 @@ fn read_table(
     Ok(table)
 }
 
-/// Refuses cells that are neither empty nor what their field says.
+/// Refuses cells that are neither empty nor of the type of their field.
 fn check_cells(file: &str, table: &Table) -> Result<(), ReferenceError> {
     for (row, cells) in table.rows.iter().enumerate() {
         for (field, text) in table.fields.iter().zip(cells) {

@@ -1,8 +1,8 @@
 //! The specification of a run as data: everything that determines its result, and how much is measured of it.
 //!
 //! A [`RunSpec`] has a canonical JSON form, one line with sorted keys, and a [`RunKey`], the first 16
-//! hexadecimal digits of the SHA-256 of that line without what is measured. Equal keys mean the same run,
-//! whichever study planned it.
+//! hexadecimal digits of the SHA-256 of this line without the measured part. Equal keys mean one run, in any
+//! study.
 //!
 //! ```
 //! use touchstone_base::spec::RunSpec;
@@ -47,7 +47,7 @@ pub struct RunSpec {
     /// run even with a time step beyond the theoretical limit
     #[serde(default, skip_serializing_if = "is_default")]
     pub allow_unstable: bool,
-    /// what the record keeps beside metrics and curves
+    /// data kept in the record in addition to metrics and curves
     #[serde(default, skip_serializing_if = "is_default")]
     pub keep: Keep,
     /// a deliberate error of the scene
@@ -117,23 +117,23 @@ pub struct SpecError {
     pub field: &'static str,
     /// its value
     pub value: String,
-    /// what is allowed
+    /// the allowed values
     pub allowed: &'static str,
 }
 
-/// How much is measured of a run. What is measured does not change the run, and a record of which more was
-/// measured than is asked for serves as well.
+/// Metrics to measure. They do not change the run, and a record with more metrics than requested serves as
+/// well.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
-    /// what costs little beside the stepping
+    /// metrics of little cost compared with the stepping
     #[default]
     Headline,
-    /// also what takes pair sweeps of its own, such as the work of each term
+    /// also metrics with pair sweeps of their own, such as the work of each term
     All,
 }
 
-/// What is done with the settings.
+/// The use of the settings.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Task {
@@ -175,7 +175,7 @@ pub struct EndAfter {
     pub unit: f64,
 }
 
-/// What a record keeps beside metrics and curves.
+/// Data that a record keeps in addition to metrics and curves.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Keep {
@@ -200,12 +200,12 @@ impl RunSpec {
         Self { case: case.to_string(), variant: variant.to_string(), settings, ..Self::default() }
     }
 
-    /// The same, whatever its time step.
+    /// This run with any time step.
     pub fn allow_unstable(self) -> Self {
         Self { allow_unstable: true, ..self }
     }
 
-    /// The same, with the particles of the end in its record.
+    /// This run with its final particles in the record.
     pub fn keep_particles(mut self) -> Self {
         self.keep.particles = true;
         self
@@ -221,22 +221,22 @@ impl RunSpec {
         Self { task: Task::Detect(detect), ..self }
     }
 
-    /// The same with a deliberate error of the scene.
+    /// This run with a deliberate error of the scene.
     pub fn mutated(self, mutation: Mutation) -> Self {
         Self { mutation: Some(mutation), ..self }
     }
 
-    /// The same, whose particles start off their places.
+    /// This run with particles displaced from their initial positions.
     pub fn disordered(self, disorder: Disorder) -> Self {
         Self { disorder: Some(disorder), ..self }
     }
 
-    /// The same, of which all is measured.
+    /// This run with all metrics.
     pub fn measure_all(self) -> Self {
         Self { measure: Measure::All, ..self }
     }
 
-    /// The same with one setting changed, by name; the caller knows that there is one.
+    /// This run with one setting changed, by name; the name must exist.
     pub fn with_setting(mut self, name: &str, value: impl Into<Value>) -> Self {
         if let Some(settings) = self.settings.as_object_mut() {
             settings.insert(name.to_string(), value.into());
@@ -256,7 +256,7 @@ impl RunSpec {
         self.to_value().to_string() // objects of `serde_json::Value` are sorted by key
     }
 
-    /// Checks what a document may state and no case checks: all but the names and the settings.
+    /// Checks the parts of a document that no case checks: all but names and settings.
     ///
     /// # Errors
     /// The first field that is outside of its range.
@@ -270,7 +270,7 @@ impl RunSpec {
             return Err(SpecError { field: "submission", value: short(&of.to_string()), allowed });
         }
         if let Some(mutation) = self.mutation {
-            // Studies leave out a term, turn its sign, and try how large an error is seen.
+            // Studies omit a term, reverse its sign, and search for the smallest visible error.
             let (range, allowed) = match mutation.of {
                 Constant::TimeStep => (0.1..=10.0, "0.1 to 10"),
                 _ => (-1000.0..=1000.0, "-1000 to 1000"),

@@ -1,4 +1,4 @@
-//! Which other code made a run, and how much of the problem it took over.
+//! The code that made a run, and the part of the problem that it used.
 
 use std::fmt;
 
@@ -13,8 +13,8 @@ pub const MACHINE: &str = "machine";
 /// Key of the numerics of a record: the day of the session in which it was made with others, in turn.
 pub const SESSION: &str = "session";
 
-/// Reads the name of a code, and refuses a name that a reader takes for another one: with letters of other
-/// scripts, of which some look like ours, with a blank that nobody sees, or this program's in other letters.
+/// Reads the name of a code. Refuses names that look like another name: with letters of other scripts, with
+/// invisible blanks, or this program's name in other letters.
 ///
 /// # Errors
 /// If it is such a name.
@@ -47,11 +47,11 @@ pub struct Submission {
     pub version: String,
     /// the scheme in its own words, such as `WCSPH, quintic spline`
     pub scheme: String,
-    /// what it took over of the problem
+    /// part of the problem that it used
     pub division: Division,
     /// SHA-256 of the document that describes the method
     pub method: String,
-    /// SHA-256 of the particles that were handed in, in whatever format; none of a record from before 0.2
+    /// SHA-256 of the submitted particles, in any format; `None` in a record from before 0.2
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub results: Option<String>,
     /// the seed from which a sealed problem was drawn
@@ -63,7 +63,7 @@ pub struct Submission {
     pub states_our_method: bool,
 }
 
-/// What a submission took over of the problem.
+/// The part of the problem that a submission used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Division {

@@ -39,9 +39,8 @@ pub fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
-/// The first character that nobody sees or that XML lacks, with its number: one of control or of the
-/// direction of writing, or one without width. It could make two names look the same, or hide what a line
-/// says.
+/// The first invisible or non-XML character, with its number: a control character, a direction of writing, or
+/// a character without width. Such characters make two names look alike, or hide parts of a line.
 pub fn unseen(text: &str) -> Option<String> {
     let is_unseen = |char: char| match char {
         ' '..='~' => false,
@@ -52,7 +51,7 @@ pub fn unseen(text: &str) -> Option<String> {
         }
         '\u{2800}' | '\u{3164}' | '\u{fe00}'..='\u{fe0f}' | '\u{ffa0}' => true,
         '\u{e0000}'..='\u{e0fff}' => true,
-        // Behind a letter, marks such as accents are not escaped, and what cannot be printed is.
+        // After a letter, marks such as accents are not escaped, and unprintable characters are.
         _ => ['a', char].iter().collect::<String>().escape_debug().count() > 2,
     };
     let found = text.chars().find(|char| is_unseen(*char))?;

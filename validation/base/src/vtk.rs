@@ -2,8 +2,8 @@
 //!
 //! Arrays are base64 in the file, so floats are stored without loss. Each particle has a cell of its own:
 //! without cells ParaView opens the file and shows nothing. The plane is z = 0, and vectors get a third
-//! component that is zero, because the filters of ParaView expect three. Positions must be finite. Fields may
-//! hold a NaN: ParaView draws it in a colour of its own, and a state that diverged is worth inspecting.
+//! component of zero, because the filters of ParaView expect three. Positions must be finite. Fields may
+//! contain NaN: ParaView draws it in a separate colour, which helps to inspect a diverged state.
 //!
 //! ```
 //! use touchstone_base::{record::Profile, vtk};
@@ -30,8 +30,8 @@ fn vectors(columns: &Profile, names: [&str; 2]) -> Vec<[f64; 3]> {
     x.iter().zip(y).map(|(x, y)| [*x, *y, 0.0]).collect()
 }
 
-/// The text of a `.vtu` file: particles at one time. Of their columns, `x` and `y` are the places, `u` and
-/// `v` the array `velocity`, and each other is an array of its own.
+/// The text of a `.vtu` file: particles at one time. The columns `x` and `y` are the positions, `u` and `v`
+/// the array `velocity`, and each other column is an array.
 ///
 /// # Errors
 /// If a place is not finite, an array has another length, or two have one name.
