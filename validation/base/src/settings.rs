@@ -33,7 +33,7 @@ use thiserror::Error;
 
 use crate::text::short;
 
-/// What kind of value a setting takes.
+/// Type of a setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// a real number
@@ -92,16 +92,16 @@ impl fmt::Display for Value {
     }
 }
 
-/// What is known about a setting without an instance.
+/// Static description of a setting.
 #[derive(Debug, Clone, Copy)]
 pub struct Field {
     /// the key of `--set key=value`
     pub name: &'static str,
     /// SI unit, `-` for none
     pub unit: &'static str,
-    /// what it is, one line
+    /// description, one line
     pub doc: &'static str,
-    /// what it takes
+    /// type of its values
     pub kind: Kind,
     /// allowed range in words
     pub range: &'static str,
@@ -111,12 +111,12 @@ pub struct Field {
     pub default: Value,
 }
 
-/// Why a setting was refused: in words that name it, its value, and what is allowed.
+/// Why a setting was refused: a text with its name, its value, and the allowed values.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{0}")]
 pub struct SettingError(pub String);
 
-/// " (did you mean NAME?)" with the name most similar to what was written, or nothing if none is similar.
+/// " (did you mean NAME?)" with the name most similar to `written`, or an empty text if none is similar.
 pub fn hint(names: &[&str], written: &str) -> String {
     let distance = |name: &&&str| edit_distance(name, written);
     let is_close = |name: &&&str| distance(name) <= 1 + name.len() / 3;
@@ -132,7 +132,7 @@ pub trait Values {
     /// Their values.
     fn values(&self) -> Vec<Value>;
 
-    /// Sets every setting to a value; those of another settings struct of the same type fit.
+    /// Sets every setting; values of another instance of this settings type fit.
     fn put(&mut self, values: &[Value]);
 }
 
@@ -214,7 +214,7 @@ pub fn of_json<S: Settings>(json: &serde_json::Value) -> Result<S, SettingError>
     Ok(settings)
 }
 
-/// The same, into settings that have any values, which missing keys keep; on error some of them are changed.
+/// Reads settings over existing values, which missing keys keep; on error some settings are changed.
 pub fn read(settings: &mut dyn Values, json: &serde_json::Value) -> Result<(), SettingError> {
     let given = json.as_object().ok_or_else(|| {
         let found = short(&json.to_string());
@@ -238,15 +238,15 @@ pub fn unknown(fields: &'static [Field], key: &str) -> SettingError {
     SettingError(format!("no setting is called {key:?}{hint}; the settings are {keys}"))
 }
 
-/// All names, the most similar to what was written first: those that contain it, then those that differ from
-/// it by the fewest letters.
+/// All names, the most similar to `written` first: names that contain it, then names that differ from it by
+/// the fewest letters.
 pub fn by_similarity<'a>(names: &[&'a str], written: &str) -> Vec<&'a str> {
     let mut sorted = names.to_vec();
     sorted.sort_by_cached_key(|name| (!name.contains(written), edit_distance(name, written)));
     sorted
 }
 
-/// Insertions, deletions and replacements between a name and what was written, however long that is.
+/// Insertions, deletions and replacements between a name and `written`, of any length.
 fn edit_distance(name: &str, written: &str) -> usize {
     strsim::levenshtein(name, &written.chars().take(100).collect::<String>())
 }
@@ -280,7 +280,7 @@ impl Field {
     }
 }
 
-/// Whole numbers, also written as `2e3`.
+/// Whole numbers, also in the form `2e3`.
 fn count(text: &str) -> Option<u64> {
     const EXACT: f64 = 9007199254740992.0; // 2^53: above it neighbouring floats skip counts
     let is_whole = |real: &f64| (0.0..=EXACT).contains(real) && real.fract() == 0.0;
