@@ -1,5 +1,5 @@
-//! Tells the command which commit it was built from, and digests of the sources that decide what each family
-//! of cases computes. Never fails: what cannot be known is `unknown`.
+//! Passes the commit of the build to the command, and digests of the sources that determine the results of
+//! each family of cases. Never fails: unknown values are `unknown`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,10 +11,10 @@ mod tell;
 
 use tell::{output, set};
 
-/// What every result depends on.
+/// Sources of every result.
 const SHARED: [&str; 7] =
     ["../solver", "base", "maths", "harness", "schemes", "../references", "../Cargo.lock"];
-/// Folders of cases; a result depends on that of its case beside what is shared.
+/// Folders of cases; a result depends on the folder of its case and on the shared sources.
 const FAMILIES: [&str; 4] = ["fluids", "waters", "solids", "lattice"];
 const CASES: &str = "cases/src";
 

@@ -1,4 +1,4 @@
-//! What the cross-crate tests share: random numbers, patches of particles, and the rates of one
+//! Shared code of the cross-crate tests: random numbers, patches of particles, and the rates of one
 //! right-hand side.
 
 pub mod foreign_solver;
@@ -23,7 +23,7 @@ pub fn snapshot(name: &str) -> Option<Value> {
     serde_json::from_str(text.split_once("\n---\n")?.1).ok()
 }
 
-/// Fails unless a magnitude is at most this, saying what it is of; a NaN fails.
+/// Fails unless a magnitude is at most `most`; the message names it. NaN fails.
 #[track_caller]
 pub fn assert_small(what: &str, found: f64, most: f64) {
     assert!(
@@ -32,7 +32,7 @@ pub fn assert_small(what: &str, found: f64, most: f64) {
     );
 }
 
-/// Fails unless a number is as near as this to what it should be, saying what it is; a NaN fails.
+/// Fails unless a number is within the tolerance of the expected one; the message names it. NaN fails.
 #[track_caller]
 pub fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
     let apart = (found - expected).abs();
@@ -45,7 +45,7 @@ pub fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
 /// A plane vector.
 pub type V2 = Vector2<f64>;
 
-/// Splitmix64: the same numbers on every machine.
+/// Splitmix64: equal numbers on every machine.
 pub struct Random(pub u64);
 
 impl Random {
@@ -66,7 +66,7 @@ impl Random {
         Vector2::new(self.between(low, high), self.between(low, high))
     }
 
-    /// The same items in another order.
+    /// Permutes the items.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for k in (1..items.len()).rev() {
             items.swap(k, (self.bits() % (k as u64 + 1)) as usize);
@@ -74,8 +74,8 @@ impl Random {
     }
 }
 
-/// Particles that lie still, without terms of their own: one scheme for each kernel, in which any terms
-/// can be asked for their rates.
+/// Particles at rest, without terms: one scheme for each kernel, in which the rates of any terms can be
+/// computed.
 type Still<K, X> = Compose<K, (), (), Open, NoStep, X>;
 
 /// Makes no step.

@@ -1,4 +1,4 @@
-//! A case of its own in one file: the decay of a shear wave in a periodic box.
+//! A new case in one file: the decay of a shear wave in a periodic box.
 
 use nalgebra::Vector2;
 use std::f64::consts::TAU;

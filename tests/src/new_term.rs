@@ -1,4 +1,4 @@
-//! A term of its own in one file: a viscosity along the line of centres.
+//! A new term in one file: a viscosity along the line of centres.
 
 use nalgebra::Vector2;
 use touchstone_solver::{Kernel, Rate, Term, lane::Lane, particles::Common, terms::Pair};

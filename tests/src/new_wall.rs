@@ -1,11 +1,11 @@
-//! A wall of its own in one file: boundary particles whose density is smoothed.
+//! A new wall in one file: boundary particles with a smoothed density.
 
 use touchstone_solver::{Continuity, DensityDiffusion, walls::Walls};
 
 /// Interface and wall particles as in section 4.2, whose density is smoothed as well.
 #[derive(Clone, Copy, Debug)]
 pub struct SmoothedWall {
-    /// Of the density of wall particles.
+    /// Diffusion of the density of wall particles.
     pub diffusion: DensityDiffusion,
 }
 

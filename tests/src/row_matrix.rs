@@ -6,16 +6,15 @@
 //!
 //! uⱼ' = -Σ_m a_m (uⱼ - uⱼ₊ₘ) + F_body,  a_m = 2ν Σ_x V F(r) r²/(r²+η²),  r² = x² + (m dx)²,
 //!
-//! with x over the particles of a row. The wall rule says what stands for u beyond a wall; it is
-//! linear, so u' = A u + b. Rows that the shear has slid past each other have other a_m, see
-//! [`Alignment`].
+//! with x over the particles of a row. The wall rule replaces u beyond a wall; it is linear, so u' = A u + b.
+//! Rows shifted by the shear have other a_m, see [`Alignment`].
 
 use nalgebra::{DMatrix, DVector};
 use touchstone_solver::kernel::{Kernel, Smoothing};
 
-/// What the sums see beyond a wall. `u_w` is the wall's velocity, rows behind it are numbered
-/// k = 0, 1, …; except for [`WallRule::InterfaceWall`] the wall lies midway between two rows, so
-/// row k of either side is (k + 1/2) dx away from it.
+/// The velocity beyond a wall in the sums. `u_w` is the velocity of the wall, rows behind it have numbers k =
+/// 0, 1, …; except for [`WallRule::InterfaceWall`] the wall is midway between two rows, so row k of either
+/// side is at the distance (k + 1/2) dx.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum WallRule {
     /// Ghosts of the seed (4.1): u_k → 2 u_w - u_k.
@@ -24,8 +23,8 @@ pub enum WallRule {
     /// u_g(-y) = 2 u_w - u(y) + y² u''_w (after Basa, Quinlan & Lastiwka 2009; the wall itself is
     /// taken not to accelerate).
     CurvedGhosts,
-    /// Interface and wall particles of the seed (4.2): a row *on* the wall and rows behind it, all
-    /// with u_w and V = dx². The fluid's rows lie at y = j dx, j = 1 … N-1, dx = L/N.
+    /// Interface and wall particles of the paper (4.2): a row *on* the wall and rows behind it, all with u_w
+    /// and V = dx². The fluid's rows are at y = j dx, j = 1 … N-1, dx = L/N.
     InterfaceWall,
     /// Every row behind the wall has u_w.
     Constant,
@@ -43,7 +42,7 @@ pub enum WallRule {
     Quadratic,
 }
 
-/// How the rows lie to each other. In the time L²/ν shear moves them by about Re L.
+/// Relative alignment of the rows. In the time L²/ν shear moves them by about Re L.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Alignment {
     /// In columns, as they start; holds while the displacement is small against dx.
@@ -66,9 +65,9 @@ pub struct Channel {
     pub wall_velocity: [f64; 2],
     /// Body force per mass \[m/s²\].
     pub force: f64,
-    /// What stands for the walls.
+    /// The wall rule.
     pub wall_rule: WallRule,
-    /// How the rows lie to each other.
+    /// The relative alignment of the rows.
     pub alignment: Alignment,
 }
 
@@ -84,9 +83,9 @@ pub enum ChannelError {
     },
     /// Width or viscosity is not positive and finite.
     NotPositive {
-        /// Which.
+        /// Name.
         name: &'static str,
-        /// Its value \[SI\].
+        /// Value \[SI\].
         value: f64,
     },
 }
@@ -223,8 +222,8 @@ impl Channel {
         }
     }
 
-    /// The velocity in row `depth` behind a wall that moves at `wall` \[m/s\], as seen from row
-    /// `own`: a constant \[m/s\] and weights of rows of fluid, all counted from that wall.
+    /// The velocity in row `depth` behind a wall of velocity `wall` \[m/s\] for row `own`: a constant \[m/s\]
+    /// and weights of fluid rows, all counted from this wall.
     fn extrapolate(
         &self,
         wall: f64,
@@ -345,7 +344,7 @@ pub fn sheared_laplacian_factor<K: Kernel>(h_over_dx: f64, eta2_over_h2: f64) ->
     factor_of_rows::<K>((h_over_dx, eta2_over_h2), 512)
 }
 
-/// The mean over so many offsets of the rows; both signs of y are alike.
+/// The mean over this number of offsets of the rows; both signs of y are equivalent.
 fn factor_of_rows<K: Kernel>((h, eta2_over_h2): (f64, f64), offsets: i32) -> f64 {
     let (kernel, eta2) = (Smoothing::<K>::new(h), eta2_over_h2 * h * h);
     let reach = kernel.support().ceil() as i32;

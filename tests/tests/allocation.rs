@@ -61,9 +61,9 @@ fn forces() -> Sums {
     (pressure, Viscosity { mu: 0.01, eta2: 1e-4 * H * H })
 }
 
-/// After so many builds of lists, in which buffers find their size, 20 more.
+/// After `builds` builds of lists, in which buffers reach their size, 20 more.
 fn check<S: Scheme>(mut scene: Scene<S>, builds: u64) {
-    // So that lists are built often, before the patch comes to rest.
+    // A small skin: lists are built often before the patch comes to rest.
     scene.setting.skin = 0.12 * H;
     let (h, mut simulation) = (H, scene.build().unwrap());
     // The patch orders itself while it warms up, so rows and images grow no more after it.

@@ -1,8 +1,8 @@
-//! Comparisons of the quick tier against finer runs, and what cases declare of them.
+//! Comparisons of the quick tier with finer runs, and with the declarations of cases.
 //!
-//! `ladders.json` has, of each comparison, the levels of the quick tier and the result of a finer run: the
-//! finest that the full tier has with these settings, and for the hills at Re 10, of which it has none, one
-//! with 20 spacings per hill. Values are those of records. To make it again, make both tiers and the other
+//! `ladders.json` has, for each comparison, the levels of the quick tier and the result of a finer run: the
+//! finest run of the full tier with these settings, and for the hills at Re 10, which the full tier lacks, a
+//! run with 20 spacings per hill. Values come from records. To make it again, make both tiers and the other
 //! runs:
 //!
 //! ```sh
@@ -84,7 +84,7 @@ fn stored_ladders_are_those_of_the_quick_tier() {
     }
 }
 
-/// An interval of 95 % holds 19 of 20. Where one does not hold, its row says so.
+/// An interval of 95 % holds for 19 of 20. A row where it does not hold is marked.
 #[test]
 fn finer_runs_lie_within_the_intervals_of_the_quick_tier() {
     let (mut rows, mut held) = (Vec::new(), 0);
@@ -181,7 +181,7 @@ fn make() {
     fs::write(path(), format!("[\n{}\n]\n", lines.join(",\n"))).expect("written");
 }
 
-/// u_D of a comparison: an absolute uncertainty of a length, a share of what is compared as a share.
+/// u_D of a comparison: absolute for a length, relative for a ratio.
 #[test]
 fn uncertainties_of_references_are_as_stated() {
     let all = declared(Tier::Full);

@@ -1,4 +1,4 @@
-//! Terms that are exact for linear fields, on particles that lie anyhow.
+//! Terms that are exact for linear fields, on disordered particles.
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_solver::{

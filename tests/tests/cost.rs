@@ -1,4 +1,4 @@
-//! A scene pays for what it uses: memory by type, rows by motion.
+//! A scene pays only for what it uses: memory by type, rows by motion.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
@@ -14,12 +14,12 @@ use touchstone_tests::{assert_small, difference, patch};
 type Moving<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
 type Fluid = Moving<Leapfrog>;
 
-/// Memory of what a term has a particle show, and of what it sums.
+/// Memory of a term's derived data and of its sums for one particle.
 fn sizes<T: Term<()>>() -> [usize; 2] {
     [size_of::<T::Derived>(), size_of::<T::Sum>()]
 }
 
-/// Memory of what a wall particle sums.
+/// Memory of the sums of a wall particle.
 fn wall_sum<E: Extrapolation>() -> usize {
     size_of::<E::Sum>()
 }
@@ -48,10 +48,10 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<FluidPairs<ArtificialViscosity<Tait>>>(), [16, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);
     assert_eq!(sizes::<Shifting>(), [0, 16]);
-    // Beside the shift the gradient of both components of velocity, and a symmetric matrix.
+    // In addition to the shift: the gradient of both components of velocity, and a symmetric matrix.
     assert_eq!(sizes::<ShiftAdvection>(), [0, 16 + 32 + 24]);
     assert_eq!(sizes::<Pressure<Tait>>(), [8, 16]);
-    // What is exact for linear fields sums that matrix each, and the viscosity what it has to take off.
+    // Consistent terms sum this matrix each, and the viscosity also the velocity gradient.
     assert_eq!(sizes::<ConsistentPressure<Tait>>(), [8, 16 + 24]);
     assert_eq!(sizes::<ConsistentContinuity>(), [0, 32 + 24]);
     assert_eq!(sizes::<ConsistentViscosity>(), [0, 16 + 16 + 32 + 24]);
@@ -67,7 +67,7 @@ fn a_simulation_holds_no_more_than_its_buffers() {
             Scene::<Fluid>::new(h, Domain::open(), patch(n, 0.1, 1), forces, Continuity, Open);
         scene.build().unwrap().bytes() as f64 / (n * n) as f64
     };
-    // State, columns, rows of about 25 neighbours and the sort: see `Simulation::bytes`.
+    // State, columns, lists of about 25 neighbours and buffers of the sort: see `Simulation::bytes`.
     let [small, large] = [fluid(40), fluid(80)];
     assert!((200.0..350.0).contains(&large), "{large} bytes a particle");
     assert!((large / small - 1.0).abs() < 0.4, "in proportion: {small}, {large}");

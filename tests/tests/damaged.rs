@@ -16,7 +16,7 @@ use touchstone_harness::{
 
 use crate::tidy::assert_none;
 
-/// What is done to each profile of a record, and to each metric.
+/// A change of each profile of a record, and of each metric.
 type Damage = (&'static str, fn(&mut Profile), fn(f64) -> Option<f64>);
 
 const DAMAGES: [Damage; 6] = [
@@ -76,7 +76,7 @@ fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
     named.chain(others).filter_map(of).take(2).collect()
 }
 
-/// What these records of a case hold, damaged, as the records of all of its runs.
+/// Damaged records of a case as the records of all its runs.
 fn made(case: &'static dyn Case, damage: Damage, records: &BTreeMap<String, Record>) -> Made {
     let of = |planned: Planned| {
         let any = || records.values().next();

@@ -1,5 +1,5 @@
-//! The documents as tests: links lead somewhere, numbers are those of snapshots and gates, README is short.
-//! That the commands in them are valid is checked beside the arguments of the command line.
+//! The documents as tests: links resolve, numbers equal snapshots and gates, README is short. The commands in
+//! them are tested with the arguments of the command line.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -51,7 +51,7 @@ fn documents() -> BTreeMap<String, String> {
     found
 }
 
-/// A document without what is between two marks, the marks included.
+/// A document without the text between two marks, and without the marks.
 fn without(text: &str, begin: &str, end: &str) -> String {
     let (mut kept, mut rest) = (String::new(), text);
     while let Some((before, inside)) = rest.split_once(begin) {
@@ -131,7 +131,7 @@ fn the_summary_lists_every_page_once() {
     assert_eq!(listed.iter().map(|page| format!("docs/{page}")).collect::<Vec<_>>(), pages);
 }
 
-/// Words are what is between spaces and holds a letter or a digit.
+/// A word is a text between spaces with a letter or a digit.
 #[test]
 fn readme_is_short() {
     let text = without(&prose(&read("README.md")), "<!--", "-->");
@@ -153,11 +153,11 @@ fn last_number(text: &str) -> Option<(f64, f64)> {
     Some((sign * value / scale, 10_f64.powi(-(decimals as i32)) / scale))
 }
 
-/// The numbers that a comment behind a number in a document stands for: `<!-- snapshot; run; metric -->` a
-/// result, `<!-- gate NAME -->` the ends of a bound. Of a ladder, coarse to fine, whose resolution comes
-/// first in the name of a run, `<!-- U_num snapshot; run, run; metric -->` is the uncertainty of 95 % by the
-/// ladder, `<!-- order … -->` the order of its errors and the ends of its interval, and `<!-- limit … -->`
-/// where it leads; `None` of any other comment.
+/// The numbers behind the comment of a number in a document: `<!-- snapshot; run; metric -->` a result,
+/// `<!-- gate NAME -->` the ends of a bound. For a ladder, coarse to fine, with the resolution first in the
+/// name of a run, `<!-- U_num snapshot; run, run; metric -->` is the uncertainty of 95 % by the ladder,
+/// `<!-- order … -->` the order of its errors with the ends of its interval, and `<!-- limit … -->` its
+/// limit; `None` for any other comment.
 fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
     if let Some(name) = comment.strip_prefix("gate ") {
         let gate = gates.iter().find(|gate| gate.id == name);
@@ -176,7 +176,7 @@ fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
     Some(value.into_iter().filter_map(Value::as_f64).collect())
 }
 
-/// What the ladder that a comment names says: U_num, the order with the ends of its interval, or the limit.
+/// The result of the ladder in a comment: U_num, the order with the ends of its interval, or the limit.
 fn ladder_says(kind: &str, comment: &str) -> Option<Vec<f64>> {
     let [name, runs, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
     let snapshot = snapshot(name)?;
@@ -196,7 +196,7 @@ fn ladder_says(kind: &str, comment: &str) -> Option<Vec<f64>> {
     }
 }
 
-/// The ends of the bound of a gate and of that of its limitation.
+/// The ends of the bound of a gate and of the bound of its limitation.
 fn ends(gate: &Gate) -> Vec<f64> {
     let ends = |bound| match bound {
         Bound::Below(end) | Bound::Above(end) | Bound::Equals(end) => vec![end],
@@ -205,7 +205,7 @@ fn ends(gate: &Gate) -> Vec<f64> {
     [gate.bound].into_iter().chain(gate.known).flat_map(ends).collect()
 }
 
-/// What a document states with its source: what is before the comment, and the comment.
+/// The statements of a document with their sources: the text before a comment, and the comment.
 fn sourced(text: &str) -> Vec<(&str, &str)> {
     let comments = text.match_indices("<!-- ").filter_map(|(at, mark)| {
         let comment = text[at + mark.len()..].split_once(" -->")?.0;
@@ -240,7 +240,7 @@ fn numbers_with_a_source_are_those_of_the_source() {
     assert_none("a number is that of the snapshot or gate that its comment names", wrong);
 }
 
-/// In README's table a number that is no part of a name stands before the comment that names its source.
+/// In README's table every number that is not part of a name has a comment with its source.
 #[test]
 fn errors_and_limits_in_readme_have_sources() {
     let text = read("README.md");

@@ -1,4 +1,4 @@
-//! What breaks a run ends as a value, and what cannot start is refused with its numbers.
+//! Extreme runs end with a value, and runs that cannot start are refused with their numbers.
 
 use nalgebra::Vector2;
 use touchstone_maths::metrics::momentum::momentum;
@@ -265,7 +265,7 @@ fn a_thousand_times_the_speed_of_sound_conserves_momentum_or_is_reported() {
     assert_eq!((divergence.step, divergence.time, divergence.fault.field), (0, 0.0, "velocity"));
 }
 
-/// In a period of 1 m, 0.51 m a step is not motion: an image stands as near as the particle.
+/// In a period of 1 m, 0.51 m a step is not motion: an image is as near as the particle.
 #[test]
 fn half_a_period_in_a_step_is_a_divergence_and_in_two_steps_is_not() {
     let particle = Particle::fluid(Vector2::new(0.7, 0.2), Vector2::new(0.51, 0.0), 1.0, 1e-3);

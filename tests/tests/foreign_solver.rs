@@ -1,5 +1,5 @@
-//! What `docs/your-method.md` shows of a solver of another library is compiled here, judged, and has a
-//! section of the report.
+//! The solver of another library shown in `docs/your-method.md` is compiled here, judged, and has a section
+//! of the report.
 
 use std::fs;
 use std::path::Path;
@@ -103,8 +103,9 @@ impl Solver for Other {
     }
 }
 
-/// Finite differences with an error of 0.002 % failed a window around the error of our own kernel and step;
-/// who states these is judged by it, and a kernel whose norm is off by 2 %, as a viscosity, leaves it.
+/// Finite differences with an error of 0.002 % must not fail a window around the error of our own kernel and
+/// step. A code that states our kernel and step is judged by this window; a kernel with a norm off by 2 %, as
+/// in a viscosity, is outside.
 #[test]
 fn a_better_method_passes_and_one_that_states_ours_must_have_our_error() {
     for (case, gate) in
@@ -124,7 +125,7 @@ fn a_better_method_passes_and_one_that_states_ours_must_have_our_error() {
     }
 }
 
-/// Tells the last particle of each frame twice.
+/// Writes the last particle of each frame twice.
 struct Twice;
 
 impl Solver for Twice {

@@ -1,7 +1,7 @@
-//! Channel flow on a lattice that does not move, against the same sums reduced to one unknown a row
-//! (`row_matrix` of this crate): independent code for the same equations, so no error of the
-//! method stands between them, and a weight or a wall that is off in the sixth digit is seen. Stepped
-//! alike they agree to 1e-13 of the speed of the plate, and without the error of dt to 1e-8.
+//! Channel flow on a fixed lattice, against the same sums reduced to one unknown a row (`row_matrix` of this
+//! crate): independent code for the same equations, so the comparison has no error of the method and shows a
+//! weight or a wall that is off in the sixth digit. With equal steps they agree to 1e-13 of the speed of the
+//! plate, and without the error of dt to 1e-8.
 //!
 //! At Re = 1e-9 the plate moves by 2e-8 spacings in the time L²/ν: the rows stay where they are, and
 //! the density keeps its bits.
@@ -24,7 +24,8 @@ use touchstone_solver::{
 };
 use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
 
-/// A channel flow in the kernel K, the walls W and the integrator I, and no stabiliser: what no variant has.
+/// A channel flow with the kernel K, the walls W and the integrator I, without stabiliser: a combination that
+/// no variant has.
 type Channels<K, W, I> = Compose<K, Fluid<BodyForce>, Continuity, W, I>;
 
 /// Against the matrix stepped alike \[V\]: round-off of some thousand steps.
@@ -54,7 +55,7 @@ fn simulation(method: &Method, setup: &Setup) -> Box<dyn Stepper<()>> {
     (method.build)(setup.parts()).expect("a scene")
 }
 
-/// What the matrix calls the walls of a setup.
+/// The wall rule of the matrix for a setup.
 fn rule(setup: &Setup, walls: &str) -> WallRule {
     match (walls, setup.settings.wall_curvature) {
         ("interface-wall", _) => WallRule::InterfaceWall,
@@ -102,7 +103,7 @@ fn super_step(model: &RowModel, u: &mut DVector<f64>, dt: f64, explicit: f64) {
     *u = last;
 }
 
-/// Velocities, and the time by which those of a leapfrog lag behind \[s\].
+/// Velocities, and the lag of a leapfrog's velocities \[s\].
 type Lagging = (DVector<f64>, f64);
 
 /// `steps` steps for u' = A u + b, and u at the time of the last, to which a leapfrog kicks a copy by half a
@@ -336,8 +337,8 @@ fn every_variant_is_its_matrix() {
     }
 }
 
-/// A hundredth more η², and walls that differ in the second row behind them: each is far outside
-/// what the tests above allow, so they would fail.
+/// η² enlarged by 1 %, and walls that differ in the second row: each result is far outside the tolerances
+/// above.
 #[test]
 fn a_slightly_different_method_is_another_matrix() {
     let at = |eta2: f64, wall: WallRule| {

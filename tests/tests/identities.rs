@@ -1,4 +1,4 @@
-//! Conservation laws that hold for any particles whatever, to round-off, term by term.
+//! Conservation laws for arbitrary particles, to round-off, term by term.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
@@ -30,7 +30,7 @@ fn stressed() -> Pressure<Tait, ArtificialStress> {
     Pressure { eos: water(), tensile: ArtificialStress::new(0.3, 4, w) }
 }
 
-/// What must vanish: both components of Σ m a, and Σ m x × a where the term is central.
+/// Both components of Σ m a vanish, and Σ m x × a if the term is central.
 fn check_momentum(name: &str, central: bool, forces: impl Term<()>) {
     for seed in 0..5 {
         let cloud = cloud(seed);
@@ -50,7 +50,7 @@ fn check_momentum(name: &str, central: bool, forces: impl Term<()>) {
     }
 }
 
-/// With any kernel: it enters a force by F and W alone, which are the same for both particles of a pair.
+/// For any kernel: it enters a force only by F and W, which are equal for both particles of a pair.
 #[test]
 fn forces_add_up_to_nothing_and_central_ones_have_no_torque() {
     let damping = ArtificialViscosity::<_, false>::new(0.3, 0.6, H, water());
@@ -136,8 +136,8 @@ fn the_drift_of_xsph_carries_no_mass() {
     }
 }
 
-/// The pair weight is VᵢVⱼ F, so Σ Vᵢ dρᵢ/dt = 0 with V = m/ρ: what is conserved is the mass in
-/// volumes held fixed, not Σ m dρ/dt.
+/// The pair weight is VᵢVⱼ F, so Σ Vᵢ dρᵢ/dt = 0 with V = m/ρ: the mass in fixed volumes is conserved, and Σ
+/// m dρ/dt need not vanish.
 #[test]
 fn density_diffusion_conserves_the_volume_weighted_sum_and_only_that() {
     for seed in 0..5 {

@@ -221,7 +221,7 @@ fn advance_lands_on_the_time_with_equal_steps_of_at_most_the_length_asked_for() 
         assert_eq!((simulation.time(), clock.times.len()), (until, steps), "{until} by {dt}");
         assert!(clock.dts.iter().all(|d| *d == clock.dts[0] && *d <= dt * (1.0 + 1e-11)));
         assert_eq!(*clock.times.last().unwrap(), until);
-        // Nothing to do is nothing done.
+        // An interval of length 0 makes no step.
         assert_eq!(simulation.advance(until, dt, &mut ()), Outcome::Reached);
         assert_eq!((simulation.time(), simulation.work().steps), (until, steps as u64));
     }
@@ -246,7 +246,7 @@ fn time_does_not_drift_over_a_hundred_thousand_steps() {
     assert_eq!((often.time(), often.work().steps), (10_000.0, 100_000));
 }
 
-/// dt = 1/128 is exact, so that both runs step by the same bits.
+/// dt = 1/128 is exact, so that both runs step with equal bits.
 #[test]
 fn two_advances_are_one() {
     fn both<I: Integrator<Scheme<()>>>() -> [Vec<Particle>; 2] {

@@ -1,4 +1,4 @@
-//! Whole short runs seen from elsewhere: moved, mirrored, turned, renumbered, in other units.
+//! Whole short runs in another frame: moved, mirrored, turned, renumbered, in other units.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
@@ -35,7 +35,7 @@ fn start() -> Vec<Particle> {
     patch(12, 0.15, 11)
 }
 
-/// `seen` of the end must be the end of `seen` of the start.
+/// `seen` of the end must equal the end of `seen` of the start.
 fn check<I: Integrator<Scheme<()>>>(
     name: &str,
     tolerance: f64,
@@ -180,8 +180,7 @@ fn swapping_the_walls_of_a_ghost_channel_mirrors_its_flow() {
     assert!((0.8..1.05).contains(&fastest), "the wall drags its fluid along: {fastest}");
 }
 
-/// Both walls at U, and the fluid with them: nothing happens. In the frame of the walls: nothing at
-/// all does.
+/// Both walls and the fluid at U: at rest in the frame of the walls.
 #[test]
 fn a_ghost_channel_that_moves_as_a_whole_is_one_at_rest() {
     let frame = Vector2::new(2.0, 0.0);

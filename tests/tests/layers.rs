@@ -1,5 +1,5 @@
-//! Imports go one way. The table says which crate may know which; inside a crate no two modules may know
-//! each other, directly or by way of others.
+//! Imports go in one direction. The table states the imports between crates; inside a crate no two modules
+//! may import each other, directly or indirectly.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -64,7 +64,7 @@ fn crates_know_only_those_below_them() {
     assert!(read("validation/harness").contains("report"), "the manifests were read");
 }
 
-/// The test of the test: an edge the wrong way is seen.
+/// The test of the test: an edge in the wrong direction is found.
 #[test]
 fn an_edge_the_wrong_way_is_seen() {
     let wrong = |folder: &str| match folder {
@@ -87,7 +87,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     all.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
 }
 
-/// The source without comments and without what follows its tests.
+/// The source without comments and tests.
 fn code(source: &str) -> String {
     let code = source.split("#[cfg(test)]\nmod ").next().unwrap_or_default();
     let lines = code.lines().map(|line| line.split("//").next().unwrap_or_default());

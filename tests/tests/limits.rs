@@ -1,4 +1,4 @@
-//! The table of what limits the time step is about the steps that runs take.
+//! The table of step limits describes the steps of runs.
 
 use std::sync::{Mutex, atomic::AtomicBool};
 
@@ -14,8 +14,7 @@ use touchstone_harness::{
     limits::{ADVISED_SHARE, Mechanism},
 };
 
-/// What a run does before it is stopped: the step that it is driven with, the step that it plans in its
-/// record, and the first step that it makes.
+/// The step that a stopped run was driven with, the step in its record, and the first step that it made.
 fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, Option<f64>, f64) {
     let (driven, stop) = (Mutex::new(f64::NAN), AtomicBool::new(true));
     let show = |progress: Progress| {

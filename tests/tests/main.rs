@@ -5,7 +5,8 @@ mod comparisons;
 mod consistent;
 mod cost;
 mod damaged;
-/// Here and not in the library of this crate, so that its schemes are compiled once, with those of tests.
+/// Here and not in the library of this crate, so that its schemes are compiled once, with the schemes of
+/// tests.
 #[path = "../src/new_case.rs"]
 mod decay;
 mod documents;

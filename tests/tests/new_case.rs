@@ -1,4 +1,4 @@
-//! What `CONTRIBUTING.md` shows is compiled here, and its case gets every study that a declaration asks for.
+//! The case of `CONTRIBUTING.md` is compiled here and gets every study of its declaration.
 
 use std::fs;
 use std::path::Path;

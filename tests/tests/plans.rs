@@ -1,4 +1,4 @@
-//! What every plan must be, whatever the case.
+//! Requirements for every plan of every case.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ use touchstone_harness::{
     sealed, studies, suite,
 };
 
-/// A run that sets what its variant does not read is refused, and a study of it would have nothing to say.
+/// A run with a setting that its variant does not read is refused, so a study of it would be empty.
 #[test]
 fn no_planned_run_sets_what_its_variant_lacks() {
     for case in CASES {
@@ -29,7 +29,8 @@ fn no_planned_run_sets_what_its_variant_lacks() {
     }
 }
 
-/// The key of a run is that of its resolved spec; a plan that wrote one otherwise would miss its record.
+/// The key of a run is the key of its resolved spec; a plan with another form of the spec would miss its
+/// record.
 #[test]
 fn every_planned_run_is_written_as_it_is_read() {
     let tiers = [Tier::Quick, Tier::Full, Tier::Deep];
@@ -43,7 +44,7 @@ fn every_planned_run_is_written_as_it_is_read() {
     }
 }
 
-/// The plain runs of a variant that differ from its defaults in nothing but what sealed problems draw, with
+/// The plain runs of a variant that differ from its defaults only in settings drawn by sealed problems, with
 /// their gates on a metric.
 fn judged_of(case: &dyn Case, variant: &str, draws: &Draws, metric: &str) -> Vec<(RunSpec, Gate)> {
     let set: Vec<String> = draws.set.iter().map(ToString::to_string).collect();
@@ -145,8 +146,8 @@ fn sealed_problems_are_judged_as_judged_runs_are() {
     }
 }
 
-/// A study that reads what its run does not measure shows gaps, and a gate of the case fails. Here no run is
-/// made: what is planned is looked up all the same.
+/// A study that reads a metric which its run does not measure shows gaps, and a gate of the case fails. No
+/// run is made here: the lookups suffice.
 #[test]
 fn studies_ask_for_no_more_than_is_planned() {
     for tier in [Tier::Quick, Tier::Full, Tier::Deep] {
@@ -158,9 +159,9 @@ fn studies_ask_for_no_more_than_is_planned() {
     }
 }
 
-/// The deep tier has every run of the full one with its gates, and what the harness adds: each ladder goes on
-/// by two levels of finer spacing, cells of maps have 20 starts, and every resolution at which another
-/// code was timed is one of ours.
+/// The deep tier has every run of the full one with its gates, and the additions of the harness: each ladder
+/// has two finer levels, cells of maps have 20 starts, and every resolution at which another code was timed
+/// is included.
 #[test]
 fn the_deep_tier_has_the_full_one_and_two_levels_and_20_starts() {
     let (mut ladders, mut cells) = (0, 0);
@@ -199,8 +200,8 @@ fn the_deep_tier_has_the_full_one_and_two_levels_and_20_starts() {
     assert!(ladders > 25 && cells > 30, "{ladders} {cells}");
 }
 
-/// A budget changes one thing at a time: a run differs in one setting, or in as many as its name lists with
-/// commas, or in its variant, from the run that it is compared with, which its name states or is unchanged.
+/// A budget changes one thing at a time: a run differs from the run of comparison, named by it or
+/// `unchanged`, in one setting, or in as many as its name lists with commas, or in its variant.
 #[test]
 fn a_budget_compares_each_change_with_the_run_that_it_names() {
     let (mut named, mut count) = (0, 0);
@@ -235,7 +236,7 @@ fn a_budget_compares_each_change_with_the_run_that_it_names() {
     assert!(named >= 4 && count > 50, "{count} changes, {named} of which name another run");
 }
 
-/// The gates of a case that are known without a run: of its plan, and those that its studies declare.
+/// The gates of a case known without a run: of its plan and of its studies.
 fn gates(case: &dyn Case, tier: Tier) -> Vec<Gate> {
     let runs = Runs::default();
     let studies = studies::of(case.name(), &case.declaration(tier), &runs).into_iter();

@@ -42,7 +42,7 @@ fn scene<I: Integrator<Method<()>>>() -> Scene<Method<I>> {
     scene_of(Domain::torus(1.0, 1.0), patch(16, 0.15, 7), Open)
 }
 
-/// The same fluid between walls that extrapolate.
+/// Fluid between extrapolating walls.
 fn channel<I: Integrator<Method<(), Plates>>>() -> Scene<Method<I, Plates>> {
     let dx = 1.0 / 16.0;
     let mut particles = patch(16, 0.05, 7);
@@ -71,7 +71,7 @@ fn scene_of<I: Integrator<Method<(), W>>, W: Walls<()>>(
     scene
 }
 
-/// Stops after so many steps of the run.
+/// Stops after this number of steps.
 struct After(u64);
 
 impl<X: Numbers> Observer<X> for After {
@@ -93,7 +93,7 @@ fn check<S: Scheme<Extra = ()>>(scene: impl Fn() -> Scene<S>) {
         drop(first);
         let moved = checkpoint.particles.iter().zip(&checkpoint.built_at);
         between_builds += u32::from(moved.clone().any(|((_, p), at)| p.position != *at));
-        // It has come to a time of its own, of which nothing may stay.
+        // The second simulation has a state of its own, which the checkpoint must replace.
         let mut second = scene().build().unwrap();
         assert_eq!(second.advance(5.0 * DT, DT, &mut ()), Outcome::Reached);
         second.restore(&checkpoint).unwrap();
@@ -251,7 +251,7 @@ fn a_checkpoint_of_another_integrator_is_refused() {
     let checkpoints = all.each_ref().map(|simulation| simulation.checkpoint());
     for (k, simulation) in all.iter_mut().enumerate() {
         for (j, checkpoint) in checkpoints.iter().enumerate() {
-            // Particles whose quantities have the same time begin a run of any integrator.
+            // Particles with all quantities at one time start a run of any integrator.
             let is_sound = j == k || j == 0;
             let restored = simulation.restore(checkpoint);
             assert_eq!(restored.is_ok(), is_sound, "{j} to {k}: {restored:?}");
@@ -262,7 +262,7 @@ fn a_checkpoint_of_another_integrator_is_refused() {
     }
 }
 
-/// The simulations of a run that was interrupted after so many steps.
+/// The simulations of a run interrupted after `steps` steps.
 fn interrupted_after(steps: u64, case: &dyn Case, spec: &RunSpec) -> Vec<Vec<u8>> {
     let (interrupt, made, last) = (AtomicBool::new(false), AtomicU64::new(0), Mutex::default());
     let write = |simulations: &[Vec<u8>]| {
@@ -282,7 +282,7 @@ fn interrupted_after(steps: u64, case: &dyn Case, spec: &RunSpec) -> Vec<Vec<u8>
     last.into_inner().unwrap()
 }
 
-/// The record without what time and memory it took, which are of the machine.
+/// The record without time and memory, which depend on the machine.
 fn without_times(record: Record) -> Record {
     let cost = Cost {
         wall_s: 0.0,
@@ -295,8 +295,8 @@ fn without_times(record: Record) -> Record {
     Record { cost, ..record }
 }
 
-/// Settings of cases whose planned runs take long: as many metrics, from fewer particles and steps. A plate
-/// of three rows swings more slowly, so it needs a longer run for its period.
+/// Settings of cases with long planned runs: all metrics, from fewer particles and steps. A plate of three
+/// rows oscillates more slowly, so it needs a longer run for its period.
 const COARSE: [(&str, &[&str]); 6] = [
     ("cantilever", &["n=3"]),
     ("dam_break", &["n=7"]),
@@ -322,8 +322,8 @@ fn short(case: &dyn Case, runs: &[Planned], variant: &str) -> Option<RunSpec> {
     Some(spec.keep_particles().measure_all())
 }
 
-/// The name of a variant if a run of it went on from a checkpoint to the record of the whole run; `None` if
-/// the quick tier has no run of it that makes a step.
+/// The name of a variant if a run of it, continued from a checkpoint, has the record of the whole run; `None`
+/// if the quick tier has no run of it that makes a step.
 fn gone_on(case: &dyn Case, spec: &RunSpec) -> Option<String> {
     let whole = case.run(spec, &Context::default()).ok()?;
     let name = format!("{} {}", case.name(), spec.variant);
@@ -342,7 +342,7 @@ fn gone_on(case: &dyn Case, spec: &RunSpec) -> Option<String> {
     Some(name)
 }
 
-/// What two records do not have in common, by name, with the values of both where they are short.
+/// The differences of two records by name, with both values where they are short.
 fn differences(whole: &Record, resumed: &Record) -> String {
     let json = |record: &Record| -> Value {
         serde_json::from_str(&record.to_json().expect("a record")).expect("JSON")

@@ -171,8 +171,8 @@ fn time_stepping_converges_with_its_order() {
     assert!((order(&|dt, n| model.midpoint(dt, n)) - 2.0).abs() < 0.02);
 }
 
-/// Start-up Poiseuille at 20 rows: errors of plain ghosts, of curved ones and of the parabola
-/// through the wall, which bounds what a wall rule can gain.
+/// Start-up Poiseuille flow at 20 rows: errors of plain ghosts, of curved ones and of the parabola through
+/// the wall, which bounds the possible gain of a wall rule.
 #[test]
 fn curved_ghosts_help_during_start_up() {
     for (t, printed) in [
@@ -247,7 +247,7 @@ fn lattice_factors_match_the_design_table() {
     ]);
 }
 
-/// Long waves see the factors: g = G₁ k, λ = L₁ k².
+/// The symbols of long waves are g = G₁ k, λ = L₁ k².
 #[test]
 fn symbols_tend_to_the_factors() {
     let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);

@@ -1,4 +1,4 @@
-//! Particle shifting alone: what it must not move, and what a moved particle must carry.
+//! Particle shifting alone: invariants, and the fields of a moved particle.
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_solver::{
@@ -43,7 +43,7 @@ fn shifting_moves_no_centre_of_mass() {
     }
 }
 
-/// A linear field is carried exactly, whatever the particles: dv = A dr.
+/// A linear field is advected exactly on any particles: dv = A dr.
 #[test]
 fn a_shifted_particle_takes_the_velocity_of_its_new_place() {
     let gradient = Matrix2::new(0.3, -1.7, 0.9, -0.2);

@@ -1,10 +1,10 @@
-//! What the quick tier measures, as snapshots that fail on a change, and bounds that say what may
-//! be accepted: whoever accepts a snapshot cannot move the truth.
+//! The metrics of the quick tier as snapshots, which fail on a change, and bounds on acceptable snapshots:
+//! accepting a snapshot cannot hide an error.
 //!
-//! Each case and variant has two snapshots. `case.variant` holds the metrics, which are compared to 1e-6 of
-//! themselves and a floor for those that are round-off. `work.case.variant` holds steps, pair interactions
-//! and right-hand sides, which are compared exactly. A change that costs work and moves no metric changes
-//! the second alone, and is not accepted together with a change of results. No snapshot holds seconds.
+//! Each case and variant has two snapshots. `case.variant` holds the metrics, compared to a relative 1e-6
+//! with a floor for metrics that are round-off. `work.case.variant` holds steps, pair interactions and
+//! right-hand sides, compared exactly. A change of work without a change of metrics changes the second alone,
+//! and is not accepted together with a change of results. No snapshot holds seconds.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -30,7 +30,7 @@ use touchstone_harness::{
 const RELATIVE: f64 = 1e-6;
 /// And by this much: velocities and errors that are exactly 0 but for round-off.
 const FLOOR: f64 = 1e-10;
-/// The same for errors of waves, which are round-off over the amplitude of 1e-6.
+/// The floor for errors of waves, which are round-off over the amplitude of 1e-6.
 const WAVE_FLOOR: f64 = 1e-8;
 
 const MOMENTUM: &str = "forces of pairs are equal and opposite";
@@ -87,8 +87,8 @@ fn assert_close(name: &str, value: &Value) {
 /// Variants, and settings of theirs.
 type Kept = (Vec<&'static str>, Vec<&'static str>);
 
-/// Runs of the plan that are kept, variants and settings: the ladders up to 20 rows, `modern` where it
-/// creeps, every wave on an ordered lattice, for theory is that of the lattice.
+/// Runs of the plan with snapshots, by variant and settings: the ladders up to 20 rows, `modern` in creeping
+/// flow, and every wave on an ordered lattice, for which the theory holds.
 fn kept(case: &str) -> Vec<Kept> {
     let kernel = |name: &'static str, sets: &[&'static str]| (vec![name], sets.to_vec());
     match case {
@@ -142,7 +142,8 @@ fn kept_channel(flow: Flow) -> Vec<Kept> {
 /// The tank of Lobovsky et al.
 const LOBOVSKY: &str = "n=30 width=0.6 height=0.3 tank=1.61 rim=2 end=6";
 
-/// Of cases of water: what is at rest or flows smoothly, and is coarse; and what README states of a collapse.
+/// Runs of water with snapshots: coarse runs at rest or in smooth flow, and the numbers of a collapse in
+/// README.
 fn kept_water(case: &str) -> Vec<Kept> {
     match case {
         "hydrostatic" => vec![
@@ -226,7 +227,7 @@ fn metrics(record: &Record) -> Value {
     json!({ "metrics": metrics })
 }
 
-/// What one run took.
+/// The work of one run.
 fn work(record: &Record) -> Value {
     let cost = &record.cost;
     json!({
@@ -254,7 +255,7 @@ fn group(metric: &str) -> &str {
     metric.split('@').next().unwrap_or(metric)
 }
 
-/// Bounds on what no gate is on, of solid cases.
+/// Bounds on metrics without gates, of solid cases.
 fn bounds_of_solids(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let little = "energy is lost to viscosity and may not be gained: 1 % for kinetic energy half a step late";
     match case {
@@ -292,7 +293,7 @@ fn bounds_of_solids(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     }
 }
 
-/// Bounds on what no gate is on, of rings of five layers.
+/// Bounds on metrics without gates, of rings of five layers.
 fn bounds_of_rings() -> Vec<(&'static str, Bound, &'static str)> {
     let round =
         "a ring of outer radius 4 L that is flattened, and stays apart from its mirror image";
@@ -315,7 +316,7 @@ fn bounds_of_rings() -> Vec<(&'static str, Bound, &'static str)> {
     bounds
 }
 
-/// Bounds on what no gate is on, of flow over hills at Re 50.
+/// Bounds on metrics without gates, of flow over hills at Re 50.
 fn bounds_of_hills() -> Vec<(&'static str, Bound, &'static str)> {
     let part = "parts of the body force on a period, 0.9 rho U_b^2 H, and no suction upstream";
     let plane = "plane Poiseuille flow takes 0.0175 in the widest gap and 0.058 in the narrowest";
@@ -330,7 +331,7 @@ fn bounds_of_hills() -> Vec<(&'static str, Bound, &'static str)> {
     ]
 }
 
-/// Bounds on what no gate is on, of Taylor-Green vortices.
+/// Bounds on metrics without gates, of Taylor-Green vortices.
 fn bounds_of_vortices() -> Vec<(&'static str, Bound, &'static str)> {
     let small = "32 spacings hold two vortices to some percent";
     vec![
@@ -342,7 +343,7 @@ fn bounds_of_vortices() -> Vec<(&'static str, Bound, &'static str)> {
     ]
 }
 
-/// Bounds on what no gate is on, of cases of water.
+/// Bounds on metrics without gates, of cases of water.
 fn bounds_of_water(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let damps = "dissipation takes energy, and no more than there is";
     let stress =
@@ -373,7 +374,7 @@ fn bounds_of_water(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     bounds
 }
 
-/// Bounds on what no gate is on, of the collapse in the tank of Lobovsky et al.
+/// Bounds on metrics without gates, of the collapse in the tank of Lobovsky et al.
 fn bounds_of_tank() -> Vec<(&'static str, Bound, &'static str)> {
     let level = "the levels of four stations, of which the gates allow 0.03 H in the mean";
     let head =
@@ -388,7 +389,7 @@ fn bounds_of_tank() -> Vec<(&'static str, Bound, &'static str)> {
     ]
 }
 
-/// Bounds on what no gate is on, for every run that is kept, from νt/L² = 0.1 on.
+/// Bounds on metrics without gates, for every run with a snapshot, from νt/L² = 0.1 on.
 fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let walls = "walls are first order in dx where the velocity is not linear: at 8 rows some 5 %";
     match case {
@@ -466,8 +467,8 @@ fn of_work(name: &str) -> String {
     format!("work.{name}")
 }
 
-/// Runs what is kept and compares, two snapshots for each case and variant, metrics and work. All of them are
-/// compared before the test fails, so that it tells whether one of these changed or both.
+/// Makes the runs and compares two snapshots for each case and variant, metrics and work. All are compared
+/// before the test fails, so that the message states which of them changed.
 fn check(name: &str) {
     let case = touchstone_cases::find(name).expect("a case");
     let runs = runs(case);
@@ -494,7 +495,7 @@ fn check(name: &str) {
     assert!(changed.is_empty(), "{}", told(&changed));
 }
 
-/// What changed, results and work apart.
+/// The changes of results and of work, apart.
 fn told(changed: &[String]) -> String {
     let (work, results): (Vec<&String>, Vec<&String>) =
         changed.iter().partition(|name| name.starts_with("work."));
@@ -582,7 +583,7 @@ fn vortices_are_as_they_were() {
     check("taylor_green");
 }
 
-/// What `list --json` says of settings and variants.
+/// Settings and variants of `list --json`.
 #[test]
 fn settings_are_as_they_were() {
     for case in touchstone_cases::CASES {
@@ -706,7 +707,7 @@ fn results_and_work_are_kept_apart() {
     assert!(none.starts_with("metrics changed of none; work changed of none"), "{none}");
 }
 
-/// The comparison itself: what it lets pass, and what it does not.
+/// The comparison itself: accepted and refused differences.
 #[test]
 fn a_change_is_seen_and_round_off_is_not() {
     let are = |a: Value, b: Value| Close::are("", &a, &b);

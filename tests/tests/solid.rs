@@ -1,6 +1,6 @@
-//! The elastic solid (9) to (12), (15), (20), (21): what holds to round-off, the paper's formulas in
-//! plain numbers, uniform strain, rotation, and the linear theory of its waves and of its tensile
-//! instability on a lattice.
+//! The elastic solid (9) to (12), (15), (20), (21): identities to round-off, the paper's formulas in plain
+//! numbers, uniform strain, rotation, and the linear theory of its waves and of its tensile instability on a
+//! lattice.
 
 use std::f64::consts::PI;
 use touchstone_base::functions::{cos, ln, log2, modulus, powf, rotation, sin, sinh};
@@ -68,7 +68,7 @@ fn elastic_rates(h: f64, cloud: &[Solid]) -> Vec<Rate<Symmetric>> {
 /// Accelerations of a cloud by one artificial stress.
 type Accelerate = fn(&[Solid]) -> Vec<Rate<Symmetric>>;
 
-/// Each artificial stress with a kernel of its own: what holds for a stress holds with any of them.
+/// Each artificial stress with one kernel: the properties of a stress do not depend on the kernel.
 const STRESSES: [(&str, Accelerate); 3] = [
     ("none", |cloud| elastic_rates(H, cloud)),
     ("principal", |cloud| open_rates::<QuinticSpline, _, _, _>(H, cloud, stress(principal()), ())),
@@ -272,7 +272,7 @@ fn jaumann(gradient: Tensor, s: Tensor) -> Tensor {
 
 #[test]
 fn jaumann_rate_is_equation_11() {
-    // S as large as 2μ, so that what turns weighs as much as what strains.
+    // S as large as 2μ, so that rotation and strain contribute equally.
     let mut cloud = cloud(8, 0.1);
     cloud.iter_mut().for_each(|p| p.extra = p.extra * 4.0);
     let rates = elastic_rates(H, &cloud);
@@ -330,8 +330,8 @@ fn uniform(n: usize, gradient: Tensor, extra: Symmetric) -> Vec<Solid> {
         .collect()
 }
 
-/// The centre of a patch sees a uniform strain rate as if there was nothing but lattice: every
-/// component is the exact one times G₁.
+/// The centre of a patch in uniform strain rate has the rates of an infinite lattice: every component is the
+/// exact one times G₁.
 #[test]
 fn a_uniform_strain_rate_gives_the_exact_stress_rate_times_the_lattice_factor() {
     let factor = SquareLattice::of::<CubicSpline>(1.2, 0.0).gradient_factor();
@@ -362,7 +362,7 @@ fn a_uniform_strain_rate_gives_the_exact_stress_rate_times_the_lattice_factor() 
     }
 }
 
-/// dv/dt = ω ẑ × v: what keeps particles on circles. A row starts with dx/dt = v.
+/// dv/dt = ω ẑ × v keeps particles on circles. A rate starts with dx/dt = v.
 #[derive(Clone, Copy)]
 struct Carousel {
     omega: f64,
@@ -382,7 +382,7 @@ const START: Symmetric = Symmetric { xx: 0.7, yy: -0.2, xy: 0.4 };
 
 type Turning<I> = Compose<QuinticSpline, Carousel, (Continuity, JaumannRate), Open, I, Symmetric>;
 
-/// The stress at the centre of a patch that turned once about it, in so many steps.
+/// The stress at the centre of a patch after one revolution in `steps` steps.
 fn turned_once<I: Integrator<Turning<()>>>(steps: u32) -> Tensor {
     let (n, omega) = (11, 2.0 * PI);
     let particles = uniform(n, Matrix2::new(0.0, -omega, omega, 0.0), START);
@@ -394,8 +394,8 @@ fn turned_once<I: Integrator<Turning<()>>>(steps: u32) -> Tensor {
     matrix(simulation.particles()[n * n / 2].extra)
 }
 
-/// Objectivity. The lattice sees G₁ ω in place of ω, so that S turns by 2π G₁ a revolution; how far
-/// the computed one is from there falls with dt at the order of the integrator.
+/// Objectivity. The rotation rate on the lattice is G₁ ω in place of ω, so S turns by 2π G₁ a revolution; the
+/// difference of the computed stress from this falls with dt at the order of the integrator.
 fn check_turning<I: Integrator<Turning<()>>>(expected: f64) {
     let factor = SquareLattice::of::<QuinticSpline>(RATIO, 0.0).gradient_factor();
     let turn = rotation(2.0 * PI * factor);
@@ -733,9 +733,9 @@ fn the_tensile_instability_grows_as_predicted_and_slower_with_artificial_stress(
     check::<WendlandC2>(2.0, [0.147, 0.058]);
 }
 
-/// The modulus against hourglass modes is that of the theory of bending at a ratio of 0.4. By that theory,
-/// ten layers are off by at most 0.06 % of the period at these ratios, and finite elements are uncertain by
-/// 0.07 %; the error that is seen is at most 0.06 %.
+/// The hourglass modulus is the one of the theory of bending at a ratio of 0.4. By this theory the period of
+/// ten layers is off by at most 0.06 % at these ratios, and finite elements are uncertain by 0.07 %; the
+/// measured error is at most 0.06 %.
 #[test]
 fn plates_of_other_poissons_ratios_swing_as_finite_elements_do() {
     let package = Reference::load("oscillating_plate_felupe").unwrap();

@@ -1,5 +1,5 @@
-//! Every variant of every case tells all observers the same, and an error that breaks one symmetry is found
-//! by the relation that is about it.
+//! Every variant of every case gives equal results for all observers, and an error that breaks a symmetry is
+//! found by its relation.
 
 use crate::decay::Decay;
 use nalgebra::Vector2;
@@ -20,7 +20,7 @@ use touchstone_solver::{
 };
 use touchstone_tests::patch;
 
-/// The relations of which a run tells observers different things, and those which do not hold for it.
+/// The relations violated by a run, and the relations that do not apply to it.
 fn found(case: &dyn Case, spec: &RunSpec) -> Result<[Vec<Relation>; 2], RunError> {
     let [mut broken, mut none] = [Vec::new(), Vec::new()];
     for (relation, difference) in symmetry::battery(case, spec)? {
@@ -47,7 +47,7 @@ const SMALL: [(&str, &[&str]); 9] = [
     ("taylor_green", &["n=16", "perturb=0.2"]),
 ];
 
-/// Also those that do not hold for a scene are the expected ones, and not too many.
+/// The relations that do not apply to a scene are the expected ones.
 #[test]
 fn every_variant_tells_all_observers_the_same() {
     let of_case = |case: &&'static dyn Case| -> Vec<(&'static dyn Case, RunSpec)> {
@@ -102,7 +102,7 @@ const SOUND: char = '0';
 const ANISOTROPIC: char = 'x';
 /// Turns to the left.
 const CHIRAL: char = 'l';
-/// Has a length of its own.
+/// Has an absolute length.
 const ABSOLUTE: char = 'm';
 /// Takes from velocities.
 const DRAG: char = 'v';
@@ -243,7 +243,7 @@ fn each_relation_finds_the_error_that_it_is_about_and_no_other() {
         ("origin", &[Shifted]),
         // Particles that move all together cross the border too.
         ("border", &[Boosted, Shifted]),
-        // One observer has no particles, or both have none: nothing says that they agree.
+        // One observer has no particles, or both have none: nothing shows agreement.
         ("far", &[Shifted]),
         ("gone", &[Turned, Mirrored, Boosted, BinaryUnits, OtherUnits, Renumbered, Shifted]),
     ] {

@@ -1,4 +1,4 @@
-//! The same bits on any number of threads, and without them.
+//! Equal bits on any number of threads, and without threads.
 //!
 //! Rows are gathered, each by one thread in its own order; blocks are fixed; maxima are exact. That
 //! is the mechanism under test. 2,500 particles are five blocks, so that pools share them unevenly.
@@ -82,8 +82,8 @@ fn channel_fluid() -> Vec<Particle> {
     patch(N, 0.05, 2).into_iter().map(along).collect()
 }
 
-/// Interface particles at y = 0 and 1, and behind them as many wall rows as the kernel reaches: 700
-/// wall particles, in blocks of their own.
+/// Interface particles at y = 0 and 1, and behind them wall rows up to the support of the kernel: 700 wall
+/// particles, in blocks of their own.
 fn walled() -> Vec<Particle> {
     let row = |y: f64, role: Role, u: f64| {
         let points = lattice(Vector2::new(0.5 * DX, y), DX, N, 1);
@@ -145,7 +145,7 @@ fn walls_stand_still_and_interfaces_keep_their_density() {
     assert!(walls_changed > 80, "the density of {walls_changed} wall particles followed the fluid");
 }
 
-/// What an observer is told is what the step does.
+/// The rates reported to an observer are the rates of the step.
 #[test]
 fn a_step_goes_by_the_rates_of_its_terms() {
     let mut simulation = periodic::<Euler>().build().unwrap();

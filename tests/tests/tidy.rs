@@ -1,4 +1,4 @@
-//! Style as tests: what the project asks of its sources, checked and not remembered.
+//! Rules of style for the sources, as tests.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,9 +6,9 @@ use std::process::Command;
 
 /// Columns that a line of Rust may have.
 const COLUMNS: usize = 110;
-/// The solver, and the crate beside it.
+/// The solver crates.
 const SOLVER: [&str; 2] = ["solver/src", "solver/lagrangian/src"];
-/// What is tracked in the root beside folders: documents, licences and the settings of tools.
+/// Tracked files in the root: documents, licences and settings of tools.
 const ROOT_FILES: &[&str] = &[
     ".gitignore",
     "ARCHITECTURE.md",
@@ -36,7 +36,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// All files below a folder, sorted; neither those of git nor what is built or ignored.
+/// All files below a folder, sorted, without git data, build outputs and ignored files.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{folder:?}: {error}"));
@@ -44,7 +44,7 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     paths.sort();
     for path in paths {
         let name = path.file_name().unwrap().to_string_lossy();
-        // Cargo puts this tag into what it builds into, wherever that is.
+        // Cargo puts this tag into every output folder.
         let is_output = folder.ends_with("..") && ["target", "reports"].contains(&&*name)
             || path.join("CACHEDIR.TAG").exists();
         if path.is_dir() && ![".git", "node_modules"].contains(&&*name) && !is_output {
@@ -74,7 +74,7 @@ pub fn assert_none(rule: &str, found: Vec<String>) {
     assert!(found.is_empty(), "{rule}:\n  {}", found.join("\n  "));
 }
 
-/// A profile costs nothing unless it is asked for: clocks are in the harness, which is told of phases then.
+/// Profiling costs nothing unless it is requested: clocks are in the harness, which then watches the phases.
 #[test]
 fn the_solver_reads_no_clock() {
     let mut found = Vec::new();
@@ -100,7 +100,7 @@ fn lines_are_short() {
     assert_none(&format!("a line has at most {COLUMNS} columns"), found);
 }
 
-/// What is no module of the program is not run, and nothing says so.
+/// A file that is not a module of the test program would not run, without any message.
 #[test]
 fn every_file_of_tests_is_run() {
     let mut found = Vec::new();
@@ -161,7 +161,7 @@ fn no_text_names_a_machine() {
     assert_none("a text that is committed holds no path of one machine", found);
 }
 
-/// What git tracks, or all files where it tracks nothing: in an archive of the sources.
+/// Files tracked by git; all files in an archive of the sources, without git.
 fn tracked() -> Vec<String> {
     let git = Command::new("git").arg("-C").arg(root()).args(["ls-files", "-z"]).output();
     let of_git = git.ok().filter(|output| output.status.success() && !output.stdout.is_empty());

@@ -23,7 +23,7 @@ type Forces = (Pressure<Tait>, Viscosity);
 type Drift = (Continuity, Shifting);
 type Method<U> = Compose<CubicSpline, Forces, Drift, ExtrapolatingWall<Tait, U>, Leapfrog>;
 
-/// What a particle or an image shows its neighbours.
+/// The fields of a particle or an image that neighbours read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Shown {
     place: V2,
@@ -134,7 +134,7 @@ fn extrapolating_walls_are_the_formula_of_adami_hu_and_adams() {
         below += u32::from(expected < least);
     }
     assert!(below > 3 && alone > 0 && alone < 4, "{below} below {floor} Pa, {alone} alone");
-    // Images of wall particles show what their sources do, also those filled before the sweep.
+    // Images of wall particles equal their sources, also images filled before the sweep.
     let images = &sticky[all.len()..];
     let of_walls = images.iter().filter(|image| image.place.y < 0.0);
     let same = of_walls.filter(|image| {
@@ -148,10 +148,10 @@ fn extrapolating_walls_are_the_formula_of_adami_hu_and_adams() {
     assert!(walls_seen_twice > 2 && same.count() == walls_seen_twice);
 }
 
-/// p linear in the fluid with ∇p = ρ g goes on behind the wall, whatever the arrangement.
+/// A linear p in the fluid with ∇p = ρ g continues behind the wall in any arrangement.
 #[test]
 fn a_hydrostatic_pressure_goes_on_behind_the_wall() {
-    // So stiff that the density is the same everywhere. Along x it is periodic.
+    // So stiff that the density is uniform. Periodic along x.
     let (eos, gravity) = (Tait::new(1000.0, 2e4), Vector2::new(0.0, -9.0));
     let pressure = |x: V2| 5e3 + 1000.0 * gravity.dot(&x);
     let mut particles = scene();

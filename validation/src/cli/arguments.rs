@@ -78,17 +78,17 @@ pub struct List {
     pub json: bool,
 }
 
-/// The largest number of threads that may be asked for: more than present machines have cores.
+/// The largest allowed number of threads: more than the cores of present machines.
 pub const MOST_THREADS: u16 = 1024;
 
 fn threads() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(1..=i64::from(MOST_THREADS))
 }
 
-/// The name of a value, the value, and what help says of it.
+/// Name of a value, the value, and its help.
 type Named<T> = (&'static str, T, &'static str);
 
-/// One of these values, by its name.
+/// A parser of the names of these values.
 fn one_of<T: Copy + Send + Sync>(all: &'static [Named<T>]) -> impl TypedValueParser<Value = T> {
     let possible = all.iter().map(|(name, _, help)| PossibleValue::new(*name).help(*help));
     PossibleValuesParser::new(possible).map(|given| {
@@ -238,7 +238,7 @@ const FORMATS: [Named<Format>; 4] = [
     ("pysph", Format::Pysph, "Also a Python script that runs PySPH"),
 ];
 
-/// Which problem is written, and where.
+/// The exported problem and its folder.
 #[derive(Debug, Args)]
 pub struct Written {
     /// Name of the case
@@ -366,7 +366,7 @@ pub struct Submit {
     pub all: bool,
 }
 
-/// `OURS=THEIRS`. Which columns are ours depends on the case and on what is handed in.
+/// `OURS=THEIRS`. Our columns depend on the case and on the submitted file.
 fn pair(text: &str) -> Result<(String, String), String> {
     let (ours, theirs) = text.split_once('=').unwrap_or_default();
     match ours.is_empty() || theirs.is_empty() {
@@ -389,7 +389,7 @@ pub struct Making {
     pub threads: Option<u16>,
 }
 
-/// What is judged, and how the verdicts are told.
+/// Selection of gates, and form of the verdicts.
 #[derive(Debug, Args)]
 pub struct Judged {
     /// Names of the cases; by default all cases, and the studies that belong to no case

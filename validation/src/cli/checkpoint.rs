@@ -1,6 +1,6 @@
-//! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of all
-//! that follows; the second line is what was asked for, and the lengths of the simulations in bytes, as JSON;
-//! then come these, as bytes.
+//! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of
+//! everything after it; the second line is the requested run and the lengths of the simulations in bytes, as
+//! JSON; then follow the simulations as bytes.
 
 use std::path::Path;
 
@@ -20,7 +20,7 @@ const MAGIC: &str = "touchstone checkpoint";
 /// Version of the format.
 const FORMAT: u32 = 2;
 
-/// What was asked for.
+/// The requested run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Asked {
@@ -48,7 +48,7 @@ fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
     [format!("{MAGIC} {FORMAT} {}\n", sha256(&rest)).into_bytes(), rest].concat()
 }
 
-/// Reads the checkpoint of a folder: what was asked for, and the simulations. `sources` is the digest of this
+/// Reads the checkpoint of a folder: the requested run, and the simulations. `sources` is the digest of this
 /// program's sources for a case.
 ///
 /// # Errors
@@ -62,9 +62,9 @@ pub fn read(folder: &Path, sources: fn(&str) -> String) -> Result<(Asked, Vec<Ve
     parse(&bytes, &path, sources).map_err(Failure::usage)
 }
 
-/// What the bytes of a file say, or in words why a run does not go on from it: another file, or one of
-/// another version or build of this program, with which the rest of the run would have other bits; or not all
-/// of it is there, or not as it was written.
+/// Parses the bytes of a checkpoint. An error states why a run cannot continue from it: another kind of file,
+/// another version or build of this program (the rest of the run would have other bits), or a truncated or
+/// changed file.
 fn parse(
     bytes: &[u8],
     path: &Path,
@@ -104,7 +104,7 @@ fn parse(
     Ok((asked, simulations))
 }
 
-/// The first line without its end, and what follows it.
+/// The first line without its end, and the bytes after it.
 fn split_line(bytes: &[u8]) -> (&[u8], &[u8]) {
     let end = bytes.iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len());
     (&bytes[..end], bytes.get(end + 1..).unwrap_or_default())

@@ -1,4 +1,4 @@
-//! `compare`: what changed between two reports or two stores.
+//! `compare`: changes between two reports or two stores.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -94,7 +94,7 @@ fn add(all: &mut Vec<Submitted>, record: Record, world: &World) {
 }
 
 impl Submitted {
-    /// What stays when a code has a new version: code, scheme, division and problem.
+    /// The parts that a new version of a code keeps: code, scheme, division and problem.
     fn name(&self) -> String {
         let SubmissionVerdicts { submission: by, .. } = &self.of;
         let sealed = by.seed.map_or(String::new(), |seed| format!(", sealed by seed {seed}"));
@@ -109,7 +109,7 @@ impl Submitted {
         format!("version {}, method {}, results {results}", by.version, first(&by.method))
     }
 
-    /// Changes of gates and metrics against the run of the same code before.
+    /// Changes of gates and metrics against the earlier run of the code.
     fn changes(&self, was: Option<&Self>) -> Vec<Change> {
         let name = self.name();
         let gates = |of: &Self| by_name(of.of.judged.iter());
@@ -134,8 +134,8 @@ impl Submitted {
     }
 }
 
-/// The changes of runs of other codes. One is compared with the run of the same results or, without one, with
-/// that of the same code and scheme on the same problem, of whatever version.
+/// The changes of runs of other codes. A run is compared with the run of equal results or, without one, with
+/// a run of the same code, scheme and problem, in any version.
 fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<Change> {
     let is_same = |a: &Submitted, b: &Submitted| a.of.key == b.of.key;
     let was = |is: &Submitted| {
@@ -150,7 +150,7 @@ fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<Change> {
     changes
 }
 
-/// What changed, the worst first.
+/// Kinds of changes, the worst first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 enum Kind {
@@ -189,10 +189,10 @@ struct Change {
 /// judges it.
 const RESOLUTION: f64 = 0.01;
 
-/// Seconds of a run are told if they differ by more than this factor.
+/// Changes of seconds by more than this factor are reported.
 const NOTABLE: f64 = 1.1;
 
-/// Metrics of a run that are told by name.
+/// Number of metrics of a run that are named.
 const TOLD: usize = 3;
 
 pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
@@ -260,7 +260,7 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
     if changes.is_empty() { text + "nothing changed\n" } else { text }
 }
 
-/// The changes of what has a name in one of the two, or in both.
+/// The changes of items with a name in either or both.
 fn paired<T>(
     old: &BTreeMap<String, T>,
     new: &BTreeMap<String, T>,
@@ -299,8 +299,8 @@ fn of_gate(was: Option<&Judged>, is: Option<&Judged>) -> Vec<(Kind, String)> {
     }
 }
 
-/// Is the difference more than the resolution of a value of this scale? What is not a number is equal to
-/// nothing else.
+/// Whether the difference exceeds the resolution of a value of this scale. NaN differs from everything but
+/// NaN.
 fn has_moved(scale: f64, from: Option<f64>, to: Option<f64>) -> bool {
     match (from, to) {
         (Some(from), Some(to)) if from == to || (from.is_nan() && to.is_nan()) => false,
@@ -353,7 +353,7 @@ fn of_run(
     changes
 }
 
-/// Metrics of one run that went, came or moved, in one change each.
+/// Metrics of one run that disappeared, appeared or moved, in one change each.
 fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(Kind, String)> {
     let value = |record: &Record, metric: &str| record.metrics.get(metric).map(|m| m.value);
     let lacking = |of: &Record, other: &Record| -> Vec<String> {
@@ -426,7 +426,7 @@ mod tests {
         assert_eq!(changes(change), [(kind, format!("1: {words}"))]);
     }
 
-    /// "nothing changed" was said of 87 records whose metrics were all 123.0.
+    /// 87 records with all metrics 123.0 must not count as unchanged.
     #[test]
     fn a_metric_that_moved_by_more_than_the_resolution_of_its_gate_is_told() {
         assert_eq!(changes(|_| ()), []);
@@ -470,7 +470,7 @@ mod tests {
         assert!(Kind::Gone.is_loss() && Kind::Stopped.is_loss() && !Kind::New.is_loss());
     }
 
-    /// Slower runs were told, and faster ones were not.
+    /// Slower and faster runs are both reported.
     #[test]
     fn seconds_work_and_bits_are_told() {
         one(|r| r.cost.alone_s = vec![0.8], Kind::Seconds, "1.0000 to 0.8000 s, 0.800 times");
@@ -486,7 +486,7 @@ mod tests {
         one(|record| record.state = Some("other".into()), Kind::State, other);
     }
 
-    /// `compare` ended with 0 when all gates were gone.
+    /// `compare` must not end with 0 when all gates are missing.
     #[test]
     fn a_gate_that_is_gone_or_fails_is_a_loss() {
         let judged = |value: f64| {

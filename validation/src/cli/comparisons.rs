@@ -10,7 +10,7 @@ use touchstone_harness::suite::{CaseResults, Suite};
 pub struct ComparisonVerdict {
     /// name of the case
     pub case: String,
-    /// the variant and what is compared
+    /// the variant and the compared quantity
     pub what: String,
     /// the reference
     pub with: String,

@@ -1,4 +1,4 @@
-//! `doctor`: what this program is, and whether it works here.
+//! `doctor`: the build of this program, and a check that it works here.
 
 use std::time::Instant;
 
@@ -78,10 +78,10 @@ fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> 
     Ok(format!("into {}", arguments.out.display()))
 }
 
-/// Error that the self-check may have: twice what it is, so that a change of method is no alarm.
+/// Largest error of the self-check: twice the present error, so that a change of method raises no alarm.
 const BOUND: f64 = 0.02;
 
-/// A small Couette flow against its series, twice: right, and the same bits.
+/// A small Couette flow against its series, twice: the error is small, and the bits are equal.
 fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
     let start = Instant::now();
     let set = ["rows=10".to_string(), "end=0.1".to_string()];

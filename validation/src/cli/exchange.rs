@@ -1,4 +1,4 @@
-//! `export` and `submit`: problems for other codes, and what these made of them.
+//! `export` and `submit`: problems for other codes, and their results.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failur
     Ok(())
 }
 
-/// Says what the run takes that solves a problem.
+/// Prints the estimated cost of a run that solves the problem.
 ///
 /// # Errors
 /// If it is refused, or takes more than is allowed.
@@ -69,11 +69,11 @@ fn estimate(case: &dyn Case, spec: &RunSpec, of: &arguments::Export) -> Result<(
     Ok(())
 }
 
-/// What a run adds to its problem and to the description of its method.
+/// Files of a run in addition to its problem and the description of its method.
 const RESULTING: [&str; 3] = [RESULTS, CURVE, SYSTEM];
 
-/// The folder of a problem, if nothing of another one is in it and no file of somebody else would be
-/// replaced. Results beside the same description of the method are those of an earlier export.
+/// The folder of a problem. Refused if it holds files of another problem, or if foreign files would be
+/// replaced. Results with an equal description of the method are results of an earlier export.
 fn prepare(
     of: &arguments::Written,
     files: &[write::File],
@@ -116,11 +116,11 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
     Ok(files.iter().map(|(name, _)| name.to_string()).collect())
 }
 
-/// What a submission of this program says of its method.
+/// The description of this program's method in a submission.
 fn solved_by(problem: &Problem) -> String {
     let read = problem.settings().map(|(field, value)| (field.name.to_string(), value.clone()));
     let (mut settings, own) = (Value::Object(read.collect()), &problem.outline.method);
-    // What makes gates on the theory of our own method apply.
+    // With these settings the gates on the theory of our own method apply.
     settings["kernel"] = json!(own.kernel);
     settings["support"] = json!(own.support * problem.outline.medium.h);
     settings["dt"] = json!(problem.outline.dt);
@@ -166,7 +166,7 @@ fn solve(
             case.pose(spec)?.seen_by(relation, &context, &mut |time, particles| {
                 tell(time, particles);
             })?;
-            // Nothing was measured of what an observer sees, and nothing was counted.
+            // A record without metrics or work: the seen particles were not measured.
             Record::of(spec, 1)
         }
         None => case.run(spec, &Context { at_times: Some(&tell), ..context })?,
@@ -260,8 +260,8 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     Ok(exit)
 }
 
-/// Keeps the record of a submission. One of the same results that the store has already must say the same: a
-/// record proves nothing that its results do not.
+/// Keeps the record of a submission. A stored record of equal results must be equal: a record proves nothing
+/// beyond its results.
 fn keep(store: &Store, record: &Record) -> Result<PathBuf, Failure> {
     match store.find(&record.spec()) {
         Ok(Some(before)) if before.manifest.sources == record.manifest.sources => {
@@ -283,7 +283,7 @@ fn keep(store: &Store, record: &Record) -> Result<PathBuf, Failure> {
     Ok(store.write(record)?)
 }
 
-/// What two records say otherwise, by name.
+/// Differences between two records, by name.
 fn differences(before: &Record, now: &Record) -> Vec<String> {
     let value = |of: &Record, name: &str| match of.metrics.get(name) {
         Some(metric) => format!("{:?}", metric.value),
@@ -304,7 +304,7 @@ fn differences(before: &Record, now: &Record) -> Vec<String> {
     all
 }
 
-/// Metrics that differ and are told by name.
+/// Number of different metrics that are named.
 const MOST_DIFFERENCES: usize = 3;
 
 /// The submission in a folder, with columns of other names.
@@ -337,7 +337,7 @@ fn spec_of(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
     Ok(case::resolved(case, plain)?)
 }
 
-/// Compares what another code wrote for two observers of a problem, the first of relation `same`.
+/// Compares the results of another code for two observers of a problem, the first of relation `same`.
 pub fn relate(
     case: &str,
     [base, turned]: [&Path; 2],
@@ -404,7 +404,7 @@ pub fn relate(
     Ok(if found.is_round_off() { Exit::Pass } else { Exit::GateFailed })
 }
 
-/// The problem that the folder says it solves, or that the arguments describe.
+/// The problem that the folder states, or that the arguments describe.
 fn problem(
     case: &dyn Case,
     entry: &Entry,

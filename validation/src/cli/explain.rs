@@ -1,4 +1,4 @@
-//! `explain`: what a gate checks and why.
+//! `explain`: the quantity, bound and reason of a gate.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -20,7 +20,7 @@ use super::{
     output,
 };
 
-/// A gate, what it is judged on, and what came of it last.
+/// A gate, its runs, and its last verdict.
 struct Known {
     gate: Gate,
     tiers: Vec<String>,
@@ -68,8 +68,8 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Fail
     output::print(&texts.join("\n"))
 }
 
-/// The verdicts of the last report or, without one, those on the records that `verify` keeps: of the cases
-/// whose gates may begin with `asked`, if all runs of the quick tier are there.
+/// The verdicts of the last report or, without one, of the records that `verify` keeps: for the cases with
+/// gates that may begin with `asked`, if all runs of the quick tier are stored.
 fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Verdicts>, Failure> {
     let text = judged::read(reports)?.unwrap_or_default();
     if let Ok(verdicts) = serde_json::from_str(&text) {
@@ -103,7 +103,7 @@ fn of_study(title: &str, case: &str) -> String {
     format!("the study \"{title}\" of {case}")
 }
 
-/// Gates of the plans; then those on many runs, which only a report names.
+/// Gates of the plans, then gates on several runs, whose names only a report has.
 fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     let mut gates: Vec<Known> = Vec::new();
     for case in world.cases {
@@ -147,7 +147,7 @@ fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
     gates
 }
 
-/// Those of the gates that have this verdict, one per line; limitations by cause.
+/// The gates with this verdict, one per line; limitations by cause.
 pub fn listed(gates: Vec<&Judged>, verdict: Verdict) -> String {
     let has = |judged: &&Judged| judged.judgement.verdict == verdict;
     let chosen: Vec<&Judged> = gates.into_iter().filter(has).collect();
@@ -166,7 +166,7 @@ fn table(gates: &[&Judged]) -> String {
     output::table(&["gate", "value", "bound"], gates.iter().map(row))
 }
 
-/// Each cause, that of most gates first, with what would remove it and its gates.
+/// Each cause, in order of decreasing number of gates, with its remedy and its gates.
 fn by_cause(gates: &[&Judged]) -> String {
     let mut text = String::new();
     for (cause, gates) in runs::by_cause(gates.iter().copied(), |judged| judged) {

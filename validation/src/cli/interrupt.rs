@@ -1,5 +1,5 @@
-//! Signals: the first asks every loop to stop in order, and what does not stop soon is stopped; a second one
-//! stops at once. No file is left half-written.
+//! Signals: the first asks every loop to stop in order, and loops that do not stop soon are stopped; a second
+//! one stops at once. No file is left half-written.
 
 use std::io;
 use std::process;
@@ -43,7 +43,7 @@ impl Drop for Hold {
     }
 }
 
-/// What a signal does.
+/// Handles a signal.
 fn interrupt() {
     if INTERRUPTED.swap(true, Ordering::Relaxed) {
         end();
@@ -53,7 +53,7 @@ fn interrupt() {
         while HELD.load(Ordering::Relaxed) {
             sleep(SHORT);
         }
-        // On a thread of its own: nobody may read what is said.
+        // On a separate thread, because standard error may be blocked.
         let last = "touchstone: interrupted; every file that is there is whole";
         let _ = spawn(|| output::say(last));
         sleep(SHORT);
@@ -65,7 +65,7 @@ fn interrupt() {
     output::say("interrupting; interrupt once more to end at once");
 }
 
-/// Starts a thread, whatever size of a stack the environment asks for.
+/// Starts a thread with a fixed size of its stack, whatever the environment requests.
 ///
 /// # Errors
 /// If the system has no more threads.

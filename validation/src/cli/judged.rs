@@ -52,7 +52,7 @@ fn table_of<'a>(mut judged: Vec<&'a Judged>) -> String {
     text
 }
 
-/// The table of those that did not pass, or of all, and an empty line; nothing if there are none.
+/// The table of the gates that did not pass, or of all gates, and an empty line; nothing if there are none.
 pub fn shown<'a>(judged: impl IntoIterator<Item = &'a Judged>, all: bool) -> String {
     let judged =
         judged.into_iter().filter(|judged| all || judged.judgement.verdict != Verdict::Pass);
@@ -97,7 +97,7 @@ pub struct Verdicts {
     /// runs of other codes
     #[serde(default)]
     pub submissions: Vec<SubmissionVerdicts>,
-    /// comparisons of all cases with references; builds of before have none
+    /// comparisons of all cases with references; empty in verdicts of earlier builds
     #[serde(default)]
     pub comparisons: Vec<ComparisonVerdict>,
 }
@@ -113,7 +113,7 @@ pub struct SubmissionVerdicts {
     pub set: Vec<String>,
     /// names the record
     pub key: String,
-    /// who made the run
+    /// the code of the run
     pub submission: Submission,
     /// does the program contain the record? Then it decides no exit code
     pub embedded: bool,
@@ -241,7 +241,7 @@ pub fn json(suite: &Suite) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(&Verdicts::of(suite)).map_err(Failure::bug)? + "\n")
 }
 
-/// Writes the verdicts as JUnit XML into a file, if it was asked for.
+/// Writes the verdicts as JUnit XML into a file, if requested.
 pub fn write_junit(suite: &Suite, path: Option<&Path>) -> Result<(), Failure> {
     Ok(path.map_or(Ok(()), |path| write_atomically(path, junit(suite).as_bytes()))?)
 }
@@ -251,7 +251,7 @@ pub fn value(judgement: &Judgement) -> String {
     judgement.value.map_or("not measured".into(), |value| touchstone_report::sig(value, 5))
 }
 
-/// Runs of other codes in the store as a table, those with failing gates first; of many the first.
+/// Runs of other codes in the store as a table of limited length, runs with failing gates first.
 pub fn submissions(suite: &Suite) -> String {
     let of = |(results, run): (&CaseResults, &JudgedRun)| {
         SubmissionVerdicts::of(results.case, run, false)
@@ -286,7 +286,7 @@ pub fn submissions(suite: &Suite) -> String {
     if all.is_empty() { String::new() } else { format!("\n{table}{words}") }
 }
 
-/// What came of all gates, of our own runs and of those of other codes in the store.
+/// Counts of the verdicts of all gates, of our own runs and of other codes in the store.
 pub fn headline(suite: &Suite) -> String {
     let painted = |counts: Counts| match counts.count(Verdict::Fail) {
         0 => counts.headline(),
@@ -303,7 +303,7 @@ pub fn headline(suite: &Suite) -> String {
     }
 }
 
-/// Runs of other codes that are told in a line each.
+/// Number of runs of other codes with a line each.
 const MOST_SHOWN: usize = 20;
 
 /// A test case a gate, by case, and a suite for each run of another code in the store. Failing gates are

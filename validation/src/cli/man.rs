@@ -7,7 +7,7 @@ use touchstone_base::files::OutputFolder;
 use super::arguments::{self, Arguments};
 use super::{Failure, output};
 
-/// Prints the page of the program, or writes it and those of all commands into a folder.
+/// Prints the manual page of the program, or writes it and the pages of all commands into a folder.
 pub fn man(arguments: &arguments::Man) -> Result<(), Failure> {
     let mut program = Arguments::command();
     program.build(); // gives each command its full name

@@ -54,7 +54,7 @@ use touchstone_harness::suite::Plans;
 
 use arguments::{Arguments, Command};
 
-/// What the process ends with.
+/// Exit code of the process.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Exit {
     /// Done, and nothing failed.
@@ -102,23 +102,23 @@ impl<E: std::error::Error> From<E> for Failure {
     }
 }
 
-/// What a command comes to.
+/// Result of a command.
 type Outcome = Result<Exit, Failure>;
 
-/// Shows what is made before all is, and says what it did if it did anything.
+/// Shows the results before all runs are made; returns a message if it did.
 type Early<'a> = dyn Fn(Made) -> Option<String> + Sync + 'a;
 
 /// A reference that is not as it was described, and the names of the cases that are compared with it.
 type WrongReference = (ReferenceError, &'static [&'static str]);
 
-/// What commands work on.
+/// The cases and stores that commands use.
 #[derive(Clone, Copy)]
 pub struct World {
     /// The cases to choose from.
     cases: &'static [&'static dyn Case],
-    /// Digest of the sources that decide what a case computes.
+    /// Digest of the sources that determine the results of a case.
     sources: fn(&str) -> String,
-    /// The references of these cases, and those of none, that are not as they were described.
+    /// The references of these cases, and of no case, that differ from their description.
     references: fn(&[&str]) -> Vec<WrongReference>,
     /// Set to stop.
     interrupt: &'static AtomicBool,
@@ -140,12 +140,12 @@ impl World {
         Ok(chosen)
     }
 
-    /// How runs are made, until something else is asked for.
+    /// Default options for making runs.
     fn making(&self, tier: Tier) -> Making<'_> {
         Making { interrupt: Some(self.interrupt), ..Making::new(tier, &self.sources) }
     }
 
-    /// What a store has of plans, whether or not its timed runs were made alone.
+    /// The stored runs of plans, whether or not timed runs were made alone.
     fn stored(&self, plans: &Plans, store: &Store, any_build: bool) -> Stored {
         let mut jobs = make::jobs(plans.clone());
         jobs.iter_mut().for_each(|job| job.planned.timed = false);
@@ -153,8 +153,8 @@ impl World {
         make::stored(&jobs, &Making { store, reuse_other: any_build, ..self.making(Tier::Quick) })
     }
 
-    /// Makes the runs that a store lacks, on a pool of so many threads, with a bar, and says what of it did
-    /// not go as it should. Whoever shows what there is early is asked to each time that a case is complete.
+    /// Makes the runs that a store lacks, on a pool of threads, with a progress bar, and reports failures.
+    /// `early` is called each time that a case is complete.
     fn make(
         &self,
         jobs: &[Job],
@@ -194,7 +194,7 @@ impl World {
         Err(Failure { exit: Exit::GateFailed, reason })
     }
 
-    /// Goes on, unless the user interrupts: then this is told of what there is.
+    /// Continues unless the user interrupts; then the error states the results so far.
     fn go_on(&self, what: &str) -> Result<(), Failure> {
         if self.is_interrupted() { Err(Failure::interrupted(what)) } else { Ok(()) }
     }
@@ -204,10 +204,10 @@ impl World {
     }
 }
 
-/// Messages of one kind that are told in full.
+/// Number of messages of one kind that are printed in full.
 const TOLD: usize = 10;
 
-/// Says what is wrong, the first of the lines in full.
+/// Prints problems, the first lines in full.
 fn tell(lines: &[String]) {
     lines.iter().take(TOLD).for_each(|line| output::say(&format!("touchstone: {line}")));
     if lines.len() > TOLD {
@@ -215,7 +215,7 @@ fn tell(lines: &[String]) {
     }
 }
 
-/// Says which records could not be read, kept or made.
+/// Reports records that could not be read, kept or made.
 fn tell_trouble(made: &Made) {
     let again = |(_, error): &(RunKey, FileError)| {
         format!("{error}; a record in this place does not count")
@@ -237,7 +237,7 @@ fn trouble(made: &Made) -> Option<Exit> {
     }
 }
 
-/// What this binary was built from.
+/// The sources of this binary.
 const SOURCE: Source = Source {
     commit: env!("TOUCHSTONE_COMMIT"),
     dirty: match env!("TOUCHSTONE_DIRTY").as_bytes() {
@@ -255,7 +255,7 @@ fn sources(case: &str) -> String {
     digest.map_or(UNKNOWN, |(_, digest)| digest).into()
 }
 
-/// The embedded references of these cases, and those of none, that are not as they were described.
+/// The embedded references of these cases, and of no case, that differ from their description.
 fn references(cases: &[&str]) -> Vec<WrongReference> {
     let names = Reference::names().into_iter().map(|name| (name, touchstone_cases::users(name)));
     // To read all takes as long as half of a small run.
@@ -264,7 +264,7 @@ fn references(cases: &[&str]) -> Vec<WrongReference> {
     asked.filter_map(|(name, users)| Some((Reference::load(name).err()?, users))).collect()
 }
 
-/// Reads the arguments of the process and does what they ask.
+/// Parses the arguments of the process and runs the command.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(output::report_bug));
     tell_source(SOURCE);
@@ -297,7 +297,7 @@ fn code(exit: Exit) -> ExitCode {
     ExitCode::from(exit as u8)
 }
 
-/// Turns what a command comes to, a panic included, into an exit code, and says why.
+/// Turns the result of a command, or its panic, into an exit code, and prints the reason.
 fn conclude(command: impl FnOnce() -> Outcome) -> Exit {
     match std::panic::catch_unwind(std::panic::AssertUnwindSafe(command)) {
         Ok(Ok(exit)) => exit,
@@ -356,7 +356,7 @@ fn dispatch(command: &Command, world: &World) -> Outcome {
     }
 }
 
-/// Says that a command has another name.
+/// Prints the new name of a renamed command.
 fn renamed(old: &str, new: &str) {
     output::say(&format!("note: `{old}` is `{new}` now, and will be removed"));
 }
@@ -368,8 +368,8 @@ fn completions(arguments: &arguments::Completions) -> Result<(), Failure> {
     output::print(&String::from_utf8_lossy(&script))
 }
 
-/// What to ask rayon for where no number of threads is given: 0, which is one a core or what
-/// `RAYON_NUM_THREADS` says, unless that is more than `--threads` may be.
+/// The number of threads for rayon without `--threads`: 0, which means one a core or `RAYON_NUM_THREADS`,
+/// unless this exceeds the maximum of `--threads`.
 fn default_threads() -> usize {
     threads_of(std::env::var("RAYON_NUM_THREADS").ok().as_deref())
 }
@@ -383,7 +383,7 @@ fn threads_of(variable: Option<&str>) -> usize {
     if asked.is_some_and(|asked| asked > most) { most } else { 0 }
 }
 
-/// Size of the stack of each thread \[bytes\], whatever the environment asks for.
+/// Size of the stack of each thread \[bytes\], whatever the environment requests.
 const STACK: usize = 1 << 21;
 
 fn pool(threads: usize) -> rayon::ThreadPoolBuilder {
@@ -401,7 +401,7 @@ fn no_threads(threads: usize, error: &rayon::ThreadPoolBuildError) -> Failure {
 /// Starts the threads that all commands share.
 ///
 /// # Errors
-/// If the system has not so many.
+/// If the system refuses this number of threads.
 fn start_threads() -> Result<(), Failure> {
     let threads = default_threads();
     match pool(threads).build_global() {
@@ -410,7 +410,7 @@ fn start_threads() -> Result<(), Failure> {
     }
 }
 
-/// Does the work on a pool of so many threads, by default on those that all commands share.
+/// Does the work on a pool of this number of threads, by default on the pool of all commands.
 fn on_threads<T: Send>(
     threads: Option<u16>,
     work: impl FnOnce() -> Result<T, Failure> + Send,

@@ -1,4 +1,4 @@
-//! What is said of a store that lacks records: the complete cases judged, and the missing runs listed.
+//! Reports of an incomplete store: the complete cases judged, and the missing runs listed.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -14,14 +14,14 @@ use touchstone_harness::{
 };
 use touchstone_report::counted;
 
-/// A run without a record, and why it has none.
+/// A run without a record, and the reason.
 type Lacking = (Job, Pending);
 
-/// What is told of runs that are lacking: how many, and of which cases; empty if all are there.
+/// Message about missing runs: their number and their cases; `None` if all records exist.
 type Told = Option<[String; 2]>;
 
-/// The suite of the cases that are complete, and what is told of the others: to draw these too would take
-/// seconds each time.
+/// The suite of the complete cases, and a message about the others, which are not drawn because this would
+/// take seconds each time.
 pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, Told) {
     let mut missing = make::jobs(plans.clone());
     missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
@@ -32,7 +32,7 @@ pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite,
     (suite::judge(plans, tier, made), told)
 }
 
-/// The suite of what a store has, a list of what it lacks, and what is told of that.
+/// The suite of the stored runs, a list of the missing ones, and a message about them.
 pub fn partial(plans: Plans, tier: Tier, store: &Path, stored: Stored) -> (Suite, String, Told) {
     let Stored { made, missing, .. } = stored;
     let lacking = lacking(missing, store, &made);
@@ -49,8 +49,8 @@ fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lack
     missing.into_iter().map(lack).collect()
 }
 
-/// Runs without a record are not judged, and neither are the studies of a case that lacks one: of half its
-/// runs a study has a number too, which says nothing.
+/// Runs without a record are not judged, nor are the studies of a case that lacks one: a study of half its
+/// runs would give a meaningless number.
 fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, Lacking>) -> Suite {
     let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
     let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
@@ -87,7 +87,7 @@ fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> Told {
     (!names.is_empty()).then(|| [words, names.join(", ")])
 }
 
-/// What became of a run, in a word, and the reason for a failure.
+/// The state of a run in a word, and the reason for a failure.
 fn word(why: &Pending) -> (&'static str, &str) {
     match why {
         Pending::Missing => ("missing", ""),
@@ -97,14 +97,14 @@ fn word(why: &Pending) -> (&'static str, &str) {
     }
 }
 
-/// Runs by what became of them, as `3 missing, 1 running`.
+/// Numbers of runs by state, as `3 missing, 1 running`.
 fn counts(lacking: &[&Lacking]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     lacking.iter().for_each(|(_, why)| *counts.entry(word(why).0).or_default() += 1);
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
-/// A line a run, those that failed last, with the reasons, and then how many there are of each kind.
+/// A line for each run, failed runs with their reasons last, then the number of each kind.
 fn list(mut lacking: Vec<&Lacking>) -> String {
     lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
     let line = |(job, why): &&Lacking| {

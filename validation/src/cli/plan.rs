@@ -1,6 +1,5 @@
-//! `plan`: runs as JSON lines, and what they take, estimated before the first of them: what plans say is a
-//! guess. `plan --estimates` writes the table, and the sum is told. `run --specs` makes the runs of such
-//! lines.
+//! `plan`: runs as JSON lines, and their cost, estimated before the first of them: the cost in plans is a
+//! guess. `plan --estimates` writes the table and prints the sum. `run --specs` makes the runs of such lines.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -97,8 +96,8 @@ fn sweep(
     Ok(jobs)
 }
 
-/// What each run takes, a row a line of the plan with its number for `run --index`; gaps for a run that is
-/// refused.
+/// The cost of each run, one row for each line of the plan with its number for `run --index`; gaps for a
+/// refused run.
 fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
     let of_run = |(index, (job, size)): (usize, (&Job, &Option<Size>))| match size {
         Some(size) => [index as f64, time(&job.planned.spec, size), 1e-6 * size.bytes()],
@@ -108,7 +107,7 @@ fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
     Profile::of_rows(&[("index", "-"), ("time", "s"), ("memory", "MB")], &rows)
 }
 
-/// What all runs take together, the longest and the largest of them, and how many are refused.
+/// Total cost of all runs, the longest and the largest run, and the number of refused runs.
 fn sum(jobs: &[Job], sizes: &[Option<Size>]) -> String {
     let sizes = || jobs.iter().zip(sizes).filter_map(|(job, size)| Some((job, size.as_ref()?)));
     let times: Vec<f64> = sizes().map(|(job, size)| time(&job.planned.spec, size)).collect();
@@ -141,10 +140,10 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, world: &World
     world.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
     let store = Store::open(store)?;
     let allow_long = arguments.allow_long;
-    // Nothing is timed here.
+    // Seconds are not compared here.
     let making = Making { store: Some(&store), allow_long, ..world.making(Tier::Quick) };
     let made = world.make(&jobs, making, arguments.threads, None)?;
-    // What the store could not keep is not lost.
+    // Records that the store could not keep are printed.
     for record in made.not_kept.iter().filter_map(|(key, _)| made.records.get(key)) {
         output::print_whole(&record.to_json().map_err(Failure::bug)?)?;
     }
@@ -177,7 +176,7 @@ fn ended(made: &Made, is_a_line_refused: bool) -> (String, Exit) {
     (words, exit.unwrap_or(Exit::Pass))
 }
 
-/// The runs of the lines that were asked for, and what is wrong with the other lines.
+/// The runs of the selected lines, and the faults of the other lines.
 fn planned(
     file: &Path,
     arguments: &arguments::Run,
@@ -232,7 +231,7 @@ fn read(file: &Path) -> io::Result<String> {
     files::text_of(from, MOST_BYTES)
 }
 
-/// The run that a line describes, or what is wrong with the line.
+/// The run of a line, or the fault of the line.
 fn spec(line: &str, world: &World) -> Result<RunSpec, String> {
     let spec = serde_json::from_str::<RunSpec>(line).map_err(|error| {
         let words = error.to_string();

@@ -1,4 +1,4 @@
-//! Where the time of a run went, for people.
+//! Breakdown of the time of a run, as text.
 
 use touchstone_base::{
     breakdown::{Breakdown, Part},
@@ -8,7 +8,7 @@ use touchstone_report::{percent, seconds, sig};
 
 use super::output;
 
-/// The parts of the time with their shares, and what pair sweeps go through.
+/// The parts of the time in percent, and the work of pair sweeps.
 pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
     let [stepping, observing] = breakdown.totals();
     let (steps, all) = (breakdown.steps as f64, stepping + observing);

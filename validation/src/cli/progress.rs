@@ -78,7 +78,7 @@ impl Bar {
         }
     }
 
-    /// Says a line above the bar.
+    /// Prints a line above the bar.
     pub fn say(&self, text: &str) {
         self.suspend(|| output::say(text));
     }
@@ -113,7 +113,7 @@ fn left(elapsed: f64, first: f64, done: f64) -> Option<f64> {
 mod tests {
     use super::left;
 
-    /// Half a run done at the start and nothing since then was told as nearly no time left.
+    /// A resumed run: half done at the start and nothing since then must not show nearly no time left.
     #[test]
     fn the_time_left_of_a_run_that_goes_on_is_by_what_it_did_since() {
         assert_eq!(left(10.0, 0.0, 0.25), Some(30.0));

@@ -1,4 +1,4 @@
-//! `symmetry`: what observers of one problem have of our own runs.
+//! `symmetry`: differences between observers of one problem in our own runs.
 
 use rayon::prelude::*;
 use touchstone_base::spec::RunSpec;

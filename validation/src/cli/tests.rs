@@ -1,4 +1,4 @@
-//! Tests of commands on a case made for the purpose, whose runs end as their variant says.
+//! Tests of commands on an artificial case, whose runs end as their variant states.
 
 mod documents;
 
@@ -195,7 +195,7 @@ fn a_run_of_the_plan_is_judged_and_another_one_is_not() {
 fn verify_ends_with_the_verdict() {
     assert_eq!(exit("verify right"), Exit::Pass);
     assert_eq!(exit("verify right wrong --tier full --threads 2"), Exit::GateFailed);
-    // Its error was inside the bound until it diverged.
+    // Its error was inside the bound until the divergence.
     assert_eq!(exit("verify diverging"), Exit::GateFailed);
     assert_eq!(exit("verify panicking"), Exit::Bug, "a panic on another thread is one too");
     let folder = tempfile::tempdir().expect("a folder");
@@ -203,7 +203,7 @@ fn verify_ends_with_the_verdict() {
     assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted);
 }
 
-/// Of the records of a store those before the interrupt were judged, and the gates of the others failed.
+/// An interrupt while a store is read must not judge the records read so far.
 #[test]
 fn an_interrupt_while_a_store_is_read_judges_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -303,7 +303,7 @@ fn a_run_that_fails_keeps_no_case_from_being_shown() {
     assert_eq!(told.into_inner().expect("sound"), expected);
 }
 
-/// The runs took minutes: whoever wants them has them.
+/// The runs took minutes: they are kept.
 #[test]
 fn a_page_that_may_not_open_is_told_and_kept() {
     static TWICE: [&dyn Case; 2] = [&RIGHT, &RIGHT]; // so are their anchors
@@ -370,8 +370,8 @@ fn a_changed_table_fails_every_case_that_uses_it_by_name() {
     }
 }
 
-/// A second report makes nothing, a store is judged and rendered without a run, and a comparison of two
-/// reports sees a new failure.
+/// A second report makes no runs, a store is judged and rendered without a run, and a comparison of two
+/// reports finds a new failure.
 #[test]
 fn records_are_reused_judged_rendered_and_compared() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -407,16 +407,16 @@ fn records_are_reused_judged_rendered_and_compared() {
     assert_eq!(good("touchstone compare OUT/a OUT/b"), Exit::Pass);
     assert_eq!(on(&SOUND, "touchstone report --out OUT/c"), Exit::GateFailed);
     assert_eq!(good("touchstone compare OUT/a OUT/c --json"), Exit::GateFailed);
-    // The gates of `wrong` are gone in the other direction.
+    // The gates of `wrong` are missing in the other direction.
     assert_eq!(good("touchstone compare OUT/c OUT/a"), Exit::GateFailed);
     assert_eq!(good("touchstone compare OUT/c/records OUT/a/records"), Exit::GateFailed);
-    // A store that lacks a run fails its gates rather than passing over them, unless that is asked for.
+    // A store with a missing run fails its gates, unless `--partial` is given.
     assert_eq!(on(&SOUND, "touchstone verify --no-runs --store OUT/a/records"), Exit::GateFailed);
     assert_eq!(on(&SOUND, "touchstone report --store OUT/a/records --out OUT/d"), Exit::GateFailed);
     let partial = "touchstone report --store OUT/a/records --out OUT/d --partial";
     assert_eq!(on(&SOUND, partial), Exit::Pass);
     assert!(read("d/index.html").contains("Of the runs of this case are without a record"));
-    // What a study would say of some of its runs is said of none.
+    // Studies of incomplete cases are not evaluated.
     let verdicts = read("d/verdicts.json");
     let is_judged = |gate: &str| verdicts.contains(&format!("\"{gate}\""));
     let gates = ["staged.right.count", "staged.wrong.count", "staged.wrong.wrong.error"];
@@ -478,7 +478,7 @@ fn of_lines(lines: &[&str]) -> (Exit, usize) {
     std::fs::write(folder.path().join("specs"), lines.join("\n")).expect("a file");
     let exit = exit_with(&NEVER, "run --specs OUT/specs --store OUT/store", folder.path());
     let entries = std::fs::read_dir(folder.path().join("store")).into_iter().flatten().flatten();
-    // Beside records, hidden files say what became of runs without one.
+    // Hidden files state the fate of runs without a record.
     let is_record = |name: std::ffi::OsString| !name.to_string_lossy().starts_with('.');
     (exit, entries.filter(|entry| is_record(entry.file_name())).count())
 }
@@ -536,8 +536,8 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
     assert_eq!(build(unknown, "judge --store OUT"), Exit::GateFailed, "of whom are they?");
 }
 
-/// Puts a folder that is not empty where a file is to be written: the folder that holds it is writable, and
-/// the file is not, whoever asks.
+/// Puts a non-empty folder in place of a file: its parent is writable, but the file cannot be written, even
+/// by root.
 fn block(path: &Path) {
     std::fs::create_dir_all(path.join("child")).expect("a folder in the way");
 }
@@ -627,7 +627,7 @@ fn judged(cases: &[&'static dyn Case]) -> Suite {
     suite::run(cases, &making)
 }
 
-/// 706 lines on standard error were what `verify` said of 606 gates.
+/// `verify` must not print a line for each of 606 gates.
 #[test]
 fn verify_is_a_line_a_case_then_each_failure_in_full() {
     let text = super::summary::summary(&judged(&SOUND));
@@ -710,8 +710,8 @@ fn a_run_states_the_error_by_its_own_settings() {
     }
 }
 
-/// The headline of the dam break was the distance after a fitted shift of the clock, which hardly depends on
-/// the method: both distances are told, with the uncertainty of the experiment.
+/// A fitted shift of the clock makes the distance nearly independent of the method, so the headline of the
+/// dam break is the distance without shift; both are printed, with the uncertainty of the experiment.
 #[test]
 fn a_dam_break_states_both_distances_from_its_experiment() {
     let case = touchstone_cases::find("dam_break").expect("a case");

@@ -80,7 +80,7 @@ pub fn runs(suite: &Suite) -> String {
     }
 }
 
-/// What a run or its record that failed ends with, 1 if a gate failed.
+/// Exit code for failed runs and records; 1 if a gate failed.
 pub fn exit(suite: &Suite) -> Exit {
     let fails = |of: JudgedOf| of.judged.judgement.verdict == Verdict::Fail;
     let mut all = suite.judged().chain(suite.submitted()).peekable();
@@ -101,7 +101,7 @@ pub fn plans(cases: &[&'static dyn Case], tier: Tier, world: &World) -> Result<P
     Ok(suite::plans(cases, tier))
 }
 
-/// Makes what the store lacks, on a pool, with a bar, and refuses to judge what was interrupted.
+/// Makes the missing runs of a store, on a pool, with a bar, and refuses to judge interrupted runs.
 pub fn run(
     plans: Plans,
     tier: Tier,
@@ -129,7 +129,7 @@ pub fn run(
     Ok(suite::judge(plans, tier, made))
 }
 
-/// Judges what a store has, and runs nothing.
+/// Judges the runs of a store without making any.
 pub fn of_store(
     cases: &[&'static dyn Case],
     tier: Tier,
@@ -145,7 +145,7 @@ pub fn of_store(
     Ok(of_stored(plans, tier, stored))
 }
 
-/// Does a store hold nothing but runs of other codes? What was not to be made there is no failure.
+/// Whether a store holds only runs of other codes; missing runs are no failure then.
 pub fn has_submissions_alone(stored: &Stored) -> bool {
     let Stored { made, other, .. } = stored;
     let is_alone = made.records.is_empty() && made.unsound.is_empty() && *other == 0;
@@ -155,7 +155,7 @@ pub fn has_submissions_alone(stored: &Stored) -> bool {
     is_alone && !made.submissions.is_empty()
 }
 
-/// Judges what was found of plans; gates of runs that are missing fail.
+/// Judges the stored runs of plans; gates of missing runs fail.
 pub fn of_stored(plans: Plans, tier: Tier, Stored { made, missing, other }: Stored) -> Suite {
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
@@ -168,7 +168,7 @@ pub fn of_stored(plans: Plans, tier: Tier, Stored { made, missing, other }: Stor
     suite::judge(plans, tier, made)
 }
 
-/// The plans of a tier, and what a store has of them.
+/// The plans of a tier, and the stored runs.
 pub fn stored(
     cases: &[&'static dyn Case],
     tier: Tier,

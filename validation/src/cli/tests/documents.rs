@@ -1,4 +1,4 @@
-//! The commands that the documents tell their readers to type: each is valid, and names what there is.
+//! The commands in documents: each is valid, and names existing cases and files.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use super::super::{
     arguments::{Arguments, Command},
 };
 
-/// What stands for `touchstone` before it is installed.
+/// Replacement for `touchstone` before installation.
 const FROM_SOURCES: &str = "cargo run --release -- ";
 
 /// The documents, from the root of the project.
@@ -31,12 +31,12 @@ fn documents() -> Vec<PathBuf> {
     paths.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect()
 }
 
-/// Lines of blocks of code, and what is in backquotes, that call the program: without comment and pipe.
+/// Lines of code blocks, and text in backquotes, that call the program: without comment and pipe.
 fn commands(text: &str) -> Vec<String> {
     commented(text).into_iter().map(|(line, _)| line).collect()
 }
 
-/// The same, each with its comment.
+/// Commands, each with its comment.
 fn commented(text: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     for (index, part) in text.split("```").enumerate() {
@@ -152,8 +152,8 @@ fn run_of(line: &str) -> Option<RunSpec> {
     Some(if run.allow_unstable { spec.allow_unstable() } else { spec })
 }
 
-/// `limits.md` said that a run diverges which completed. A comment says so of those that diverge, and all
-/// others complete; long ones are left out.
+/// `limits.md` must not state that a completing run diverges. A comment states which commands diverge; all
+/// others must complete. Long ones are left out.
 #[test]
 fn short_runs_in_documents_end_as_documents_say() {
     let texts = documents().into_iter().map(|path| fs::read_to_string(path).expect("a text"));
