@@ -341,7 +341,7 @@ impl<P: Physics> Engine<P> {
     /// before a wall along which they slip; gives the terms the largest speed; refreshes all data derived
     /// from the state.
     pub fn begin(&mut self, state: &mut State<P>) -> Stepped {
-        self.begin_with::<()>(state, &mut [])
+        self.data.begin(&mut self.equations, state, &mut |_, _| ())
     }
 
     /// Starts a step as [`Engine::begin`] does, and sorts `kept` along with the first particles; `kept` may

@@ -373,39 +373,47 @@ struct FillLists<'a> {
     up_to: usize,
 }
 
-/// The particles of a group, and the squares of the reaches of their lists.
-struct Seen<V> {
-    /// One entry for each lane of a group.
-    own: [Vector2<V>; GROUP],
-    reaches2: [f64; 2],
+/// The particles of a group.
+struct Group<V> {
+    /// One entry for each lane.
+    members: [Vector2<V>; GROUP],
+    support2: f64,
+    radius2: f64,
 }
 
-impl<V: Lane> Seen<V> {
+/// The members of a group near a point: bit k is member k.
+struct Near {
+    inside_support: usize,
+    listed: usize,
+}
+
+impl<V: Lane> Group<V> {
     #[inline(always)]
-    fn new(members: &[Vector2<f64>], reaches2: [f64; 2]) -> Self {
+    fn new(neighbours: &Neighbours, members: Range<usize>) -> Self {
+        let &Neighbours { support, radius, ref points, .. } = neighbours;
+        let points = &points[members];
         // No point is near a place that is NaN.
         let nowhere = Vector2::repeat(f64::NAN);
-        let own = |k: usize| members.get(k).copied().unwrap_or(nowhere);
-        let mut all = [nowhere.spread::<V>(); GROUP];
-        for (k, all) in all.iter_mut().enumerate().take(GROUP / V::LANES) {
-            *all = gather_vector::<V>(|lane| own(k * V::LANES + lane));
+        let point = |k: usize| points.get(k).copied().unwrap_or(nowhere);
+        let mut members = [nowhere.spread::<V>(); GROUP];
+        for (k, members) in members.iter_mut().enumerate().take(GROUP / V::LANES) {
+            *members = gather_vector::<V>(|lane| point(k * V::LANES + lane));
         }
-        Self { own: all, reaches2 }
+        Self { members, support2: support * support, radius2: radius * radius }
     }
 
-    /// Bit k of each number: particle k has the point within this reach.
+    /// The members within the support of a point, and within the radius of lists.
     #[inline(always)]
-    fn near(&self, point: Vector2<f64>) -> [usize; 2] {
+    fn near(&self, point: Vector2<f64>) -> Near {
         let point = point.spread::<V>();
-        let mut bits = [0; 2];
-        for (k, own) in self.own.iter().enumerate().take(GROUP / V::LANES) {
-            let r = own - point;
+        let mut near = Near { inside_support: 0, listed: 0 };
+        for (k, members) in self.members.iter().enumerate().take(GROUP / V::LANES) {
+            let r = members - point;
             let r2 = r.x * r.x + r.y * r.y;
-            for (bits, reach2) in bits.iter_mut().zip(self.reaches2) {
-                *bits |= r2.bits_below(reach2) << (k * V::LANES);
-            }
+            near.inside_support |= r2.bits_below(self.support2) << (k * V::LANES);
+            near.listed |= r2.bits_below(self.radius2) << (k * V::LANES);
         }
-        bits
+        near
     }
 }
 
@@ -413,8 +421,6 @@ impl OnLanes for FillLists<'_> {
     #[inline(always)]
     fn run<V: Lane>(self) {
         let Self { neighbours, block, of, up_to } = self;
-        let [support2, radius2] =
-            [neighbours.support, neighbours.radius].map(|reach| reach * reach);
         let points = &neighbours.points;
         let Block { starts, columns, found, beyond, .. } = block;
         starts.clear();
@@ -425,11 +431,11 @@ impl OnLanes for FillLists<'_> {
             let members = first..(first + GROUP).min(of.end);
             let count = neighbours.find::<V>(found, members.clone());
             // Not a closure: closures are not inlined here, see the profiles in `Cargo.toml`.
-            let own = Seen::<V>::new(&points[members.clone()], [support2, radius2]);
+            let group = Group::<V>::new(neighbours, members.clone());
             if of.end <= up_to {
                 for (lane, member) in members.clone().enumerate() {
                     columns.push(member as u32);
-                    let others = own.near(points[member])[0] & !(1_usize << lane);
+                    let others = group.near(points[member]).inside_support & !(1_usize << lane);
                     block.pairs += u64::from(others.count_ones());
                 }
             }
@@ -442,7 +448,7 @@ impl OnLanes for FillLists<'_> {
                 if members.contains(&k) || (up_to < usize::MAX && neighbours.particle(k) >= up_to) {
                     continue;
                 }
-                let [inside, listed] = own.near(points[k]);
+                let Near { inside_support: inside, listed } = group.near(points[k]);
                 // Always written, counted only if kept: no branch to mispredict.
                 (columns[end], beyond[far]) = (column, column);
                 end += usize::from(inside != 0);

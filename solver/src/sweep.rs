@@ -103,7 +103,7 @@ impl<K, T, S> Sweep<'_, K, T, S> {
     {
         let Self { columns, sum, .. } = self;
         let mut results = buffer();
-        let mut own = Aligned(Seen::<T::Derived>::default().spread::<Buffer>());
+        let mut own = Aligned(Inputs::<T::Derived>::default().spread::<Buffer>());
         let mut sums = Aligned(T::Sum::default().spread::<Buffer>());
         for first in of.clone().step_by(MANY) {
             let end = (first + MANY).min(of.end);
@@ -136,7 +136,7 @@ impl<O: Copy + Default, K: Kernel, T: PairSum<S, O>, S: Numbers> PairSweep<O>
 
 /// The numbers of a particle that a term reads: position and velocity; mass, density and volume; its derived
 /// data `D`.
-type Seen<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
+type Inputs<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 
 /// The sums of some particles of a block. In a profile this is `with_registers_for_eight` or
 /// `with_registers_for_four` with this type (the search for neighbours has its own type); the portable form
@@ -146,7 +146,7 @@ struct Particles<'a, K, T: PairSum<S, O>, S, O> {
     block: &'a Block,
     list: usize,
     of: Range<usize>,
-    own: &'a In<Seen<T::Derived>, Buffer>,
+    own: &'a In<Inputs<T::Derived>, Buffer>,
     sums: &'a mut In<T::Sum, Buffer>,
 }
 
@@ -158,7 +158,7 @@ impl<K: Kernel, T: PairSum<S, O>, S: Numbers, O> OnLanes for Particles<'_, K, T,
         let support2 = kernel.support() * kernel.support() * (1.0 + 1e-12);
         for start in (0..self.of.len()).step_by(V::LANES) {
             let (position, velocity, (mass, density, volume), derived) =
-                Seen::<T::Derived>::load::<V>(self.own, start);
+                Inputs::<T::Derived>::load::<V>(self.own, start);
             let common = Common { mass, density, volume };
             let mut sum = T::Sum::default().spread::<V>();
             for &column in self.block.list((self.list + start) / GROUP) {

@@ -8,7 +8,7 @@ use touchstone_lanes::{LANES, Lane, OnLanes, gather_vector, on_four, total};
 use touchstone_solver::{Evolved, Potential, Symmetric, parallel};
 
 use crate::{
-    law::{Law, Moduli, Strain},
+    law::{Energies, Law, Moduli, Strain},
     reference::{Four, Reference},
 };
 
@@ -90,7 +90,7 @@ impl<L: Law> Body<L> {
         let mut sum = Potential::default();
         for k in 0..self.reference.count() {
             let (gradient, volume) = (self.gradient(k), self.reference.volumes[k]);
-            let [compression, shear] = L::energy(&self.moduli, &Strain::new(gradient));
+            let Energies { compression, shear } = L::energy(&self.moduli, &Strain::new(gradient));
             sum.compression += volume * compression;
             sum.shear += volume * shear;
             let quarter = 0.25 * self.hourglass;

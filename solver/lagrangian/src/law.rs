@@ -66,14 +66,23 @@ impl Strain {
     }
 }
 
+/// Stored energies per reference volume, w in parts \[J/m³\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Energies {
+    /// Stored by the change of volume.
+    pub compression: f64,
+    /// Stored by the change of shape.
+    pub shear: f64,
+}
+
 /// A stored energy per reference volume, w(F).
 pub trait Law: Copy + Send + Sync + 'static {
     /// Name in settings and reports.
     const NAME: &'static str;
     /// Stored energy as an equation.
     const ENERGY: &'static str;
-    /// Its energies of compression and of shear \[J/m³\], whose sum is w.
-    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2];
+    /// The energies of compression and of shear, with the sum w.
+    fn energy(moduli: &Moduli, strain: &Strain) -> Energies;
     /// τ = (∂w/∂F) Fᵀ \[Pa\]; NaN if the law has none, because the material is turned inside out.
     fn stress(moduli: &Moduli, strain: &Strain) -> Kirchhoff;
 }
@@ -121,10 +130,10 @@ impl Law for Hencky {
     const ENERGY: &'static str = "w = K (J - 1 - ln J) + μ |dev ln V|², V = (F Fᵀ)^½ (Hencky)";
 
     #[inline(always)]
-    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
+    fn energy(moduli: &Moduli, strain: &Strain) -> Energies {
         let (log_j, [d, xy]) = Self::logarithm(strain);
-        let shear = 2.0 * (d * d + xy * xy) + log_j * log_j / 6.0;
-        [moduli.bulk * (strain.dilation - log_j), moduli.shear * shear]
+        let shear = moduli.shear * (2.0 * (d * d + xy * xy) + log_j * log_j / 6.0);
+        Energies { compression: moduli.bulk * (strain.dilation - log_j), shear }
     }
 
     #[inline(always)]
@@ -160,11 +169,11 @@ impl Law for SaintVenantKirchhoff {
     const ENERGY: &'static str =
         "w = λ (tr E)²/2 + μ E:E, E = (FᵀF - 1)/2, λ = K - 2μ/3 (St. Venant and Kirchhoff)";
 
-    fn energy(moduli: &Moduli, strain: &Strain) -> [f64; 2] {
+    fn energy(moduli: &Moduli, strain: &Strain) -> Energies {
         let Symmetric { xx, yy, xy } = Self::green(strain);
         let trace = xx + yy;
-        let shear = xx * xx + yy * yy + 2.0 * xy * xy - trace * trace / 3.0;
-        [0.5 * moduli.bulk * trace * trace, moduli.shear * shear]
+        let shear = moduli.shear * (xx * xx + yy * yy + 2.0 * xy * xy - trace * trace / 3.0);
+        Energies { compression: 0.5 * moduli.bulk * trace * trace, shear }
     }
 
     #[inline(always)]
@@ -197,7 +206,8 @@ mod tests {
     }
 
     fn energy<L: Law>(h: Matrix2<f64>) -> f64 {
-        L::energy(&MODULI, &Strain::new(h)).iter().sum()
+        let Energies { compression, shear } = L::energy(&MODULI, &Strain::new(h));
+        compression + shear
     }
 
     /// P against central differences of w, and no stress and no energy of a rotation.
@@ -217,7 +227,9 @@ mod tests {
         for (cos, sin) in [(0.6, 0.8), (-0.28, 0.96), (0.0, -1.0)] {
             let rotation = Strain::new(Matrix2::new(cos - 1.0, -sin, sin, cos - 1.0));
             let stress = L::stress(&MODULI, &rotation).first_piola(&rotation);
-            assert!(stress.norm() < 1e-14 && L::energy(&MODULI, &rotation)[0].abs() < 1e-15);
+            assert!(
+                stress.norm() < 1e-14 && L::energy(&MODULI, &rotation).compression.abs() < 1e-15
+            );
         }
     }
 

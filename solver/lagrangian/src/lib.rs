@@ -34,6 +34,6 @@ pub mod load;
 pub mod reference;
 pub mod solid;
 
-pub use law::{Hencky, Law, Moduli, SaintVenantKirchhoff};
+pub use law::{Energies, Hencky, Law, Moduli, SaintVenantKirchhoff};
 pub use load::{BetweenFaces, Load, Weight, contact_stiffness};
 pub use solid::{Solid, SolidScene};

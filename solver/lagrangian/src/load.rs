@@ -96,45 +96,58 @@ pub struct BetweenFaces {
     /// k \[Pa\].
     stiffness: f64,
     kernel: Smoothing<WendlandC2>,
-    /// Ψ(s) and −s Ψ'(s).
-    row: [f64; 2],
+    /// A row at the distance of one size.
+    row: Row,
+}
+
+/// A straight row of particles, in units of their size.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    /// Ψ(d).
+    density: f64,
+    /// −Ψ'(d).
+    slope: f64,
 }
 
 /// Reach of contact over the size of the particles.
 const REACH: f64 = 2.0;
 
 /// Two particles in contact reach.
-struct Seen {
-    who: [usize; 2],
+struct Contact {
+    particles: [usize; 2],
     /// From the second to the first \[m\].
     apart: Vector2<f64>,
     /// The mean of their sizes \[m\].
     size: f64,
 }
 
-/// Ψ(d) and −Ψ'(d) of a straight row of particles at the distance d, in units of their size.
-fn row(kernel: &Smoothing<WendlandC2>, d: f64) -> [f64; 2] {
-    // The mean over positions along the row, by a sum that is exact to 1e-6: the kernel has two derivatives.
-    let across = (-200..200).map(|k| (f64::from(k) + 0.5) * 0.01);
-    across.fold([0.0; 2], |[seen, slope], x| {
-        let r2 = d * d + x * x;
-        [seen + 0.01 * kernel.w(r2), slope + 0.01 * d * kernel.f(r2)]
-    })
+impl Row {
+    /// The row at the distance d.
+    fn at(d: f64, kernel: &Smoothing<WendlandC2>) -> Self {
+        // The mean over positions along the row, by a sum that is exact to 1e-6: the kernel has two derivatives.
+        let mut row = Self { density: 0.0, slope: 0.0 };
+        for x in (-200..200).map(|k| (f64::from(k) + 0.5) * 0.01) {
+            let r2 = d * d + x * x;
+            row.density += 0.01 * kernel.w(r2);
+            row.slope += 0.01 * d * kernel.f(r2);
+        }
+        row
+    }
 }
 
 impl BetweenFaces {
     /// Contact of this stiffness \[Pa\], see [`contact_stiffness`].
     pub fn new(stiffness: f64) -> Self {
         let kernel = Smoothing::<WendlandC2>::new(1.0);
-        Self { stiffness, kernel, row: row(&kernel, 1.0) }
+        Self { stiffness, kernel, row: Row::at(1.0, &kernel) }
     }
 
     /// The pressure of two straight faces whose outermost particles are this many sizes apart \[Pa\]:
     /// −dU/dd over the size.
     pub fn pressure(&self, distance: f64) -> f64 {
-        let [seen, slope] = row(&self.kernel, distance);
-        let e = (seen / self.row[0] - 1.0).max(0.0);
-        2.0 * self.scale(1.0) * (e + 0.5 * e * e) * slope / self.row[0]
+        let Row { density, slope } = Row::at(distance, &self.kernel);
+        let e = (density / self.row.density - 1.0).max(0.0);
+        2.0 * self.scale(1.0) * (e + 0.5 * e * e) * slope / self.row.density
     }
 
     /// The longest stable step while bodies press against each other with this pressure \[Pa\] \[s\], from
@@ -153,7 +166,7 @@ impl BetweenFaces {
         };
         let [near, far] = (0..40).fold([0.4, 1.0], halve);
         let d = 0.5 * (near + far);
-        let e = (row(&self.kernel, d)[0] / self.row[0] - 1.0).max(0.0);
+        let e = (Row::at(d, &self.kernel).density / self.row.density - 1.0).max(0.0);
         let of = |aside: f64| {
             let seen = (-3..=3).map(|k| Vector2::new(f64::from(k) + aside, d));
             let [mut sum, mut sizes, mut curved] = [0.0; 3];
@@ -167,14 +180,15 @@ impl BetweenFaces {
                 curved += self.kernel.f(r2).max(second.abs());
             }
             let norm = (1.0 + e) * (sum + sizes) * (sum + sizes);
-            norm + 4.0 * (e + 0.5 * e * e) * curved * self.row[0]
+            norm + 4.0 * (e + 0.5 * e * e) * curved * self.row.density
         };
-        let stiffness = self.scale(1.0) / (self.row[0] * self.row[0]) * of(0.0).max(of(0.5));
+        let stiffness =
+            self.scale(1.0) / (self.row.density * self.row.density) * of(0.0).max(of(0.5));
         2.0 / (4.0 / (of_lattice * of_lattice) + stiffness / (density * size * size)).sqrt()
     }
 
     /// All pairs in contact reach, in an order that depends on the state alone.
-    fn seen(&self, on: &Loaded) -> Vec<Seen> {
+    fn contacts(&self, on: &Loaded) -> Vec<Contact> {
         let Reference { domain, sizes, faces, .. } = on.reference;
         let axis = usize::from(domain.period[0].is_some());
         let reach = REACH * sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
@@ -183,7 +197,7 @@ impl BetweenFaces {
         let place = |i: &u32| (on.state[*i as usize].position, *i as usize);
         let mut sorted: Vec<(Vector2<f64>, usize)> = faces.iter().map(place).collect();
         sorted.sort_unstable_by(|a, b| a.0[axis].total_cmp(&b.0[axis]).then(a.1.cmp(&b.1)));
-        let mut seen = Vec::new();
+        let mut contacts = Vec::new();
         for (k, &(x, i)) in sorted.iter().enumerate() {
             let near =
                 sorted[k + 1..].iter().take_while(|(other, _)| other[axis] - x[axis] < reach);
@@ -195,18 +209,19 @@ impl BetweenFaces {
                 let size = 0.5 * (sizes[i] + sizes[j]);
                 let most = REACH * size;
                 if apart.norm_squared() < most * most && on.are_apart(i, j, 2.0 * most) {
-                    seen.push(Seen { who: [i, j], apart, size });
+                    contacts.push(Contact { particles: [i, j], apart, size });
                 }
             }
         }
-        seen
+        contacts
     }
 
     /// e of every particle.
-    fn excess(&self, sizes: &[f64], seen: &[Seen]) -> Vec<f64> {
+    fn excess(&self, sizes: &[f64], contacts: &[Contact]) -> Vec<f64> {
         let mut excess = vec![-1.0; sizes.len()];
-        for Seen { who: [i, j], apart, size } in seen {
-            let weight = self.kernel.w(apart.norm_squared() / (size * size)) / (self.row[0] * size);
+        for Contact { particles: [i, j], apart, size } in contacts {
+            let weight =
+                self.kernel.w(apart.norm_squared() / (size * size)) / (self.row.density * size);
             excess[*i] += sizes[*j] * weight;
             excess[*j] += sizes[*i] * weight;
         }
@@ -215,7 +230,7 @@ impl BetweenFaces {
 
     /// ½ k s² (Ψ/Ψ')² \[J/m\].
     fn scale(&self, size: f64) -> f64 {
-        let gap = size * self.row[0] / self.row[1];
+        let gap = size * self.row.density / self.row.slope;
         0.5 * self.stiffness * gap * gap
     }
 }
@@ -223,18 +238,18 @@ impl BetweenFaces {
 impl Load for BetweenFaces {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64 {
         let Reference { sizes, masses, .. } = on.reference;
-        let seen = self.seen(on);
+        let contacts = self.contacts(on);
         // Each of two is a neighbour of the other, in the sweep over ψ and in that over the forces.
-        let neighbours = 4 * seen.len() as u64;
-        let excess = self.excess(sizes, &seen);
+        let neighbours = 4 * contacts.len() as u64;
+        let excess = self.excess(sizes, &contacts);
         let slope = |k: usize| {
             let e = excess[k].max(0.0);
             self.scale(sizes[k]) * (e + 0.5 * e * e)
         };
-        for Seen { who: [i, j], apart, size } in seen {
+        for Contact { particles: [i, j], apart, size } in contacts {
             let both = slope(i) * sizes[j] + slope(j) * sizes[i];
             if both > 0.0 {
-                let steep = self.kernel.f(apart.norm_squared() / (size * size)) / self.row[0];
+                let steep = self.kernel.f(apart.norm_squared() / (size * size)) / self.row.density;
                 let force = apart * (both * steep / (size * size * size));
                 accelerations[i] += force / masses[i];
                 accelerations[j] -= force / masses[j];
@@ -244,7 +259,7 @@ impl Load for BetweenFaces {
     }
     fn energy(&self, on: &Loaded) -> f64 {
         let sizes = &on.reference.sizes;
-        let excess = self.excess(sizes, &self.seen(on));
+        let excess = self.excess(sizes, &self.contacts(on));
         let of = |(e, size): (&f64, &f64)| {
             let e = e.max(0.0);
             self.scale(*size) * e * e * (0.5 + e / 6.0)

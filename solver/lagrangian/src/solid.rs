@@ -51,7 +51,7 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
     pub fn build<K: Kernel, L: Law>(self) -> Result<Solid<K, L, C>, SceneError> {
         let Self { h, domain, particles, bodies, walls, moduli, loads, limits, .. } = self;
         let parallel = particles.len() >= self.parallel_from;
-        check(&particles, &bodies, [moduli.bulk, moduli.shear, self.hourglass])?;
+        check(&particles, &bodies, &moduli, self.hourglass)?;
         let mut frame = Scene::<Frame<K, W>>::new(h, domain, particles, (), (), walls);
         // Rounding must not leave out a neighbour; a little more is found, and left out by its weight.
         (frame.setting.skin, frame.setting.limits) = (1e-9 * h, limits);
@@ -71,7 +71,8 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
 fn check(
     particles: &[Particle<Symmetric>],
     bodies: &[u32],
-    [bulk, shear, hourglass]: [f64; 3],
+    &Moduli { bulk, shear }: &Moduli,
+    hourglass: f64,
 ) -> Result<(), SceneError> {
     for (k, particle) in particles.iter().enumerate() {
         let moves = particle.role == Role::Fluid;

@@ -104,15 +104,15 @@ fn moduli(medium: &Medium) -> Moduli {
 /// Poisson's ratio 0.4 about 1.05 dx/c_p. Waves inside would allow 1.4 times as much.
 fn step_limit(medium: &Medium) -> f64 {
     let moduli = moduli(medium);
-    let stiffness = stiffness([medium.h / medium.dx, moduli.longitudinal(), moduli.shear]);
+    let stiffness = stiffness(medium.h / medium.dx, &moduli);
     2.0 * medium.dx * (medium.density / stiffness).sqrt()
 }
 
 /// [`fastest_of_block`] for h/dx and moduli \[Pa\], cached: it takes as long as hundreds of steps of a small
 /// body, and runs of many settings need equal values.
-fn stiffness(of: [f64; 3]) -> f64 {
+fn stiffness(h_over_dx: f64, moduli: &Moduli) -> f64 {
     static FOUND: Mutex<BTreeMap<[u64; 3], f64>> = Mutex::new(BTreeMap::new());
-    let (key, [h_over_dx, moduli @ ..]) = (of.map(f64::to_bits), of);
+    let key = [h_over_dx, moduli.bulk, moduli.shear].map(f64::to_bits);
     if let Some(known) = lock(&FOUND).get(&key) {
         return *known;
     }

@@ -38,8 +38,8 @@ impl EllipticDrop {
             let k2 = drop.moved(0.5 * dt, k1).rate();
             let k3 = drop.moved(0.5 * dt, k2).rate();
             let k4 = drop.moved(dt, k3).rate();
-            let mean = |i: usize| (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]) / 6.0;
-            drop.moved(dt, [mean(0), mean(1), mean(2)])
+            let mean = |of: fn(Self) -> f64| (of(k1) + 2.0 * (of(k2) + of(k3)) + of(k4)) / 6.0;
+            drop.moved(dt, Self { strain: mean(|k| k.strain), a: mean(|k| k.a), b: mean(|k| k.b) })
         })
     }
 
@@ -49,14 +49,16 @@ impl EllipticDrop {
         self.strain * self.strain * a2 * b2 / (a2 + b2)
     }
 
-    fn rate(&self) -> [f64; 3] {
+    /// d/dt of each field.
+    fn rate(&self) -> Self {
         let Self { strain, a, b } = *self;
         let (a2, b2) = (a * a, b * b);
-        [strain * strain * (a2 - b2) / (a2 + b2), -strain * a, strain * b]
+        Self { strain: strain * strain * (a2 - b2) / (a2 + b2), a: -strain * a, b: strain * b }
     }
 
-    fn moved(self, dt: f64, [strain, a, b]: [f64; 3]) -> Self {
-        Self { strain: self.strain + dt * strain, a: self.a + dt * a, b: self.b + dt * b }
+    fn moved(self, dt: f64, rate: Self) -> Self {
+        let (a, b) = (self.a + dt * rate.a, self.b + dt * rate.b);
+        Self { strain: self.strain + dt * rate.strain, a, b }
     }
 }
 

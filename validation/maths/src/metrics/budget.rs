@@ -26,8 +26,12 @@ pub type Powers = [f64; 5];
 
 /// Powers by the rates of one sweep.
 struct Sums {
-    /// Powers of dv/dt, of dρ/dt and extra fields, and of dx/dt \[W/m\].
-    power: [f64; 3],
+    /// Power of dv/dt \[W/m\].
+    velocity: f64,
+    /// Power of dρ/dt and of the rates of extra fields \[W/m\].
+    density: f64,
+    /// Power of dx/dt \[W/m\].
+    position: f64,
     /// Σ m dv/dt \[N/m\].
     force: Vector2<f64>,
 }
@@ -44,17 +48,13 @@ fn power<X>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> f6
 }
 
 fn sums<X: Numbers>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> Sums {
-    let mut sums = Sums { power: [0.0; 3], force: Vector2::zeros() };
+    let mut sums = Sums { velocity: 0.0, density: 0.0, position: 0.0, force: Vector2::zeros() };
     for ((mass, particle), rate) in particles.zip(rates) {
         let (none, no_extra) = (Vector2::zeros(), X::default());
-        let parts = [
-            Rate { density: 0.0, position: none, extra: no_extra, ..*rate },
-            Rate { velocity: none, position: none, ..*rate },
-            Rate { velocity: none, density: 0.0, extra: no_extra, ..*rate },
-        ];
-        for (sum, part) in sums.power.iter_mut().zip(&parts) {
-            *sum += slope(mass, particle, part);
-        }
+        let power = |part: Rate<X>| slope(mass, particle, &part);
+        sums.velocity += power(Rate { density: 0.0, position: none, extra: no_extra, ..*rate });
+        sums.density += power(Rate { velocity: none, position: none, ..*rate });
+        sums.position += power(Rate { velocity: none, density: 0.0, extra: no_extra, ..*rate });
         sums.force += rate.velocity * mass;
     }
     sums
@@ -118,18 +118,18 @@ where
     fn powers(&mut self, slope: Slope<S::Extra>) -> (Powers, Vector2<f64>) {
         let (forces, drift) = self.terms_mut().clone();
         let all = self.rates(&(forces.pairs(), drift));
-        let Sums { power: [velocity, density, position], force } =
-            sums(&mut self.data().fluid(), &all, slope);
+        let all = sums(&mut self.data().fluid(), &all, slope);
         let pressure = forces.pressure();
         let bare = self.rates(&(Pressure::new(pressure.eos), Continuity));
-        let bare = sums(&mut self.data().fluid(), &bare, slope).power;
+        let bare = sums(&mut self.data().fluid(), &bare, slope);
         let walls = power(&mut self.data().walls(), &self.wall_rates(), slope);
         let stress = match size_of_val(&pressure.tensile) {
             0 => 0.0,
-            _ => power(&mut self.data().fluid(), &self.rates(&pressure), slope) - bare[0],
+            _ => power(&mut self.data().fluid(), &self.rates(&pressure), slope) - bare.velocity,
         };
-        let viscosity = velocity - bare[0] - stress;
-        ([viscosity, stress, density - bare[1], position, bare[0] + bare[1] + walls], force)
+        let viscosity = all.velocity - bare.velocity - stress;
+        let walls = bare.velocity + bare.density + walls;
+        ([viscosity, stress, all.density - bare.density, all.position, walls], all.force)
     }
 }
 

@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_base::functions::sin;
-use touchstone_lagrangian::body::hourglass;
+use touchstone_lagrangian::{Moduli, body::hourglass};
 use touchstone_solver::{
     inverse::{Inverse, of_two},
     kernel::{Kernel, Smoothing},
@@ -35,12 +35,16 @@ struct Block {
     neighbours: Vec<Neighbours>,
     /// M⁻¹.
     inverse: Vec<Matrix2<f64>>,
-    /// λ, μ and c.
-    moduli: [f64; 3],
+    /// λ.
+    lambda: f64,
+    /// μ.
+    mu: f64,
+    /// The hourglass modulus c.
+    c: f64,
 }
 
 impl Block {
-    fn new<K: Kernel>(h_over_dx: f64, side: usize, [longitudinal, shear]: [f64; 2]) -> Self {
+    fn new<K: Kernel>(h_over_dx: f64, side: usize, moduli: &Moduli) -> Self {
         let kernel = Smoothing::<K>::new(h_over_dx);
         let place = |k: usize| Vector2::new((k % side) as f64, (k / side) as f64);
         let near = |k: usize| -> Neighbours {
@@ -59,13 +63,14 @@ impl Block {
         };
         let inverse = neighbours.iter().map(inverse);
         let factor = SquareLattice::of::<K>(h_over_dx, 0.0).gradient_factor();
-        let moduli = [longitudinal - 2.0 * shear, shear, hourglass(shear, HOURGLASS, factor)];
-        Self { inverse: inverse.collect(), neighbours, moduli }
+        let (mu, c) = (moduli.shear, hourglass(moduli.shear, HOURGLASS, factor));
+        let lambda = moduli.longitudinal() - 2.0 * mu;
+        Self { inverse: inverse.collect(), neighbours, lambda, mu, c }
     }
 
     /// Forces against small displacements.
     fn resist(&self, u: &[Vector2<f64>]) -> Vec<Vector2<f64>> {
-        let [lambda, mu, c] = self.moduli;
+        let Self { lambda, mu, c, .. } = *self;
         let tensor = |(k, near): (usize, &Neighbours)| {
             let sum = near.iter().fold(Matrix2::zeros(), |sum, (other, x, g)| {
                 sum + (u[*other] - u[k]) * x.transpose() * *g
@@ -85,8 +90,8 @@ impl Block {
 }
 
 /// ρ ω² dx² of the fastest mode of a block with free faces and corners \[Pa\].
-pub fn fastest_of_block<K: Kernel>(h_over_dx: f64, moduli: [f64; 2]) -> f64 {
-    // Corners three supports apart do not feel each other.
+pub fn fastest_of_block<K: Kernel>(h_over_dx: f64, moduli: &Moduli) -> f64 {
+    // Corners three supports apart do not affect each other.
     let side = 3 * (K::SUPPORT * h_over_dx).ceil() as usize + 2;
     let block = Block::new::<K>(h_over_dx, side, moduli);
     let mixed = |k: usize| sin(12.9898 * k as f64 + 1.0);
@@ -153,7 +158,8 @@ mod tests {
     fn corners_have_faster_modes_than_any_wave_of_the_lattice() {
         for (poisson, corner, wave) in [(0.3975, 3.62423, 1.77960), (0.4999, 3.88723, 1.15767)] {
             let shear = (1.0 - 2.0 * poisson) / (2.0 - 2.0 * poisson);
-            let found = fastest_of_block::<WendlandC2>(H_OVER_DX, [1.0, shear]);
+            let moduli = Moduli { bulk: 1.0 - 4.0 / 3.0 * shear, shear };
+            let found = fastest_of_block::<WendlandC2>(H_OVER_DX, &moduli);
             assert_relative_eq!(found, corner, max_relative = 1e-4);
             let lattice = SquareLattice::of::<WendlandC2>(H_OVER_DX, 0.0);
             let of = |theta| stiffness(&lattice, theta, 1.0, shear);
