@@ -17,7 +17,7 @@ use super::Failure;
 pub const BUG: &str = "touchstone: this is a bug of touchstone, not of your settings. Please report it \
                        with the command line and these lines:";
 
-/// A line or more for a person, on standard error. Nobody listening is no error.
+/// Prints one or more lines on standard error. A closed standard error is no error.
 pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", visible(text.trim_end_matches('\n')));
 }
@@ -86,7 +86,7 @@ pub fn print(text: &str) -> Result<(), Failure> {
     taken(write(&visible(text)))
 }
 
-/// What came of writing to standard output, which a reader may leave before the end.
+/// The result of writing to standard output; a reader may close it early.
 pub fn taken(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(refused(&error)),
@@ -149,7 +149,7 @@ pub fn report_bug(info: &PanicHookInfo) {
     say(&format!("{what}\n{message}\nat {place}, touchstone {version}, commit {commit}"));
 }
 
-/// Rows under their heads, columns two spaces apart; a column of numbers stands on the right.
+/// Rows under their heads, columns two spaces apart; numbers are aligned right.
 pub fn table(heads: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     laid_out(heads, &rows.into_iter().collect::<Vec<_>>())
 }
@@ -201,7 +201,7 @@ pub fn wrap(text: &str, indent: &str) -> String {
     lines.iter().map(|line| format!("{indent}{}\n", line.replace('\u{a0}', " "))).collect()
 }
 
-/// Text in lines after a head, of which those after the first begin so many characters from the left.
+/// Text in lines after a head, of which later lines are indented to `width` characters.
 pub fn hanging(head: &str, width: usize, text: &str) -> String {
     format!("{head:<width$}{}", wrap(text, &" ".repeat(width)).trim_start())
 }

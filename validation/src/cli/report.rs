@@ -161,7 +161,7 @@ fn write_verdicts(folder: &OutputFolder, suite: &Suite) -> Result<(), Failure> {
     Ok(())
 }
 
-/// What stands on a page that lacks runs.
+/// The note on a page with missing runs.
 fn not_complete([words, names]: [String; 2]) -> String {
     format!("**Not complete when this page was written:** {words}. Still to come: {names}.")
 }
@@ -169,8 +169,8 @@ fn not_complete([words, names]: [String; 2]) -> String {
 /// Early pages take at most this part of the time.
 const SHARE_OF_EARLY: u32 = 20;
 
-/// Writes verdicts and page, without PNG files, of what is made so far, and says so; not each time that a
-/// case is complete if that would take long. That it cannot be written is told of the last page.
+/// Writes verdicts and page, without PNG files, of the runs so far, and prints a message; not at every
+/// completed case if this would take long. Errors of writing are reported with the final page only.
 fn early(
     plans: Plans,
     tier: Tier,

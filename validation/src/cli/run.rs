@@ -70,7 +70,7 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
     carry_out(case, asked, Vec::new(), folder, arguments, world)
 }
 
-/// Computes, writes and judges what was asked for; it goes on from the simulations of a checkpoint.
+/// Runs, writes and judges; may continue from the simulations of a checkpoint.
 fn carry_out(
     case: &dyn Case,
     asked: Asked,
@@ -102,8 +102,8 @@ fn carry_out(
         plan::gates_of(case, &asked.spec).into_iter().partition(is_asked);
     let verdicts: Vec<Judged> =
         gates.into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
-    // What was computed is not lost with a file that cannot be written: then the record is printed, and where
-    // that is refused, too, its numbers are told.
+    // If a file cannot be written, the record is printed, and if printing fails as well, its numbers are, so
+    // that no result is lost.
     let mut table = judged::shown(&verdicts, arguments.all);
     if !unasked.is_empty() {
         let count = unasked.len();
@@ -146,7 +146,7 @@ fn carry_out(
     }
 }
 
-/// What is there of a run that was interrupted, and how it goes on.
+/// The files of an interrupted run, and how to continue it.
 fn interrupted(folder: Option<&Folder>, has_frames: bool, step: u64, time: f64) -> Failure {
     folder.iter().for_each(|folder| folder.remove_if_new_and_empty());
     let kept = if has_frames { "; frames so far are whole" } else { "" };
@@ -163,14 +163,15 @@ fn interrupted(folder: Option<&Folder>, has_frames: bool, step: u64, time: f64) 
     Failure::interrupted(what)
 }
 
-/// Frames and checkpoints that could not be written, and when a checkpoint was last: its folder may be gone.
+/// Frames and checkpoints that could not be written, and the time of the last checkpoint, whose folder may be
+/// missing.
 struct Lost {
     count: AtomicUsize,
     good: Mutex<Option<SystemTime>>,
 }
 
 impl Lost {
-    /// Says so of the first of them.
+    /// Reports the first of them.
     fn tell(&self, error: &RunError, folder: Option<&Folder>) {
         if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
             return;
@@ -238,7 +239,7 @@ struct Folder {
 }
 
 impl Folder {
-    /// None unless files were asked for; found writable before anything is computed.
+    /// `None` unless files were requested; the folder is tested before the run starts.
     fn of(arguments: &arguments::Run, case: &str, variant: &str) -> Result<Option<Self>, Failure> {
         let path = match (&arguments.out, arguments.vtk) {
             (Some(path), _) => path.clone(),
@@ -298,7 +299,7 @@ impl Folder {
     }
 }
 
-/// The record that an earlier run left in a folder, of whatever version; null if there is none.
+/// The record of an earlier run in a folder, in any version; null if there is none.
 fn record_in(folder: &Path) -> Value {
     let text = files::read_text(&folder.join(RECORD), MOST_BYTES).unwrap_or_default();
     serde_json::from_str(&text).unwrap_or_default()
@@ -315,7 +316,7 @@ fn table_of(curve: &str) -> String {
     format!("{}.csv", curve.replace([' ', '/', '\\'], "-"))
 }
 
-/// What an earlier run left beside its record, but for so many frames, which are of this run.
+/// Files of an earlier run other than its record; the first `frames` frames belong to this run.
 fn left_by_earlier(folder: &Path, frames: u16) -> Vec<String> {
     let record = record_in(folder);
     if record.is_null() {
@@ -328,8 +329,8 @@ fn left_by_earlier(folder: &Path, frames: u16) -> Vec<String> {
     curves.map(|curve| table_of(curve)).chain(others).chain(frames).collect()
 }
 
-/// Writes the record, what can be drawn from it, and the particles at the end, beside so many frames, and
-/// then removes what is left of an earlier run; returns the names.
+/// Writes the record, its figures and the final particles, removes other files of an earlier run, and returns
+/// the names. `frames` is the number of frames of this run.
 fn write(
     record: &Record,
     last: Option<Profile>,
@@ -362,7 +363,7 @@ fn write(
     Ok(names)
 }
 
-/// The velocity across a channel at all times of the record, whose profiles are `u@TAU` with TAU = νt/L².
+/// The velocity across a channel at all times of the record: profiles `u@TAU` with TAU = νt/L².
 fn velocities(record: &Record) -> Option<Profile> {
     let setting = |name: &str| record.run.settings[name].as_f64();
     let (width, nu) = (setting("width")?, setting("nu")?);
@@ -442,7 +443,7 @@ fn metrics(record: &Record) -> String {
         let metric = record.metrics.get(&format!("{name}@{time}"));
         metric.map(|metric| touchstone_report::sig(metric.value, 4)).unwrap_or_default()
     };
-    // Times of channels are νt/L²; those of other cases are in the units that their formulas name.
+    // Times of channels are νt/L²; times of other cases are in the units of their formulas.
     let at = if velocities(record).is_some() { "at νt/L²" } else { "at" };
     let heads: Vec<&str> = std::iter::once(at).chain(of_times.keys().copied()).collect();
     let row = |time: &&str| {

@@ -65,7 +65,7 @@ const READING: &str = "At default settings. Step: the time step that is taken. L
     of the run, with the stages of super-time-stepping. With --json, and in the report, the limit of each \
     mechanism stands beside these.";
 
-/// What limits the step of each variant, without a run.
+/// The mechanism that limits the step of each variant, without a run.
 fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for case in cases {

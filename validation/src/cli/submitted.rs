@@ -1,5 +1,5 @@
-//! What `submit` says of a submission: its gates, why others have no number or do not apply, and a few lines
-//! that are of use to a submitter.
+//! Output of `submit`: gates, reasons for absent numbers and for gates that do not apply, and hints for the
+//! submitter.
 
 use touchstone_base::{gate::Gate, record::Status, spec::RunSpec};
 use touchstone_harness::{

@@ -19,7 +19,7 @@ use touchstone_report::Counts;
 
 use super::{explain, judged, output};
 
-/// Failures that are told in full; of more the names are.
+/// Number of failures printed in full; the others by name.
 const IN_FULL: usize = 5;
 
 /// A line a case; then the failures in full, the number of limitations, and all counts in a sentence.
@@ -83,8 +83,8 @@ fn row(results: &CaseResults) -> Vec<String> {
     row
 }
 
-/// The judgement that is closest to failing: of the worst verdict and, among equals, of the least margin. A
-/// control that fails as it must has none.
+/// The judgement closest to failing: the worst verdict, then the least margin. Controls that fail as expected
+/// are left out.
 pub fn worst<'a>(all: impl Iterator<Item = &'a Judged>) -> Option<&'a Judged> {
     let rank = |judged: &Judged| match judged.judgement.verdict {
         Verdict::Fail => 0,
@@ -204,15 +204,14 @@ pub fn in_words(name: &str, metric: &record::Metric) -> String {
     )
 }
 
-/// The error of the case, which is that of its card or of its first ladder, in words; and the name of its
-/// metric.
+/// The error of the case, from its card or its first ladder, in words; and the name of its metric.
 pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
     let Some(metric) = declared.error() else {
         return Default::default();
     };
     let measured = record.metrics.get(&metric.name);
     let words = match (&declared.card, measured) {
-        // Its name speaks of times that the run did not reach.
+        // The name includes a time that the run did not reach.
         _ if record.status != Status::Completed => format!("none: {}", record.status),
         (_, None) => {
             let reason = record.absent.get(&metric.name).map(ToString::to_string);
