@@ -1,7 +1,6 @@
 //! The types that all crates of the harness use: settings, numbers, files, gates, records, references.
 
 pub mod absent;
-pub mod bits;
 pub mod breakdown;
 pub mod files;
 pub mod functions;

@@ -1,5 +1,6 @@
 //! The largest stable value of a setting by bisection, and the criterion by which a run counts as growing.
 
+use serde::{Deserialize, Serialize};
 use touchstone_base::{
     record::{Cost, Record, Status},
     spec::{Bisect, RunSpec, Task},
@@ -137,7 +138,7 @@ const BEYOND_DOUBT: f64 = 100.0;
 const LATE_GROWTH: f64 = 1.5;
 
 /// Watches an energy over a known number of steps.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Growth {
     /// Energy at the start.
     pub start: f64,
@@ -148,8 +149,6 @@ pub struct Growth {
     /// Is there no need to go on?
     pub beyond_doubt: bool,
 }
-
-touchstone_base::observed! { Growth: changes(seen, quarters, beyond_doubt), stays(start, steps) }
 
 impl Growth {
     /// Watches `steps` steps from an energy of `start` > 0.

@@ -10,115 +10,240 @@ use std::sync::Mutex;
 use std::time::Duration;
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use touchstone_base::{
-    bits::{self, Bits},
     files::FileError,
     lock,
     record::{Cost, Status},
 };
 use touchstone_solver::{
-    Checkpoint, Interval, Numbers, Particle, PreviousStep, Progress, Stepper, Symmetric, Work,
+    Checkpoint, Interval, Numbers, Particle, PreviousStep, Progress, Role, Stepper, Symmetric, Work,
 };
 
-use crate::{error::RunError, outline};
+use crate::error::RunError;
+
+/// A simulation and everything observed of it. Only the build that wrote the bytes can read them, for they
+/// name no fields.
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    state: State,
+    stage: Stage,
+    /// The watch of the case with its record, as bytes.
+    seen: Vec<u8>,
+}
 
 /// How far a simulation is, apart from its particles and from what is observed of it.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub(crate) struct Stage {
     /// How many of its times were reached.
     pub reached: usize,
     /// What it took so far.
+    #[serde(with = "as_json")]
     pub cost: Cost,
     /// The frames of it by time \[s\], and how many were tried.
     pub frames: Option<(Vec<(f64, String)>, usize)>,
     /// How it ended, if it did.
+    #[serde(with = "as_json")]
     pub ended: Option<Status>,
 }
 
-touchstone_base::observed! { Stage: changes(reached, cost, frames, ended), stays() }
-
-/// Id and role of a particle, its position, its velocity and where it was when the neighbour lists were
-/// built, and then density and mass.
-type Stored = (u32, u8, [Vector2<f64>; 3], [f64; 2]);
-
-/// Times and steps, then the particles, the densities that an integrator keeps of earlier steps with their
-/// rates, and the deviatoric stresses of both, none of a fluid.
-type State = ([f64; 7], [u64; 5], bool, (Vec<Stored>, Vec<[f64; 2]>, Vec<[f64; 3]>));
-
-/// The state of a simulation.
-fn state<X: Numbers>(of: &Checkpoint<X>) -> State {
-    let Checkpoint { progress, lag, particles, built_at, past } = of;
-    let &Progress { time, dt, work, last_approach, built_inside_a_step, call, made } = progress;
-    let Work { steps, pair_interactions, right_hand_sides, list_builds } = work;
-    let stress = |extra: &X| extra.stress().map(Symmetric::components);
-    let (mut stored, mut earlier, mut stresses) = (Vec::new(), Vec::new(), Vec::new());
-    for ((id, p), at) in particles.iter().zip(built_at) {
-        stored.push((*id, p.role as u8, [p.position, p.velocity, *at], [p.density, p.mass]));
-        stresses.extend(stress(&p.extra));
-    }
-    for PreviousStep { drifted, rate } in past {
-        earlier.push([drifted.0, rate.0]);
-        stresses.extend(stress(&drifted.1).into_iter().chain(stress(&rate.1)));
-    }
-    let Interval { start, until, dt_max } = call;
-    let times = [time, dt, last_approach, *lag, start, until, dt_max];
-    let counts = [steps, pair_interactions, right_hand_sides, list_builds, made];
-    (times, counts, built_inside_a_step, (stored, earlier, stresses))
+/// The state of a simulation: a [`Checkpoint`], of which particles keep deviatoric stresses alone of their
+/// extra fields.
+#[derive(Serialize, Deserialize)]
+struct State {
+    #[serde(with = "ProgressFields")]
+    progress: Progress,
+    lag: f64,
+    /// Number in the scene, the particle, where it was when the neighbour lists were built \[m\].
+    particles: Vec<(u32, StoredParticle, Vector2<f64>)>,
+    past: Vec<StoredStep>,
 }
 
-fn restore_state<X: Numbers>(from: &mut &[u8]) -> Result<Checkpoint<X>, RunError> {
-    let (times, counts, built_inside_a_step, (stored, earlier, stresses)) =
-        bits::read::<State>(from)?;
-    let [time, dt, last_approach, lag, start, until, dt_max] = times;
-    let call = Interval { start, until, dt_max };
-    let [steps, pair_interactions, right_hand_sides, list_builds, made] = counts;
-    let work = Work { steps, pair_interactions, right_hand_sides, list_builds };
-    let progress = Progress { time, dt, work, last_approach, built_inside_a_step, call, made };
-    let mut stresses = stresses.into_iter();
-    let of_stress = |[xx, yy, xy]: [f64; 3]| X::of_stress(Symmetric { xx, yy, xy });
-    let mut extra = || stresses.next().map_or_else(X::default, of_stress);
-    let (mut particles, mut built_at, mut past) = (Vec::new(), Vec::new(), Vec::new());
-    for (id, role, [position, velocity, at], [density, mass]) in stored {
-        let role = outline::role(role.into());
-        let role = role.ok_or(RunError::Checkpoint("a particle of an unknown role"))?;
-        particles.push((id, Particle { role, position, velocity, density, mass, extra: extra() }));
-        built_at.push(at);
-    }
-    for [drifted, rate] in earlier {
-        past.push(PreviousStep { drifted: (drifted, extra()), rate: (rate, extra()) });
-    }
-    Ok(Checkpoint { progress, lag, particles, built_at, past })
+/// The components xx, yy and xy of a deviatoric stress, none of a fluid \[Pa\].
+type Stress = Option<[f64; 3]>;
+
+#[derive(Serialize, Deserialize)]
+struct StoredParticle {
+    #[serde(with = "RoleNames")]
+    role: Role,
+    position: Vector2<f64>,
+    velocity: Vector2<f64>,
+    density: f64,
+    mass: f64,
+    stress: Stress,
 }
 
-/// A simulation as bytes.
+#[derive(Serialize, Deserialize)]
+struct StoredStep {
+    drifted: (f64, Stress),
+    rate: (f64, Stress),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Progress")]
+struct ProgressFields {
+    time: f64,
+    dt: f64,
+    #[serde(with = "WorkFields")]
+    work: Work,
+    last_approach: f64,
+    built_inside_a_step: bool,
+    #[serde(with = "IntervalFields")]
+    call: Interval,
+    made: u64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Work")]
+struct WorkFields {
+    steps: u64,
+    pair_interactions: u64,
+    right_hand_sides: u64,
+    list_builds: u64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Interval")]
+struct IntervalFields {
+    start: f64,
+    until: f64,
+    dt_max: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Role")]
+enum RoleNames {
+    Fluid,
+    Wall,
+    Interface,
+}
+
+fn stress<X: Numbers>(extra: &X) -> Stress {
+    extra.stress().map(Symmetric::components)
+}
+
+fn extra<X: Numbers>(stress: Stress) -> X {
+    stress.map_or_else(X::default, |[xx, yy, xy]| X::of_stress(Symmetric { xx, yy, xy }))
+}
+
+impl StoredParticle {
+    fn of<X: Numbers>(particle: &Particle<X>) -> Self {
+        let &Particle { role, position, velocity, density, mass, extra } = particle;
+        Self { role, position, velocity, density, mass, stress: stress(&extra) }
+    }
+
+    fn particle<X: Numbers>(self) -> Particle<X> {
+        let Self { role, position, velocity, density, mass, stress } = self;
+        Particle { role, position, velocity, density, mass, extra: extra(stress) }
+    }
+}
+
+impl State {
+    fn of<X: Numbers>(checkpoint: &Checkpoint<X>) -> Self {
+        let Checkpoint { progress, lag, particles, built_at, past } = checkpoint;
+        let particles = particles.iter().zip(built_at);
+        let particles = particles.map(|((id, p), at)| (*id, StoredParticle::of(p), *at)).collect();
+        let earlier = |(density, extra): &(f64, X)| (*density, stress(extra));
+        let past = past.iter().map(|PreviousStep { drifted, rate }| StoredStep {
+            drifted: earlier(drifted),
+            rate: earlier(rate),
+        });
+        Self { progress: *progress, lag: *lag, particles, past: past.collect() }
+    }
+
+    fn checkpoint<X: Numbers>(self) -> Checkpoint<X> {
+        let Self { progress, lag, particles: stored, past } = self;
+        let (mut particles, mut built_at) = (Vec::new(), Vec::new());
+        for (id, particle, at) in stored {
+            particles.push((id, particle.particle()));
+            built_at.push(at);
+        }
+        let earlier = |(density, stress): (f64, Stress)| (density, extra(stress));
+        let past = past.into_iter().map(|StoredStep { drifted, rate }| PreviousStep {
+            drifted: earlier(drifted),
+            rate: earlier(rate),
+        });
+        Checkpoint { progress, lag, particles, built_at, past: past.collect() }
+    }
+}
+
+/// A document in a checkpoint, as its JSON: the binary format has no values of any type and no fields that
+/// are left out.
+pub(crate) mod as_json {
+    use serde::{
+        Deserialize, Deserializer, Serialize, Serializer,
+        de::{DeserializeOwned, Error as _},
+        ser::Error as _,
+    };
+
+    pub fn serialize<T: Serialize, S: Serializer>(document: &T, to: S) -> Result<S::Ok, S::Error> {
+        serde_json::to_string(document).map_err(S::Error::custom)?.serialize(to)
+    }
+
+    pub fn deserialize<'a, T: DeserializeOwned, D: Deserializer<'a>>(
+        from: D,
+    ) -> Result<T, D::Error> {
+        serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)
+    }
+}
+
+/// Particles of a fluid in a watch, for `#[serde(with = "…")]`.
+pub mod particles {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use touchstone_solver::Particle;
+
+    use super::StoredParticle;
+
+    /// Writes all of them.
+    ///
+    /// # Errors
+    /// Those of `to`.
+    pub fn serialize<S: Serializer>(all: &[Particle], to: S) -> Result<S::Ok, S::Error> {
+        all.iter().map(StoredParticle::of).collect::<Vec<_>>().serialize(to)
+    }
+
+    /// Reads them.
+    ///
+    /// # Errors
+    /// Those of `from`.
+    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Vec<Particle>, D::Error> {
+        let stored = Vec::<StoredParticle>::deserialize(from)?;
+        Ok(stored.into_iter().map(StoredParticle::particle).collect())
+    }
+}
+
+/// Reads a value from all of the bytes. A length that they state takes no more memory than they have.
+///
+/// # Errors
+/// If they hold something else, less or more.
+pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, RunError> {
+    let (value, rest) = postcard::take_from_bytes(bytes)?;
+    if rest.is_empty() { Ok(value) } else { Err(RunError::Checkpoint("more bytes than it needs")) }
+}
+
+/// A simulation and what is observed of it, as bytes.
 pub(crate) fn save<X: Numbers>(
     simulation: &dyn Stepper<X>,
-    stage: &Stage,
-    seen: &dyn Bits,
+    stage: Stage,
+    seen: Vec<u8>,
 ) -> Result<Vec<u8>, RunError> {
     if size_of::<X>() > 0 && X::default().stress().is_none() {
         return Err(RunError::Checkpoint(
             "particles with other extra fields than a deviatoric stress",
         ));
     }
-    let mut to = Vec::new();
-    state(&simulation.checkpoint()).save(&mut to);
-    stage.save(&mut to);
-    seen.save(&mut to);
-    Ok(to)
+    let state = State::of(&simulation.checkpoint());
+    Ok(postcard::to_allocvec(&Stored { state, stage, seen })?)
 }
 
-/// Gives a simulation of the same scene, and what was observed of it, their state from bytes.
+/// Gives a simulation of the same scene its state from bytes; how far it is, and what was observed of it.
 pub(crate) fn restore<X: Numbers>(
-    mut bytes: &[u8],
+    bytes: &[u8],
     simulation: &mut dyn Stepper<X>,
-    seen: &mut dyn Bits,
-) -> Result<Stage, RunError> {
-    let from = &mut bytes;
-    simulation.restore(&restore_state(from)?).map_err(RunError::Checkpoint)?;
-    let stage = bits::read(from)?;
-    seen.restore(from)?;
-    Ok(stage)
+) -> Result<(Stage, Vec<u8>), RunError> {
+    let Stored { state, stage, seen } = read(bytes)?;
+    simulation.restore(&state.checkpoint()).map_err(RunError::Checkpoint)?;
+    Ok((stage, seen))
 }
 
 /// Writes a checkpoint: the simulations of the run as bytes, one after another.
@@ -169,5 +294,62 @@ impl<'a> Checkpoints<'a> {
         }
         simulations.is_over = is_last;
         Ok((self.write)(&[&simulations.ended[..], &[under_way]].concat())?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use touchstone_base::{
+        number,
+        record::{MetricKey, Record},
+    };
+
+    use super::*;
+
+    #[derive(Debug, Default, Serialize, Deserialize)]
+    struct Odd {
+        numbers: Vec<f64>,
+        text: Option<String>,
+        counts: [(usize, bool); 2],
+        #[serde(with = "as_json")]
+        record: Record,
+    }
+
+    fn odd() -> Odd {
+        let numbers = [0.1, -0.0, f64::MIN_POSITIVE / 8.0, f64::NAN, -f64::NAN, f64::NEG_INFINITY];
+        let mut record = Record::new("case", "variant", serde_json::json!({"n": 8, "x": 1.0}), 1);
+        record.numerics.insert("odd".into(), number::json(f64::INFINITY));
+        record.put(MetricKey::new("m", "-", "1/3"), 1.0 / 3.0);
+        let (text, counts) = (Some("µ".into()), [(usize::MAX, true), (0, false)]);
+        Odd { numbers: numbers.to_vec(), text, counts, record }
+    }
+
+    #[test]
+    fn a_value_keeps_its_bits_and_less_or_more_than_it_is_refused() {
+        let (before, mut bytes) = (odd(), postcard::to_allocvec(&odd()).unwrap());
+        let after: Odd = read(&bytes).expect("all bytes are there");
+        let bits = |odd: &Odd| odd.numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&after), bits(&before), "numbers");
+        assert_eq!((&after.text, after.counts), (&before.text, before.counts));
+        assert_eq!(after.record, before.record);
+        for length in 0..bytes.len() {
+            let part = read::<Odd>(&bytes[..length]);
+            assert!(part.is_err(), "{length} of {} bytes give {part:?}", bytes.len());
+        }
+        bytes.push(0);
+        assert!(read::<Odd>(&bytes).is_err(), "a byte more");
+    }
+
+    #[test]
+    fn bytes_of_no_value_are_refused_before_memory_is_taken() {
+        let endless = postcard::to_allocvec(&u64::MAX).unwrap();
+        assert!(read::<Vec<f64>>(&endless).is_err(), "a list longer than its bytes");
+        assert!(read::<Vec<(u32, StoredParticle, Vector2<f64>)>>(&endless).is_err(), "particles");
+        assert!(read::<bool>(&[2]).is_err(), "neither true nor false");
+        assert!(read::<String>(&[1, 0xFF]).is_err(), "no UTF-8");
+        #[derive(Deserialize)]
+        struct OfRole(#[serde(with = "RoleNames")] Role);
+        assert!(matches!(read(&[1]), Ok(OfRole(Role::Wall))));
+        assert!(read::<OfRole>(&[3]).is_err(), "no role");
     }
 }

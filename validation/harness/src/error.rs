@@ -2,7 +2,6 @@
 
 use thiserror::Error;
 use touchstone_base::{
-    bits::OtherBits,
     files::FileError,
     settings::{SettingError, hint},
     spec::SpecError,
@@ -138,7 +137,7 @@ pub enum RunError {
     Bug,
     /// The bytes of a checkpoint are not those of the run.
     #[error("the checkpoint is not one of this run: {0}")]
-    OtherBits(#[from] OtherBits),
+    OtherBytes(#[from] postcard::Error),
     /// No checkpoint can be made of these particles, or no simulation can have its state.
     #[error("the checkpoint has {0}")]
     Checkpoint(&'static str),
@@ -151,7 +150,7 @@ impl RunError {
     /// Was the run refused because of its settings? Otherwise a file, a reference or a bug is the reason,
     /// which is not a property of the run.
     pub fn is_refusal(&self) -> bool {
-        use RunError::{Bug, Checkpoint, File, OtherBits, Reference};
-        !matches!(self, File(_) | OtherBits(_) | Checkpoint(_) | Reference(_) | Bug)
+        use RunError::{Bug, Checkpoint, File, OtherBytes, Reference};
+        !matches!(self, File(_) | OtherBytes(_) | Checkpoint(_) | Reference(_) | Bug)
     }
 }

@@ -46,5 +46,3 @@ pub mod study;
 pub mod suite;
 pub mod symmetry;
 pub mod table;
-
-pub use touchstone_base::observed;

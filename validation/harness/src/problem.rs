@@ -2,9 +2,9 @@
 //! these the functions here simulate a run, estimate it, export it, show it to another observer, and measure
 //! particles of another code.
 
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
 use touchstone_base::{
-    bits::Bits,
     number,
     record::{Profile, Record, Status},
     spec::{Keep, Measure, RunSpec},
@@ -12,6 +12,7 @@ use touchstone_base::{
 use touchstone_solver::{Flow, Numbers, Outcome, Particle, Role, Stepper};
 
 use crate::{
+    checkpoint::as_json,
     context::Context,
     error::RunError,
     frames,
@@ -109,7 +110,7 @@ pub trait Problem: Sized {
     /// A simulation as the case sees it.
     type Simulation: Stepper<Self::Extra> + ?Sized;
     /// All that accumulates over a run.
-    type Watch: Bits;
+    type Watch: Serialize + DeserializeOwned;
     /// Does [`Problem::watch`] read the particles of the scene?
     const READS_START: bool = false;
 
@@ -147,6 +148,14 @@ pub trait Problem: Sized {
 
     /// Puts metrics and profiles; the simulation is at its end, the record states how it ended.
     fn measure(&self, watch: Self::Watch, end: &Self::Simulation, record: &mut Record);
+}
+
+/// What a run has come to: everything that changes while it is observed.
+#[derive(Serialize, Deserialize)]
+struct Watched<W> {
+    watch: W,
+    #[serde(with = "as_json")]
+    record: Record,
 }
 
 /// Called after every step.
@@ -464,26 +473,26 @@ trait Parted: Problem {
         }
         let start = if Self::READS_START { parts.particles.clone() } else { Vec::new() };
         let mut simulation = self.built(parts, &View::default())?;
-        let mut record = self.begun(spec, threads, &brief);
+        let record = self.begun(spec, threads, &brief);
         let (times, asked) = (self.times(), Asked::of(spec));
-        let mut watch = self.watch(&start, &simulation);
+        let watch = self.watch(&start, &simulation);
         drop(start);
         let Calls { after_step, mut at, control } = self.calls(Calls::default(), asked);
-        let mut seen = (&mut watch, &mut record);
+        let mut seen = Watched { watch, record };
         let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
         let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
             .steps(brief.least_steps, size.sweeps);
         if let Some((name, call, resumed)) = control.filter(|_| playback.is_none()) {
             at.push((name, Reads::All, call));
-            drive = drive.resumed(move |(watch, _), s| resumed(self, watch, s));
+            drive = drive.resumed(move |seen, s| resumed(self, &seen.watch, s));
         }
         for (name, call) in after_step {
-            drive = drive.after_step(name, move |(watch, _), s| call(self, watch, s));
+            drive = drive.after_step(name, move |seen, s| call(self, &mut seen.watch, s));
         }
         for (name, reads, call) in at {
-            let call = move |(watch, record): &mut (&mut Self::Watch, &mut Record),
-                             s: &mut Self::Simulation,
-                             k| call(self, watch, s, k, record);
+            let call = move |seen: &mut Watched<Self::Watch>, s: &mut Self::Simulation, k| {
+                call(self, &mut seen.watch, s, k, &mut seen.record);
+            };
             drive = match reads {
                 Reads::All => drive.at(name, call),
                 Reads::Positions => drive.at_positions(name, call),
@@ -493,6 +502,7 @@ trait Parted: Problem {
             Some(playback) => drive.play(playback, context),
             None => drive.run(context),
         }?;
+        let Watched { watch, mut record } = seen;
         ended.put(&mut record);
         self.measure(watch, &simulation, &mut record);
         Ok(record)

@@ -5,7 +5,8 @@
 
 use std::time::{Duration, Instant};
 
-use touchstone_base::{bits::Bits, lock, mutation::Constant, record::*};
+use serde::{Serialize, de::DeserializeOwned};
+use touchstone_base::{lock, mutation::Constant, record::*};
 use touchstone_solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper, Symmetric};
 
 pub use crate::context::{Context, Progress};
@@ -63,8 +64,10 @@ trait Observed<X: Numbers> {
 trait Seen<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow;
-    /// All that changes of it.
-    fn bits(&mut self) -> &mut dyn Bits;
+    /// Everything that changes of it, as bytes.
+    fn save(&self) -> Result<Vec<u8>, RunError>;
+    /// Takes it over from bytes.
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), RunError>;
 }
 
 /// A run that is under way.
@@ -120,7 +123,7 @@ impl Course<'_> {
         let (simulation, seen) = run.parts();
         if let Some(checkpoints) = context.checkpoints {
             let stage = watch.stage(ended.cost.clone(), Some(ended.status.clone()));
-            checkpoints.keep(checkpoint::save(simulation, &stage, seen.bits())?);
+            checkpoints.keep(checkpoint::save(simulation, stage, seen.save()?)?);
         }
         if let Some(at_the_end) = context.at_the_end {
             let columns = frames::columns(&simulation.particles(), &self.pressure);
@@ -243,7 +246,8 @@ impl Watch<'_> {
         {
             self.profiler.iter().for_each(|profiler| profiler.observe(profile::CHECKPOINTS));
             let cost = self.cost(simulation, now - self.start);
-            let saved = checkpoint::save(simulation, &self.stage(cost, None), seen.bits());
+            let stage = self.stage(cost, None);
+            let saved = seen.save().and_then(|seen| checkpoint::save(simulation, stage, seen));
             let is_last = self.context.is_interrupted();
             let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
             written.unwrap_or_else(|error| self.context.lose(&error));
@@ -341,8 +345,9 @@ impl Watch<'_> {
         let bytes = self.context.checkpoints.and_then(Checkpoints::next);
         let Some(bytes) = bytes else { return Ok(None) };
         let (simulation, seen) = run.parts();
-        let Stage { reached, cost, frames, ended } =
-            checkpoint::restore(&bytes, simulation, seen.bits())?;
+        let (Stage { reached, cost, frames, ended }, earlier) =
+            checkpoint::restore(&bytes, simulation)?;
+        seen.restore(&earlier)?;
         let next = self.course.times.get(reached).unwrap_or(&self.end);
         if reached > self.course.times.len() || simulation.time() > *next {
             return Err(RunError::Checkpoint("times of another run"));
@@ -426,12 +431,16 @@ struct Seeing<'a, X: Numbers, S> {
     after_step: Vec<AfterStep<'a, X, S>>,
 }
 
-impl<X: Numbers, S: Bits> Seen<X> for Seeing<'_, X, S> {
+impl<X: Numbers, S: Serialize + DeserializeOwned> Seen<X> for Seeing<'_, X, S> {
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow {
         self.after_step[k](self.seen, simulation)
     }
-    fn bits(&mut self) -> &mut dyn Bits {
-        self.seen
+    fn save(&self) -> Result<Vec<u8>, RunError> {
+        Ok(postcard::to_allocvec(&*self.seen)?)
+    }
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), RunError> {
+        *self.seen = checkpoint::read(bytes)?;
+        Ok(())
     }
 }
 
@@ -443,7 +452,12 @@ struct Run<'a, X: Numbers, D: ?Sized, S> {
     resumed: Resumed<'a, D, S>,
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Observed<X> for Run<'_, X, D, S> {
+impl<X, D, S> Observed<X> for Run<'_, X, D, S>
+where
+    X: Numbers,
+    D: Stepper<X> + ?Sized,
+    S: Serialize + DeserializeOwned,
+{
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>) {
         (self.simulation.stepper(), &mut self.seeing)
     }
@@ -464,7 +478,12 @@ pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
     course: Course<'a>,
 }
 
-impl<'a, X: Numbers, D: Stepper<X> + ?Sized, S: Bits> Drive<'a, X, D, S> {
+impl<'a, X, D, S> Drive<'a, X, D, S>
+where
+    X: Numbers,
+    D: Stepper<X> + ?Sized,
+    S: Serialize + DeserializeOwned,
+{
     /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
     /// the pressure of this equation of state.
     pub fn new(

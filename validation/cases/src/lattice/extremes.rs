@@ -5,6 +5,7 @@
 //! refused with its reason; `tests/tests/extremes.rs` shows that, and particles without neighbours.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{gate::*, random::Random, record::*, settings::Settings};
 use touchstone_harness::{
     case::*,
@@ -115,12 +116,12 @@ struct Extreme {
 }
 
 /// The particles at the start, and how far the clock was off.
+#[derive(Serialize, Deserialize)]
 struct Watch {
+    #[serde(with = "touchstone_harness::checkpoint::particles")]
     start: Vec<Particle>,
     late: f64,
 }
-
-touchstone_harness::observed! { Watch: changes(late), stays(start) }
 
 impl Extreme {
     fn is_resting(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use touchstone_base::{functions::*, gate::*, record::*};
 use touchstone_harness::{case::*, composed::*, declare::*, table::*};
@@ -108,6 +109,8 @@ impl BarSettings {
 }
 
 impl Body for BarSettings {
+    type Watch = Motion;
+
     fn common(&self) -> Common {
         self.solid.common()
     }
@@ -164,14 +167,16 @@ impl Body for BarSettings {
         Vector2::new(size * (1.0 - erfc(z * FRAC_1_SQRT_2)), 0.0)
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch> {
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Motion {
         let energy = energy.unwrap_or_else(|| Energy::of_all(start, &self.material()));
-        Box::new(Motion::new(self, start, energy.total()))
+        Motion::new(self, start, energy.total())
     }
 }
 
 /// The motion of the bars, step by step.
+#[derive(Serialize, Deserialize)]
 pub struct Motion {
+    #[serde(with = "touchstone_base::settings::as_json")]
     settings: BarSettings,
     /// Σ m v and Σ m |v| at the start \[kg/s\].
     momentum: Vector2<f64>,
@@ -182,10 +187,6 @@ pub struct Motion {
     series: Vec<[f64; 4]>,
     /// Mean −σˣˣ within L/2 of the contact when the bars have come to rest \[Pa\].
     stress: Option<f64>,
-}
-
-touchstone_harness::observed! {
-    Motion: changes(series, stress), stays(settings, momentum, total, energy)
 }
 
 /// A row of the series from masses, places and velocities along x.

@@ -5,6 +5,7 @@
 //! kernel. The leapfrog turns by θ a step, 2 sin(θ/2) = ω dt, which is divided out.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use touchstone_base::{functions::*, gate::*, record::*};
 use touchstone_harness::{
@@ -169,12 +170,11 @@ impl Problem for Wave {
 }
 
 /// Projections of the velocities on the wave.
+#[derive(Serialize, Deserialize)]
 struct Watch {
     direction: Vector2<f64>,
     amplitudes: Vec<f64>,
 }
-
-touchstone_harness::observed! { Watch: changes(amplitudes), stays(direction) }
 
 impl Watch {
     /// θ of a step, from a fit to all steps.

@@ -1,6 +1,7 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use touchstone_base::{gate::*, record::*};
 use touchstone_harness::{case::*, composed::*, declare::*, table::*};
@@ -65,6 +66,8 @@ const SAMPLES: f64 = 200.0;
 const TENTH: f64 = 0.1;
 
 impl Body for DiskSettings {
+    type Watch = History;
+
     fn common(&self) -> Common {
         self.solid.common()
     }
@@ -92,13 +95,15 @@ impl Body for DiskSettings {
             .collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Box<dyn Watch> {
-        Box::new(History::new(self, start))
+    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> History {
+        History::new(self, start)
     }
 }
 
 /// What happens to the disk through time.
+#[derive(Serialize, Deserialize)]
 pub struct History {
+    #[serde(with = "touchstone_base::settings::as_json")]
     settings: DiskSettings,
     /// \[kg/m\].
     mass: f64,
@@ -109,8 +114,6 @@ pub struct History {
     /// step \[s\].
     first: Option<([f64; 2], f64)>,
 }
-
-touchstone_harness::observed! { History: changes(until, series, first), stays(settings, mass) }
 
 impl History {
     fn new(s: &DiskSettings, start: &[Particle<Symmetric>]) -> Self {

@@ -2,6 +2,7 @@
 //! an exact solution.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_4;
 use touchstone_base::{gate::*, record::*};
 use touchstone_harness::{
@@ -151,6 +152,7 @@ fn shape(particles: &[Particle]) -> Shape {
 }
 
 /// What is measured through time.
+#[derive(Serialize, Deserialize)]
 struct History {
     /// The exact drop at the start.
     exact: Exact,
@@ -161,8 +163,6 @@ struct History {
     /// Sum over samples of the mean square error of the velocities, over that of the exact ones.
     velocity: f64,
 }
-
-touchstone_harness::observed! { History: changes(rows, free_fall, velocity), stays(exact) }
 
 impl History {
     fn new(exact: Exact) -> Self {
@@ -209,14 +209,13 @@ impl History {
 }
 
 /// The history and the energy ledger.
+#[derive(Serialize, Deserialize)]
 struct Watch {
     history: History,
     ledger: Ledger,
     /// Kinetic energy of the exact drop at the start \[J/m\].
     kinetic: f64,
 }
-
-touchstone_harness::observed! { Watch: changes(history, ledger), stays(kinetic) }
 
 impl Problem for Drop {
     type Extra = ();
@@ -247,16 +246,19 @@ impl Problem for Drop {
         let start = self.particles();
         let Shape { mass, axes, .. } = shape(&start);
         let kinetic = mass * (self.settings.strain * axes[0]).powi(2) / 4.0;
-        let (history, ledger) = (History::new(self.exact(&start)), Ledger::new(&self.medium));
+        let (history, ledger) = (History::new(self.exact(&start)), Ledger::default());
         Watch { history, ledger, kinetic }
     }
 
     fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
-        calls
-            .at("shape", |drop, watch, s, _, _| watch.history.sample(drop, s))
-            .when(asked.all, |calls| {
-                calls.at("energy ledger by term", |_, watch, s, _, _| watch.ledger.sample(s))
-            })
+        calls.at("shape", |drop, watch, s, _, _| watch.history.sample(drop, s)).when(
+            asked.all,
+            |calls| {
+                calls.at("energy ledger by term", |drop, watch, s, _, _| {
+                    watch.ledger.sample(&drop.medium, s);
+                })
+            },
+        )
     }
 
     fn measure(

@@ -2,6 +2,7 @@
 //! and pressure are known exactly. What walls and density treatments do to it is all that happens.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{gate::*, mutation::Constant, random::Random, record::*};
 use touchstone_harness::{
     case::*,
@@ -264,6 +265,7 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
 const HISTORY: [(&str, &str); 5] =
     [("t", "4 H/c0"), ("p_l2", "-"), ("level_drift", "H"), ("gap", "dx"), ("kinetic", "M g H")];
 
+#[derive(Serialize, Deserialize)]
 struct History {
     /// Mean heights of the lowest and of the highest particles at the start \[m\].
     start: [f64; 2],
@@ -274,8 +276,6 @@ struct History {
     /// How far the water is from being spread over the tank, at the last sample \[dx\].
     spread: f64,
 }
-
-touchstone_harness::observed! { History: changes(rows, outside, spread), stays(start) }
 
 impl History {
     /// No sample yet of water that starts as in this simulation.

@@ -1,6 +1,7 @@
 //! Still water over a wedge: corners and edges at which walls must bear what is above them. Depth H = 1 m.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{gate::*, mutation::Constant, record::*};
 use touchstone_harness::{
     case::*,
@@ -169,7 +170,7 @@ fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Par
 
 /// What is measured over the last quarter of the run. The start is not quite at rest, and what sound is left
 /// must not be taken for a pressure: means over periods hide it, and the kinetic energy shows it.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 struct Moments {
     samples: f64,
     /// Sums of the errors of the pressure at the corners of the base and at the apex, and of every particle
@@ -179,8 +180,6 @@ struct Moments {
     /// The largest kinetic energy \[M g H\].
     kinetic: f64,
 }
-
-touchstone_harness::observed! { Moments: changes(samples, corners, errors, kinetic), stays() }
 
 /// Samples a period.
 const SAMPLES: f64 = 8.0;

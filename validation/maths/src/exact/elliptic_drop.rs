@@ -10,7 +10,7 @@
 //! The area π a b and the kinetic energy, ∝ A² (a² + b²), are constant.
 
 /// The drop at one time.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct EllipticDrop {
     /// Rate of strain A \[1/s\].
     pub strain: f64,

@@ -60,7 +60,7 @@ impl Topology {
 }
 
 /// Particles that were neighbours once.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bonds(Vec<[usize; 2]>);
 
 impl Bonds {

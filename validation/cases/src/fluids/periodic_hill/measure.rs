@@ -1,6 +1,7 @@
 //! What is measured: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
+use serde::{Deserialize, Serialize};
 use touchstone_solver::{
     EquationOfState, Particle, Role, Stepper,
     inverse::{Inverse, of_three},
@@ -148,7 +149,7 @@ impl<'a> Field<'a> {
 }
 
 /// Sums over samples of the last part of the run.
-#[derive(Default)]
+#[derive(Default, Serialize, Deserialize)]
 pub struct Window {
     /// u and v at the points of the stations.
     sections: Vec<[f64; 2]>,
@@ -158,8 +159,6 @@ pub struct Window {
     pub forces: Vec<[f64; 2]>,
     samples: usize,
 }
-
-touchstone_harness::observed! { Window: changes(sections, wall, forces, samples), stays() }
 
 /// The places of the stations: x, y, weight of the section's height.
 fn places(setup: &Setup) -> Vec<[f64; 2]> {

@@ -1,5 +1,6 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
+use serde::{Deserialize, Serialize};
 use touchstone_base::{functions::exp, record::*};
 use touchstone_harness::{
     case::RunError,
@@ -36,7 +37,7 @@ fn is_last(time: f64, end: f64, length: f64) -> bool {
 /// f = d whatever d is.
 ///
 /// With t = T/4 both roots are −2/T: the fastest without overshoot.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Controller {
     /// u* \[m/s\].
     wanted: f64,
@@ -47,8 +48,6 @@ pub struct Controller {
     /// u at the last look \[m/s\].
     last: f64,
 }
-
-touchstone_harness::observed! { Controller: changes(wanted, response, force, last), stays() }
 
 impl Controller {
     /// Looks at the mean velocity after `dt` \[s\].
@@ -64,6 +63,7 @@ impl Controller {
 }
 
 /// Holds the flux and samples the flow through time.
+#[derive(Serialize, Deserialize)]
 pub struct Monitor {
     controller: Controller,
     window: Window,
@@ -77,10 +77,6 @@ pub struct Monitor {
     mean: f64,
     /// Has the controller acted? The force of another code is not known.
     has_acted: bool,
-}
-
-touchstone_harness::observed! {
-    Monitor: changes(controller, window, series, mean, has_acted), stays(area, stretch)
 }
 
 impl Monitor {

@@ -1,6 +1,7 @@
 //! One run of the vortices: scene, stepping, record.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
@@ -93,12 +94,12 @@ const DECAYED: f64 = 0.01;
 const SAMPLES: usize = 40;
 
 /// The particles at the start, and time and error at the samples.
+#[derive(Serialize, Deserialize)]
 pub struct Series {
+    #[serde(with = "touchstone_harness::checkpoint::particles")]
     start: Vec<Particle>,
     errors: Vec<[f64; 2]>,
 }
-
-touchstone_harness::observed! { Series: changes(errors), stays(start) }
 
 impl Problem for Setup {
     type Extra = ();

@@ -1,5 +1,6 @@
 //! One operator: scene, steps, record.
 
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
@@ -229,11 +230,11 @@ impl Sampled {
 }
 
 /// The particles at the start.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Start {
+    #[serde(with = "touchstone_harness::checkpoint::particles")]
     particles: Vec<Particle>,
 }
-
-touchstone_harness::observed! { Start: changes(), stays(particles) }
 
 impl Problem for Sampled {
     type Extra = ();

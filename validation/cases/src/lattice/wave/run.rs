@@ -1,5 +1,6 @@
 //! One run of a mode: scene, stepping, projection, record.
 
+use serde::{Deserialize, Serialize};
 use std::iter::once;
 
 use nalgebra::Vector2;
@@ -41,6 +42,7 @@ pub(super) struct Wave {
 }
 
 /// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Projection {
     /// cos and sin of the phase of each label, over the sum of their squares.
     basis: Vec<[f64; 2]>,
@@ -48,8 +50,6 @@ pub(super) struct Projection {
     /// Σ m v after the first step and the last \[kg m/s\].
     momentum: Option<[[f64; 2]; 2]>,
 }
-
-touchstone_harness::observed! { Projection: changes(series, momentum), stays(basis) }
 
 impl Wave {
     /// A wave of these settings in the lattice of a method.

@@ -1,6 +1,7 @@
 //! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
 
 use super::*;
+use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
@@ -11,8 +12,10 @@ const ENERGY_EVERY: usize = 10;
 pub const LEAST_POINTS: usize = 400;
 
 /// The motion of the end.
+#[derive(Serialize, Deserialize)]
 pub struct End {
     /// Of the bar.
+    #[serde(with = "touchstone_base::settings::as_json")]
     pub settings: CantileverSettings,
     /// When it is sampled next \[s\].
     pub until: f64,
@@ -21,8 +24,6 @@ pub struct End {
     /// t \[s\], kinetic energy and all energy, less that of the start \[J/m\].
     pub energies: Vec<[f64; 3]>,
 }
-
-touchstone_harness::observed! { End: changes(until, path, energies), stays(settings) }
 
 impl End {
     fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {

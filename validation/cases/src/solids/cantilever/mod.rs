@@ -139,6 +139,8 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
 }
 
 impl Body for CantileverSettings {
+    type Watch = End;
+
     fn common(&self) -> Common {
         self.solid.common()
     }
@@ -178,9 +180,9 @@ impl Body for CantileverSettings {
         row(0.0, columns).chain(held).collect()
     }
 
-    fn watch(&self, _: &[Particle<Symmetric>], _: Option<Energy>) -> Box<dyn Watch> {
+    fn watch(&self, _: &[Particle<Symmetric>], _: Option<Energy>) -> End {
         let (path, energies) = (vec![[0.0; 3]], vec![[0.0; 3]]);
-        Box::new(End { settings: self.clone(), until: 0.0, path, energies })
+        End { settings: self.clone(), until: 0.0, path, energies }
     }
 }
 

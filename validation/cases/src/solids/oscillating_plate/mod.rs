@@ -3,6 +3,7 @@
 mod plan;
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use touchstone_base::{functions::*, gate::*, record::*};
 use touchstone_harness::{case::*, composed::*, declare::*, table::*};
@@ -111,6 +112,8 @@ fn mode(x: f64) -> f64 {
 }
 
 impl Body for PlateSettings {
+    type Watch = Tip;
+
     fn common(&self) -> Common {
         self.solid.common()
     }
@@ -136,13 +139,15 @@ impl Body for PlateSettings {
         free.chain(held.map(|x| at(x, 0.0).with_role(Role::Wall))).collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Box<dyn Watch> {
-        Box::new(Tip::new(self, start))
+    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> Tip {
+        Tip::new(self, start)
     }
 }
 
 /// The motion of the tip.
+#[derive(Serialize, Deserialize)]
 pub struct Tip {
+    #[serde(with = "touchstone_base::settings::as_json")]
     settings: PlateSettings,
     until: u64,
     /// Energy at the start \[J/m\].
@@ -150,8 +155,6 @@ pub struct Tip {
     /// t \[s\], displacements of the tip along the plate and upwards \[m\].
     series: Vec<[f64; 3]>,
 }
-
-touchstone_harness::observed! { Tip: changes(until, series), stays(settings, energy) }
 
 impl Tip {
     fn new(s: &PlateSettings, start: &[Particle<Symmetric>]) -> Self {

@@ -1,5 +1,6 @@
 //! What is measured of the rings, sample by sample and at the end.
 
+use serde::{Deserialize, Serialize};
 use touchstone_maths::geometry::{Bonds, Topology};
 
 use super::*;
@@ -56,15 +57,15 @@ pub fn halves<T>(particles: &[T]) -> [&[T]; 2] {
 type Solid = Particle<Symmetric>;
 
 /// Watches a run.
+#[derive(Serialize, Deserialize)]
 pub struct Series {
+    #[serde(with = "touchstone_base::settings::as_json")]
     settings: RingSettings,
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
     next: f64,
     rows: Vec<[f64; COLUMNS]>,
 }
-
-touchstone_harness::observed! { Series: changes(next, rows), stays(settings, bonds) }
 
 const COLUMNS: usize = 11;
 const NAMES: [(&str, &str); COLUMNS] = [

@@ -24,6 +24,8 @@ impl RingSettings {
 }
 
 impl Body for RingSettings {
+    type Watch = Series;
+
     fn common(&self) -> Common {
         let shear = self.shear_modulus * self.bulk_modulus;
         let material = Material { density: self.rho, bulk: self.bulk_modulus, shear };
@@ -96,8 +98,8 @@ impl Body for RingSettings {
         ring(-1.0).chain(ring(1.0)).collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch> {
-        Box::new(Series::new(self, start, energy))
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Series {
+        Series::new(self, start, energy)
     }
 }
 

@@ -1,12 +1,12 @@
 //! A problem of elasticity: its variants, what every record states, and how it is stepped.
 
 use nalgebra::Vector2;
+use serde::{Serialize, de::DeserializeOwned};
 use touchstone_solver::{Domain, Flow, Particle, Role, Stepper, Symmetric};
 
 use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
 use touchstone_base::{
-    bits::{Bits, OtherBits},
     record::Record,
     settings::{self, Settings, Values},
 };
@@ -62,6 +62,8 @@ pub struct Scales {
 
 /// Elastic bodies, stated by the settings of a case: what differs between cases of solids.
 pub trait Body: Values {
+    /// What measures a run.
+    type Watch: Watch;
     /// Material, h/dx and time step.
     fn common(&self) -> Common;
     /// The material.
@@ -91,7 +93,7 @@ pub trait Body: Values {
     fn particles(&self) -> Vec<Particle<Symmetric>>;
     /// What measures a run with these particles at the start, which have these energies if the method knows
     /// them.
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Box<dyn Watch>;
+    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
     /// Refuses settings that are in their ranges and make no body together.
     ///
     /// # Errors
@@ -111,7 +113,7 @@ pub trait Body: Values {
 }
 
 /// Sees every step of a run and measures it.
-pub trait Watch: Bits {
+pub trait Watch: Serialize + DeserializeOwned {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>);
     /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
@@ -125,7 +127,7 @@ type Alike<B> = Variants<B, Method<Symmetric>>;
 
 /// No variants yet, of a problem that any method runs.
 pub fn no_variants<B: Body + Settings + Clone>() -> Alike<B> {
-    Variants::of(|m, s: &B| Solid::new(m, Box::new(s.clone())))
+    Variants::of(|m, s: &B| Solid::new(m, s.clone()))
 }
 
 /// The variants that every problem has; the methods: that of the paper, and its equations alone.
@@ -148,7 +150,7 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 }
 
 /// What terms are made from.
-pub fn medium(settings: &dyn Body, method: &Properties) -> Medium {
+pub fn medium(settings: &impl Body, method: &Properties) -> Medium {
     let Scales { dx, gravity, .. } = settings.scales();
     let Common { material, h_over_dx, .. } = settings.common();
     let medium = material.medium(method, [dx, h_over_dx * dx]);
@@ -159,7 +161,7 @@ pub fn medium(settings: &dyn Body, method: &Properties) -> Medium {
 const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
-fn rules(method: &Properties, settings: &dyn Body) -> Rules {
+fn rules(method: &Properties, settings: &impl Body) -> Rules {
     let Scales { speed, end, meet, gravity, .. } = settings.scales();
     let Common { material, h_over_dx, dt, courant } = settings.common();
     let medium = medium(settings, method);
@@ -174,16 +176,16 @@ fn rules(method: &Properties, settings: &dyn Body) -> Rules {
 }
 
 /// A run of bodies with a method.
-struct Solid {
+struct Solid<B> {
     method: Method<Symmetric>,
-    body: Box<dyn Body>,
+    body: B,
     scales: Scales,
     medium: Medium,
     rules: Rules,
 }
 
-impl Solid {
-    fn new(method: &Method<Symmetric>, body: Box<dyn Body>) -> Result<Self, RunError> {
+impl<B: Body> Solid<B> {
+    fn new(method: &Method<Symmetric>, body: B) -> Result<Self, RunError> {
         body.check()?;
         let scales = body.scales();
         let (what, value, most) =
@@ -191,25 +193,15 @@ impl Solid {
         if value > most {
             return Err(RunError::TooMuch { what, value, most, setting: "n, thickness or length" });
         }
-        let (medium, rules) =
-            (medium(&*body, &method.properties), rules(&method.properties, &*body));
+        let (medium, rules) = (medium(&body, &method.properties), rules(&method.properties, &body));
         Ok(Self { method: method.clone(), body, scales, medium, rules })
     }
 }
 
-impl Bits for Box<dyn Watch> {
-    fn save(&self, to: &mut Vec<u8>) {
-        (**self).save(to);
-    }
-    fn restore(&mut self, from: &mut &[u8]) -> Result<(), OtherBits> {
-        (**self).restore(from)
-    }
-}
-
-impl Problem for Solid {
+impl<B: Body> Problem for Solid<B> {
     type Extra = Symmetric;
     type Simulation = dyn Stepper<Symmetric>;
-    type Watch = Box<dyn Watch>;
+    type Watch = B::Watch;
     const READS_START: bool = true;
 
     fn method(&self) -> &Method<Symmetric> {

@@ -1,5 +1,6 @@
 //! What is measured of the water: front, heights, levels, potential energy, and pressure on the far wall.
 
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
 use super::*;
@@ -64,6 +65,7 @@ fn centre(water: &[Particle]) -> f64 {
 }
 
 /// Samples of a run.
+#[derive(Serialize, Deserialize)]
 pub struct Samples {
     /// x of the foremost particle at the start, and the floor under the water then \[m\].
     start: [f64; 2],
@@ -78,8 +80,6 @@ pub struct Samples {
     /// Numbers of the particles that have left over the rim.
     spilled: BTreeSet<usize>,
 }
-
-touchstone_harness::observed! { Samples: changes(start, rows, released, outside, fastest, spilled), stays() }
 
 impl Samples {
     /// None yet.
@@ -189,6 +189,7 @@ impl Samples {
 }
 
 /// A point of a sensor: place, share of the sensor, and the part of the kernel that lies in the tank.
+#[derive(Serialize, Deserialize)]
 struct Spot {
     place: Vector2<f64>,
     share: f64,
@@ -203,8 +204,8 @@ const BLOCK: f64 = 0.01;
 /// At a point of the wall p = Σ V p W/max(Σ V W, φ/2), φ the part of the kernel inside of the tank:
 /// the mean of the water that is near, falling to 0 where less than half of the place is wet. A sensor is
 /// the mean over its disk.
+#[derive(Serialize, Deserialize)]
 pub struct Gauge {
-    eos: Tait,
     /// x beyond which water is in reach of the wall \[m\].
     reach: f64,
     sensors: Vec<Vec<Spot>>,
@@ -220,15 +221,15 @@ impl Gauge {
         let wall = dam.tank.width();
         let sensors = if dam.is_lobovsky() { &SENSORS[..] } else { &[] };
         let sensors = sensors.iter().map(|y| spots((support, weight), wall, *y)).collect();
-        Self { eos: dam.medium.eos, reach: wall - support, sensors, rows: Vec::new() }
+        Self { reach: wall - support, sensors, rows: Vec::new() }
     }
 
-    fn read(&self, simulation: &dyn Stepper<()>) -> Vec<f64> {
+    fn read(&self, dam: &Dam, simulation: &dyn Stepper<()>) -> Vec<f64> {
         let near: Vec<(Vector2<f64>, f64, f64)> = simulation
             .data()
             .fluid()
             .filter(|(_, p)| p.position.x > self.reach)
-            .map(|(mass, p)| (p.position, mass / p.density, self.eos.pressure(p.density)))
+            .map(|(mass, p)| (p.position, mass / p.density, dam.medium.eos.pressure(p.density)))
             .collect();
         let at = |spot: &Spot| {
             let (mut wet, mut sum) = (0.0, 0.0);
@@ -243,9 +244,9 @@ impl Gauge {
     }
 
     /// Reads the sensors after a step.
-    pub fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
+    pub fn after_step(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) -> Flow {
         if !self.sensors.is_empty() {
-            let p = self.read(simulation);
+            let p = self.read(dam, simulation);
             self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
         }
         Flow::Continue
@@ -294,8 +295,6 @@ fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
         .fold(0.0, |sum, (x, y)| sum + cell * cell * weight(x * x + y * y))
 }
 
-touchstone_harness::observed! { Gauge: changes(rows), stays(eos, reach, sensors) }
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -313,8 +312,8 @@ mod tests {
 
     impl Gauge {
         /// A gauge that has read these t \[s\] and pressures \[Pa\].
-        pub fn made_up(dam: &Dam, rows: Vec<[f64; 5]>) -> Self {
-            Self { eos: dam.medium.eos, reach: 0.0, sensors: Vec::new(), rows }
+        pub fn made_up(rows: Vec<[f64; 5]>) -> Self {
+            Self { reach: 0.0, sensors: Vec::new(), rows }
         }
     }
 
@@ -493,14 +492,14 @@ mod tests {
         };
         let full = wall(1.0);
         let gauge = Gauge::new(&tank, 2.0 * tank.medium.h, &|r2| full.weight(r2));
-        let read = gauge.read(&*full);
+        let read = gauge.read(&tank, &*full);
         for (value, height) in read.iter().zip(SENSORS) {
             let error = (value / pressure(height) - 1.0).abs();
             assert!(error < 2e-3, "{height} m: {error}");
         }
         // Only the highest sensor has no floor in its reach: a half of its kernel is in the tank, and a
         // quarter of that is wet, half of what counts as all.
-        let dry = gauge.read(&*wall(0.25))[3] / read[3];
+        let dry = gauge.read(&tank, &*wall(0.25))[3] / read[3];
         assert!((dry - 0.5).abs() < 5e-3, "{dry}");
     }
 
@@ -513,7 +512,7 @@ mod tests {
             let step = if k < 10 { 0.0 } else { 4.0 * scale };
             [t * unit, t * scale, 10.0 * t * scale, 0.0, step]
         };
-        let gauge = Gauge::made_up(&tank, (0..20).map(row).collect());
+        let gauge = Gauge::made_up((0..20).map(row).collect());
         let record = record(&tank, |record| gauge.measure(&tank, record));
         let [t, one, two, four] =
             ["t", "P1", "P2", "P4"].map(|name| record.column("pressure", name));

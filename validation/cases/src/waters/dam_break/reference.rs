@@ -400,7 +400,7 @@ mod tests {
             1,
         );
         Samples::made_up(samples).measure(dam, &mut record);
-        Gauge::made_up(dam, pressures).measure(dam, &mut record);
+        Gauge::made_up(pressures).measure(dam, &mut record);
         compare(dam, &mut record);
         let value = move |metric: MetricName| record.value(metric.clone());
         Box::new(move |metric| value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}")))

@@ -1,5 +1,6 @@
 //! One run of the collapse: scene, stepping, record.
 
+use serde::{Deserialize, Serialize};
 use touchstone_base::absent::NOT_ASKED;
 
 use touchstone_maths::metrics::budget::Metered;
@@ -32,6 +33,7 @@ pub const COSTLY: &[MetricKey] = &{
 };
 
 /// All that accumulates over a run.
+#[derive(Serialize, Deserialize)]
 pub struct Watch {
     gauge: Gauge,
     samples: Samples,
@@ -41,8 +43,6 @@ pub struct Watch {
     /// Which of the times is that of the picture.
     pictured: usize,
 }
-
-touchstone_harness::observed! { Watch: changes(gauge, samples, ledger), stays(filled, pictured) }
 
 /// Keeps the particles with their pressure for a picture.
 fn picture(dam: &Dam, simulation: &dyn Metered<()>, record: &mut Record) {
@@ -78,7 +78,7 @@ impl Problem for Dam {
         Watch {
             gauge: Gauge::new(self, support, &|r2| simulation.weight(r2)),
             samples: Samples::new(),
-            ledger: Ledger::new(&self.medium),
+            ledger: Ledger::default(),
             filled: water_mass(&simulation.particles()),
             pictured: stops(self).1,
         }
@@ -87,12 +87,12 @@ impl Problem for Dam {
     fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
         calls
             .when(self.is_lobovsky(), |calls| {
-                calls.after_step("pressure gauges", |_, watch, s| watch.gauge.after_step(s))
+                calls.after_step("pressure gauges", |dam, watch, s| watch.gauge.after_step(dam, s))
             })
             .at_positions("front and levels", |dam, watch, s, _, _| watch.samples.sample(dam, s))
             .when(asked.all, |calls| {
                 let name = "energy ledger and momentum";
-                calls.at(name, |_, watch, s, _, _| watch.ledger.sample(s))
+                calls.at(name, |dam, watch, s, _, _| watch.ledger.sample(&dam.medium, s))
             })
             .when(asked.particles, |calls| {
                 calls.at_positions("picture", |dam, watch, s, k, record| {

@@ -2,6 +2,7 @@
 //! momentum against the impulse of walls and gravity.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::record::{MetricKey, Profile, Record};
 use touchstone_harness::method::Medium;
 use touchstone_maths::metrics::{
@@ -29,8 +30,8 @@ pub const METRICS: [MetricKey; 6] =
     [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
 /// Keeps the balances of a run.
+#[derive(Default, Serialize, Deserialize)]
 pub struct Ledger {
-    water: Water,
     /// At the last sample.
     powers: Powers,
     /// Momentum at the start \[kg/s\], force at the last sample \[N/m\], impulse since the start by the
@@ -43,25 +44,14 @@ pub struct Ledger {
     rows: Vec<[f64; 9]>,
 }
 
-touchstone_harness::observed! {
-    Ledger: changes(powers, start, force, impulse, unexplained, rows), stays(water)
-}
-
 impl Ledger {
-    /// An empty ledger of water of this medium.
-    pub fn new(medium: &Medium) -> Self {
-        let water = Water { eos: medium.eos, gravity: medium.acceleration };
-        let [start, force, impulse] = [Vector2::zeros(); 3];
-        let (powers, unexplained, rows) = ([0.0; 5], 0.0, Vec::new());
-        Self { water, powers, start, force, impulse, unexplained, rows }
-    }
-
     /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample(&mut self, simulation: &mut dyn Metered<()>) {
-        let (powers, pairs) = simulation.powers(&water_slope(&self.water));
+    pub fn sample(&mut self, medium: &Medium, simulation: &mut dyn Metered<()>) {
+        let water = Water { eos: medium.eos, gravity: medium.acceleration };
+        let (powers, pairs) = simulation.powers(&water_slope(&water));
         let time = simulation.time();
-        self.balance_momentum(&*simulation, pairs);
-        let Energy { kinetic, potential, compression } = self.water.energy(&*simulation);
+        self.balance_momentum(&*simulation, water.gravity, pairs);
+        let Energy { kinetic, potential, compression } = water.energy(&*simulation);
         let [a, b, c, d, e] = self.works(time, &powers);
         self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
         self.powers = powers;
@@ -76,11 +66,16 @@ impl Ledger {
     }
 
     /// Adds the impulse since the last sample; `pairs` is the force of all pairs on the water \[N/m\].
-    fn balance_momentum(&mut self, simulation: &dyn Stepper<()>, pairs: Vector2<f64>) {
+    fn balance_momentum(
+        &mut self,
+        simulation: &dyn Stepper<()>,
+        gravity: Vector2<f64>,
+        pairs: Vector2<f64>,
+    ) {
         let (mut momentum, mut force) = (Vector2::zeros(), pairs);
         for (mass, p) in simulation.data().fluid() {
             momentum += p.velocity * mass;
-            force += self.water.gravity * mass;
+            force += gravity * mass;
         }
         match self.rows.last() {
             None => self.start = momentum,
@@ -154,16 +149,17 @@ mod tests {
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
         // A free fall: gravity gives what the water has.
         let mut falling = particles(&medium, 0.0, Vector2::zeros());
-        let mut ledger = Ledger::new(&medium);
+        let mut ledger = Ledger::default();
         for k in 0..4 {
             falling.advance(0.01 * f64::from(k), 1e-3, &mut ());
-            ledger.sample(&mut *falling);
+            ledger.sample(&medium, &mut *falling);
         }
         assert!(ledger.unexplained_momentum() < 1e-12, "{:e}", ledger.unexplained_momentum());
         // A kick of all masses, of 6 kg/m, and then a smaller one: the largest counts.
-        let mut ledger = Ledger::new(&Medium { acceleration: Vector2::zeros(), ..medium });
+        let mut ledger = Ledger::default();
+        let medium = Medium { acceleration: Vector2::zeros(), ..medium };
         for v in [Vector2::zeros(), Vector2::new(0.3, 0.4), Vector2::new(0.1, 0.0)] {
-            ledger.sample(&mut *particles(&medium, 0.0, v));
+            ledger.sample(&medium, &mut *particles(&medium, 0.0, v));
         }
         assert!((ledger.unexplained_momentum() - 6.0 * 0.5).abs() < 1e-9);
     }
@@ -172,10 +168,10 @@ mod tests {
     fn energy_that_no_term_gave_is_the_gap_and_works_are_integrals_over_the_scale() {
         let medium = modern().properties.medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
-        let mut ledger = Ledger::new(&medium);
+        let mut ledger = Ledger::default();
         // 6 kg/m: at rest; 0.2 m higher, 12 J/m; at 3 m/s, 27 J/m.
         for (height, v) in [(0.0, 0.0), (0.2, 0.0), (0.0, 3.0)] {
-            ledger.sample(&mut *particles(&medium, height, Vector2::new(v, 0.0)));
+            ledger.sample(&medium, &mut *particles(&medium, height, Vector2::new(v, 0.0)));
         }
         assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
