@@ -83,42 +83,35 @@ impl Numbers for f64 {
 /// The numbers of a set with a lane in place of each.
 pub type In<N, V> = <N as Numbers>::In<V>;
 
-/// Implements [`Numbers`] for a struct of numbers, field by field.
-macro_rules! fields_of_numbers {
-    ($Struct:ident ($($field:ident),+); $($more:item)*) => {
-        impl Numbers for $Struct<f64> {
-            type In<V: PerParticle> = $Struct<V>;
+impl Numbers for Vector2<f64> {
+    type In<V: PerParticle> = Vector2<V>;
 
-            #[inline(always)]
-            fn spread<V: PerParticle>(self) -> $Struct<V> {
-                $Struct::new($(V::all(self.$field)),+)
-            }
-            #[inline(always)]
-            fn load<V: Lane>(many: &$Struct<Buffer>, from: usize) -> $Struct<V> {
-                $Struct::new($(V::load(&many.$field[from..])),+)
-            }
-            #[inline(always)]
-            fn store<V: Lane>(lanes: $Struct<V>, many: &mut $Struct<Buffer>, from: usize) {
-                $(lanes.$field.store(&mut many.$field[from..]);)+
-            }
-            #[inline(always)]
-            fn one(lane: Self) -> Self {
-                lane
-            }
-            #[inline(always)]
-            fn advanced(self, dt: f64, rate: Self) -> Self {
-                self + rate * dt
-            }
-            #[inline(always)]
-            fn is_finite(&self) -> bool {
-                true $(&& self.$field.is_finite())+
-            }
-            $($more)*
-        }
-    };
+    #[inline(always)]
+    fn spread<V: PerParticle>(self) -> Vector2<V> {
+        Vector2::new(V::all(self.x), V::all(self.y))
+    }
+    #[inline(always)]
+    fn load<V: Lane>(many: &Vector2<Buffer>, from: usize) -> Vector2<V> {
+        Vector2::new(V::load(&many.x[from..]), V::load(&many.y[from..]))
+    }
+    #[inline(always)]
+    fn store<V: Lane>(lanes: Vector2<V>, many: &mut Vector2<Buffer>, from: usize) {
+        lanes.x.store(&mut many.x[from..]);
+        lanes.y.store(&mut many.y[from..]);
+    }
+    #[inline(always)]
+    fn one(lane: Self) -> Self {
+        lane
+    }
+    #[inline(always)]
+    fn advanced(self, dt: f64, rate: Self) -> Self {
+        self + rate * dt
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
 }
-
-fields_of_numbers! { Vector2 (x, y); }
 
 /// A symmetric tensor of the plane: three numbers, not four.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -170,8 +163,39 @@ impl<V: Lane> std::ops::Mul<V> for Symmetric<V> {
     }
 }
 
-fields_of_numbers! {
-    Symmetric (xx, yy, xy);
+impl Numbers for Symmetric<f64> {
+    type In<V: PerParticle> = Symmetric<V>;
+
+    #[inline(always)]
+    fn spread<V: PerParticle>(self) -> Symmetric<V> {
+        Symmetric::new(V::all(self.xx), V::all(self.yy), V::all(self.xy))
+    }
+    #[inline(always)]
+    fn load<V: Lane>(many: &Symmetric<Buffer>, from: usize) -> Symmetric<V> {
+        Symmetric::new(
+            V::load(&many.xx[from..]),
+            V::load(&many.yy[from..]),
+            V::load(&many.xy[from..]),
+        )
+    }
+    #[inline(always)]
+    fn store<V: Lane>(lanes: Symmetric<V>, many: &mut Symmetric<Buffer>, from: usize) {
+        lanes.xx.store(&mut many.xx[from..]);
+        lanes.yy.store(&mut many.yy[from..]);
+        lanes.xy.store(&mut many.xy[from..]);
+    }
+    #[inline(always)]
+    fn one(lane: Self) -> Self {
+        lane
+    }
+    #[inline(always)]
+    fn advanced(self, dt: f64, rate: Self) -> Self {
+        self + rate * dt
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        self.xx.is_finite() && self.yy.is_finite() && self.xy.is_finite()
+    }
     fn stress(&self) -> Option<Symmetric> {
         Some(*self)
     }

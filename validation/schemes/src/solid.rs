@@ -88,7 +88,7 @@ impl Walls<Symmetric> for Clamp {
 }
 
 impl Boundary for Clamp {
-    const NAME: &'static str = "clamp";
+    const NAME: &str = "clamp";
     const FIRST_ROW: FirstRow = FirstRow::Behind;
     fn new(medium: &Medium, _: Vec<PlaneWall>) -> Self {
         Self { shear_modulus: medium.shear_modulus }

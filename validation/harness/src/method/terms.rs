@@ -138,41 +138,71 @@ impl FirstRow {
 /// Walls that can be constructed from a medium and from the planes that mirror the fluid.
 pub trait Boundary: Sized {
     /// The name in reports.
-    const NAME: &'static str;
+    const NAME: &str;
     /// Its boundary particles.
     const FIRST_ROW: FirstRow;
     /// The settings that only some walls read and these do.
-    const USES: &'static [Knob] = &[];
+    const USES: &[Knob] = &[];
     /// The walls.
     fn new(medium: &Medium, mirrors: Vec<PlaneWall>) -> Self;
 }
 
-/// `Type = name, first row (settings that it reads), |medium, mirrors| value`.
-macro_rules! boundaries {
-    ($($type:ty = $name:literal, $first_row:ident ($($knob:ident),*), $new:expr;)+) => {$(
-        impl Boundary for $type {
-            const NAME: &'static str = $name;
-            const FIRST_ROW: FirstRow = FirstRow::$first_row;
-            const USES: &'static [Knob] = &[$(Knob::$knob),*];
-            fn new(medium: &Medium, mirrors: Vec<PlaneWall>) -> Self {
-                let new: fn(&Medium, Vec<PlaneWall>) -> Self = $new;
-                new(medium, mirrors)
-            }
-        }
-    )+};
+impl Boundary for Open {
+    const NAME: &str = "none";
+    const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    fn new(_: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self
+    }
 }
 
-boundaries! {
-    Open = "none", Nowhere (), |_, _| Self;
-    Ghosts = "ghosts", Nowhere (WallCurvature), |_, walls| Self { walls };
-    SlipGhosts = "ghosts along which water slips", Nowhere (), |_, walls| Self { walls };
-    InterfaceWall = "interface-wall", OnSurface (), |_, _| Self;
-    ExtrapolatingWall<Tait, CurvedNoSlip> = "extrapolating-wall with curvature", Behind (),
-        |m, _| Self::new(m.eos, m.wall_acceleration);
-    ExtrapolatingWall<Tait, NoSlip> = "extrapolating-wall", Behind (),
-        |m, _| Self::new(m.eos, m.wall_acceleration);
-    // Along walls at rest. Their pressure is not below 0, because above a free surface a wall must not
-    // attract the water.
-    ExtrapolatingWall<Tait> = "extrapolating-wall", Behind (WallGravity),
-        |m, _| Self { least_pressure: 0.0, ..Self::new(m.eos, m.wall_acceleration) };
+impl Boundary for Ghosts {
+    const NAME: &str = "ghosts";
+    const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    const USES: &[Knob] = &[Knob::WallCurvature];
+    fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {
+        Self { walls }
+    }
+}
+
+impl Boundary for SlipGhosts {
+    const NAME: &str = "ghosts along which water slips";
+    const FIRST_ROW: FirstRow = FirstRow::Nowhere;
+    fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {
+        Self { walls }
+    }
+}
+
+impl Boundary for InterfaceWall {
+    const NAME: &str = "interface-wall";
+    const FIRST_ROW: FirstRow = FirstRow::OnSurface;
+    fn new(_: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self
+    }
+}
+
+impl Boundary for ExtrapolatingWall<Tait, CurvedNoSlip> {
+    const NAME: &str = "extrapolating-wall with curvature";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    fn new(m: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self::new(m.eos, m.wall_acceleration)
+    }
+}
+
+impl Boundary for ExtrapolatingWall<Tait, NoSlip> {
+    const NAME: &str = "extrapolating-wall";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    fn new(m: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self::new(m.eos, m.wall_acceleration)
+    }
+}
+
+// Along walls at rest. Their pressure is not below 0, because above a free surface a wall must not
+// attract the water.
+impl Boundary for ExtrapolatingWall<Tait> {
+    const NAME: &str = "extrapolating-wall";
+    const FIRST_ROW: FirstRow = FirstRow::Behind;
+    const USES: &[Knob] = &[Knob::WallGravity];
+    fn new(m: &Medium, _: Vec<PlaneWall>) -> Self {
+        Self { least_pressure: 0.0, ..Self::new(m.eos, m.wall_acceleration) }
+    }
 }

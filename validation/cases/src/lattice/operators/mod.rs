@@ -50,6 +50,7 @@ enum Operator {
 }
 
 /// A variant: an operator of a kernel.
+#[derive(Clone, Copy)]
 struct Subject {
     name: &'static str,
     kernel: &'static str,
@@ -91,30 +92,35 @@ impl Subject {
     }
 }
 
-/// The operators of a kernel: its name, its methods (sums, plain, corrected), and h/dx.
-macro_rules! subjects {
-    ($kernel:literal, $methods:expr, $ratio:literal) => {{
-        const fn of(
-            name: &'static str,
-            operator: Operator,
-            is_corrected: bool,
-            method: fn() -> Method,
-        ) -> Subject {
-            let kernel = $kernel;
-            let adjust = |s: &mut OperatorSettings| s.h_over_dx = $ratio;
-            Subject { name, kernel, operator, is_corrected, adjust, method }
-        }
-        let [sum, plain, corrected]: [fn() -> Method; 3] = $methods;
-        [
-            of(concat!($kernel, "-density"), Operator::Density, false, sum),
-            of(concat!($kernel, "-gradient"), Operator::Gradient, false, plain),
-            of(concat!($kernel, "-gradient-corrected"), Operator::Gradient, true, corrected),
-            of(concat!($kernel, "-laplacian"), Operator::Laplacian, false, plain),
-            of(concat!($kernel, "-laplacian-corrected"), Operator::Laplacian, true, corrected),
-            of(concat!($kernel, "-divergence"), Operator::Divergence, false, plain),
-            of(concat!($kernel, "-divergence-corrected"), Operator::Divergence, true, corrected),
-        ]
-    }};
+/// The operators of a kernel: its name, its methods (sums, plain, corrected), its h/dx, and the names of the
+/// variants.
+const fn subjects_of(
+    kernel: &'static str,
+    [sum, plain, corrected]: [fn() -> Method; 3],
+    adjust: fn(&mut OperatorSettings),
+    names: [&'static str; 7],
+) -> [Subject; 7] {
+    let [density, gradient, gradient_corrected, laplacian, laplacian_corrected, rest @ ..] = names;
+    let [divergence, divergence_corrected] = rest;
+    let plain = Subject {
+        name: gradient,
+        kernel,
+        operator: Operator::Gradient,
+        is_corrected: false,
+        adjust,
+        method: plain,
+    };
+    let corrected =
+        Subject { name: gradient_corrected, is_corrected: true, method: corrected, ..plain };
+    [
+        Subject { name: density, operator: Operator::Density, method: sum, ..plain },
+        plain,
+        corrected,
+        Subject { name: laplacian, operator: Operator::Laplacian, ..plain },
+        Subject { name: laplacian_corrected, operator: Operator::Laplacian, ..corrected },
+        Subject { name: divergence, operator: Operator::Divergence, ..plain },
+        Subject { name: divergence_corrected, operator: Operator::Divergence, ..corrected },
+    ]
 }
 
 /// The kernel of `modern` variants, whose ladders are in the quick tier too.
@@ -124,12 +130,47 @@ const CUBIC: &str = "cubic";
 
 /// All variants. h/dx is what variants of the cases of this program have with the kernel.
 static SUBJECTS: [[Subject; 7]; 3] = [
-    subjects!("quintic", [lattice::quintic_sum, lattice::quintic, lattice::quintic_corrected], 1.0),
-    subjects!("cubic", [lattice::cubic_sum, lattice::cubic, lattice::cubic_corrected], 1.3),
-    subjects!(
+    subjects_of(
+        QUINTIC,
+        [lattice::quintic_sum, lattice::quintic, lattice::quintic_corrected],
+        |s| s.h_over_dx = 1.0,
+        [
+            "quintic-density",
+            "quintic-gradient",
+            "quintic-gradient-corrected",
+            "quintic-laplacian",
+            "quintic-laplacian-corrected",
+            "quintic-divergence",
+            "quintic-divergence-corrected",
+        ],
+    ),
+    subjects_of(
+        CUBIC,
+        [lattice::cubic_sum, lattice::cubic, lattice::cubic_corrected],
+        |s| s.h_over_dx = 1.3,
+        [
+            "cubic-density",
+            "cubic-gradient",
+            "cubic-gradient-corrected",
+            "cubic-laplacian",
+            "cubic-laplacian-corrected",
+            "cubic-divergence",
+            "cubic-divergence-corrected",
+        ],
+    ),
+    subjects_of(
         "wendland",
         [lattice::wendland_sum, lattice::wendland, lattice::wendland_corrected],
-        2.0
+        |s| s.h_over_dx = 2.0,
+        [
+            "wendland-density",
+            "wendland-gradient",
+            "wendland-gradient-corrected",
+            "wendland-laplacian",
+            "wendland-laplacian-corrected",
+            "wendland-divergence",
+            "wendland-divergence-corrected",
+        ],
     ),
 ];
 

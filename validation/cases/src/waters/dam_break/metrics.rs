@@ -12,26 +12,34 @@ pub struct Distance {
     pub shift: MetricKey,
 }
 
-macro_rules! distance {
-    ($name:literal) => {{
-        let rms = "rms distance of {} over the points of the experiment";
-        let shifted =
-            concat!("the same with the clock of the computation put forward by ", $name, "_shift");
-        let shift = "that shift, of the least rms, in the experiment's unit of time";
-        Distance {
-            rms: MetricKey::new(concat!($name, "_rms"), "-", rms),
-            rms_shifted: MetricKey::new(concat!($name, "_rms_shifted"), "-", shifted),
-            shift: MetricKey::new(concat!($name, "_shift"), "-", shift),
-        }
-    }};
+const fn distance(
+    [rms, rms_shifted, shift]: [&'static str; 3],
+    formula_shifted: &'static str,
+) -> Distance {
+    let formula = "rms distance of {} over the points of the experiment";
+    let formula_shift = "that shift, of the least rms, in the experiment's unit of time";
+    Distance {
+        rms: MetricKey::new(rms, "-", formula),
+        rms_shifted: MetricKey::new(rms_shifted, "-", formula_shifted),
+        shift: MetricKey::new(shift, "-", formula_shift),
+    }
 }
 
 /// Of the front.
-pub const FRONT: Distance = distance!("front");
+pub const FRONT: Distance = distance(
+    ["front_rms", "front_rms_shifted", "front_shift"],
+    "the same with the clock of the computation put forward by front_shift",
+);
 /// Of the residual height.
-pub const HEIGHT: Distance = distance!("height");
+pub const HEIGHT: Distance = distance(
+    ["height_rms", "height_rms_shifted", "height_shift"],
+    "the same with the clock of the computation put forward by height_shift",
+);
 /// Of the levels.
-pub const LEVELS: Distance = distance!("levels");
+pub const LEVELS: Distance = distance(
+    ["levels_rms", "levels_rms_shifted", "levels_shift"],
+    "the same with the clock of the computation put forward by levels_shift",
+);
 
 touchstone_base::metrics! {
     all ALL;
