@@ -90,18 +90,17 @@ const linked = await open({ viewport: wide }, "#" + encodeURIComponent(id));
 check("a link to a gate shows it with its reasons", (await linked.locator(`tr[id="${id}"]`).isVisible())
   && (await linked.locator("tr.why p").first().innerText()).length > 10);
 await linked.close();
-const chip = page.locator(".subject .counts a").first();
+const chip = page.locator("section .counts a[href*='case=']").first();
 if (await chip.count()) {
   await chip.click();
   const wanted = new URLSearchParams((await chip.getAttribute("href")).split("?")[1]);
   const form = page.locator(".filters");
-  check("a count on a card filters the verdicts",
+  check("a count in a case filters the verdicts",
     (await form.locator("select[name=status]").inputValue()) === wanted.get("status")
     && (await form.locator("select[name=case]").inputValue()) === wanted.get("case"));
 }
 const figure = await page.locator("figure").first().getAttribute("id");
 const atFigure = await open({ viewport: wide }, "#" + figure);
-// The page scrolls smoothly, which takes a while on a busy machine.
 const arrived = await atFigure.waitForFunction((id) => {
   const box = document.getElementById(id).getBoundingClientRect();
   return box.top < innerHeight && box.bottom > 0;

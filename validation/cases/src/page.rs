@@ -6,72 +6,158 @@ use touchstone_base::{
     record::Record,
     reference::Reference,
     spec::{RunSpec, Task},
+    submission::OURS,
 };
 use touchstone_harness::{
     case::{self, Case},
     columns::Columns,
     notes::Notes,
     runs::{Judged, JudgedRun, counts},
+    studies::{self, against_run_time, headline},
     study::Study,
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use touchstone_report::{
-    Block, Card, Cell, Column, Counts, Explorer, Page, Section, Table, VERDICTS, code, counted,
-    plain,
+    Block, Cell, Column, Counts, Explorer, Figure, Overview, Page, Section, Table, VERDICTS, code,
+    counted, percent, plain,
 };
 
 use crate::{limitations, stiffness, time};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
-    let manifest = Manifest::of_this_process(rayon::current_num_threads());
-    let (mut cards, mut others) = (Vec::new(), Vec::new());
-    for results in &suite.cases {
-        match &results.card {
-            Some(card) => cards.push(with_grades(card.clone())),
-            None => {
-                let name = results.case.name();
-                others.push(format!("[{name}](#{name}) {}", results.counts().short()));
-            }
-        }
+    let (main, others): (Vec<_>, Vec<_>) =
+        suite.cases.iter().partition(|results| results.declared.card.is_some());
+    let overview = |of: &[&CaseResults], caption: &str| Overview {
+        caption: caption.into(),
+        columns: studies::columns(),
+        rows: of.iter().filter_map(|results| results.row.clone()).collect(),
+    };
+    let mut opening = vec![Block::Prose(recommended(suite)), Block::Figure(errors(&main))];
+    if !others.is_empty() {
+        opening.push(Block::Details {
+            summary: format!("The other {}", counted(others.len(), "case", "cases")),
+            blocks: vec![
+                Block::Overview(overview(&others, "Errors of the other cases")),
+                Block::Prose(without_a_row(&others)),
+            ],
+        });
     }
-    let mut notes = vec![
-        format!("**Supporting cases:** {}.", others.join("; ")),
-        "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
-         known limitation if it lies outside and inside of a second bound, which follows from the cause, or \
-         is fitted to own runs and says so, and fails otherwise; controls must lie outside. \
-         [All verdicts](#verdicts) can be searched, and [limitations](#limitations) are grouped by cause. \
-         Results of other codes and [reference data](#references) are stored; all else comes from the \
-         runs of this report."
-            .to_string(),
-    ];
-    notes.splice(0..0, of_others(suite));
-    let mut sections: Vec<Section> = vec![verdicts(suite), limitations::section(suite)];
-    sections.extend(suite.cases.iter().map(case_section));
+    let mut sections: Vec<Section> = suite.cases.iter().map(case_section).collect();
     sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
+    sections.extend([verdicts(suite), limitations::section(suite), about(suite)]);
     Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
         lead: vec![format!(
-            "{:?} tier, {made}. {}{} {}",
-            suite.tier,
-            cost(suite),
-            reused(suite),
-            provenance(&manifest)
+            "How wrong is a particle method, what does a smaller error cost, and when does it break? \
+             {:?} tier, {made}.",
+            suite.tier
         )],
+        overview: overview(&main, "Errors, costs and limits of the main cases"),
         counts: suite.counts(),
-        cards,
-        notes,
+        opening,
         sections,
         png_folder: "figures".into(),
         ..Page::default()
     }
 }
 
-/// A card that says what stands behind the references of its case.
-fn with_grades(mut card: Card) -> Card {
-    let grades = crate::graded(&card.id).into_iter();
-    card.facts.extend(grades.map(|(name, grade)| (format!("Reference `{name}`:"), grade)));
-    card
+/// Names of cases that no number stands for, with the counts of their gates.
+fn without_a_row(others: &[&CaseResults]) -> Vec<String> {
+    let none = others.iter().filter(|results| results.row.is_none());
+    let link = |results: &&CaseResults| {
+        let name = results.case.name();
+        format!("[{}](#{name}) {}", title(results), results.counts().short())
+    };
+    let links: Vec<String> = none.map(link).collect();
+    match links.is_empty() {
+        true => Vec::new(),
+        false => {
+            vec![format!("Cases of many numbers, judged by their gates: {}.", links.join("; "))]
+        }
+    }
+}
+
+/// What *recommended* means, with the largest error of a variant that is recommended elsewhere.
+fn recommended(suite: &Suite) -> Vec<String> {
+    let worst =
+        suite.cases.iter().find(|results| results.case.name() == "taylor_green").and_then(|of| {
+            let is_shown = |record: &&Record| {
+                record.run.variant == "modern" && record.run.settings["perturb"] == 0.0
+            };
+            let error = |record: &Record| record.value(of.declared.error()?.clone());
+            let all =
+                of.runs.simulations().filter(is_shown).filter_map(|record| {
+                    Some((error(record)?, headline(&of.declared, record).ok()?))
+                });
+            all.max_by(|a, b| a.0.total_cmp(&b.0))
+        });
+    let but = worst.map(|(_, error)| {
+        format!(
+            ": in [vortices from a lattice](#taylor_green) `modern`, which two main cases recommend, is wrong \
+             by **{error}**"
+        )
+    });
+    vec![
+        format!(
+            "*Recommended* is the variant that a case runs unless another one is named; its section says \
+             why. No variant is the best everywhere{}.",
+            but.unwrap_or_default()
+        ),
+        "A number links to its gate; the smaller error is bold. *A tenth of the error*: factors by the \
+         orders of the ladder."
+            .into(),
+    ]
+}
+
+/// Error against run time, a panel a main case.
+fn errors(main: &[&CaseResults]) -> Figure {
+    let panel = |results: &&CaseResults| {
+        against_run_time(&title(results), results.case, &results.declared, &results.runs)
+    };
+    let caption = format!(
+        "What accuracy costs: error against run time on one core. Points of a line are resolutions. Other \
+         codes ran on another machine, in turn with ours{}.",
+        machines(main)
+            .map_or(String::new(), |ratio| format!(", which took {ratio} of the time there"))
+    );
+    let figure = Figure::new("errors", caption).columns(2).panel_size(148.0, 120.0);
+    main.iter().filter_map(panel).fold(figure, Figure::panel)
+}
+
+/// Run times of our own runs on the machine of the other codes over those of this report, least and most.
+fn machines(main: &[&CaseResults]) -> Option<String> {
+    let ratio = |results: &&CaseResults, peer: &JudgedRun| {
+        let peer = &peer.record;
+        let is_ours = peer.run.submission.as_ref().is_some_and(|of| of.code == OURS);
+        let spec = RunSpec { submission: None, ..peer.spec() };
+        let own = results.runs.all.iter().find(|run| run.planned.spec.key() == spec.key())?;
+        is_ours.then_some(peer.cost.cpu_s / own.record.cost.alone_median()?)
+    };
+    let all = main.iter().flat_map(|of| of.runs.peers.iter().filter_map(|peer| ratio(of, peer)));
+    let all: Vec<f64> = all.filter(|ratio| ratio.is_finite()).collect();
+    let ends = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| all.iter().copied().reduce(of));
+    let [low, high] = ends.map(|end| end.map(|end| percent(end, 2)));
+    Some(format!("{} to {}", low?, high?))
+}
+
+/// How this report was made.
+fn about(suite: &Suite) -> Section {
+    let manifest = Manifest::of_this_process(rayon::current_num_threads());
+    let made = format!("{}{} {}", cost(suite), reused(suite), provenance(&manifest));
+    let section = Section::new("about", "About this report").prose(made).prose(
+        "Results of other codes and [reference data](#references) are stored; all else comes from the runs \
+         of this report.",
+    );
+    of_others(suite).into_iter().fold(section, Section::prose)
+}
+
+/// The name of a case in words.
+fn title(results: &CaseResults) -> String {
+    let words = results.case.name().replace('_', " ");
+    let (first, rest) = words.split_at(1);
+    let named = results.declared.card.as_ref().map(|card| card.title.to_string());
+    named.unwrap_or_else(|| first.to_uppercase() + rest)
 }
 
 /// How runs of other codes ended that the store has, and where they are shown.
@@ -157,8 +243,10 @@ fn verdicts(suite: &Suite) -> Section {
     let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
     Section::new(VERDICTS, "All verdicts")
         .prose(
-            "The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the \
-             bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
+            "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
+             known limitation if it lies outside and inside of a second bound, which follows from the cause, \
+             or is fitted to own runs and says so, and fails otherwise; controls must lie outside. The margin \
+             is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
         .block(Block::Details {
@@ -201,7 +289,14 @@ fn judged_on(row: &Row) -> String {
 fn case_section(results: &CaseResults) -> Section {
     let case = results.case;
     let section =
-        Section::new(case.name(), case.name()).counts(results.counts()).prose(case.about());
+        Section::new(case.name(), title(results)).counts(results.counts()).prose(case.about());
+    let recommended = case.recommended();
+    let why = plain(&recommended.reason());
+    let section = section.prose(format!("**Recommended: `{}`**: {why}.", recommended.variant));
+    let grades = crate::graded(case.name()).into_iter();
+    let grades: Vec<String> =
+        grades.map(|(name, grade)| format!("Reference `{name}`: {grade}.")).collect();
+    let section = if grades.is_empty() { section } else { section.prose(grades.join(" ")) };
     let section = results.studies.iter().map(study_section).fold(section, Section::child);
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section.block(Block::Details {

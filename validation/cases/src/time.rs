@@ -13,7 +13,7 @@ type Profiled<'a> = (&'a Record, &'a Breakdown);
 
 /// The largest run of the recommended variant of a case among those that were profiled.
 fn largest(results: &CaseResults) -> Option<Profiled<'_>> {
-    let (_, recommended) = results.recommended()?;
+    let recommended = results.recommended()?;
     let profiled =
         results.runs.simulations().filter(|record| record.run.variant == recommended.run.variant);
     profiled

@@ -164,6 +164,8 @@ pub struct Card {
     pub picture: &'static str,
     /// The error.
     pub metric: MetricName,
+    /// Name of its magnitude with its unit, for axes.
+    pub axis: &'static str,
     /// The words for the error of a run with these settings.
     pub stated: fn(&Value) -> Stated,
     /// Further numbers of a run in a sentence, if it has them.
@@ -186,7 +188,7 @@ impl Card {
         };
         let breaks = Breaks { setting, words: ["", ""], has_broken: |_| Some(false), sign: "" };
         let (title, picture, metric) = ("Main", "none", metric.into());
-        Card { title, picture, metric, stated, beside: None, runs, breaks }
+        Card { title, picture, metric, axis: "error [-]", stated, beside: None, runs, breaks }
     }
 }
 
@@ -765,6 +767,18 @@ impl CurvePanel {
 }
 
 impl Declaration {
+    /// A value of this error, of a run, in its unit.
+    pub fn number(&self, record: &Record, value: f64) -> String {
+        if let Some(card) = &self.card {
+            return (card.stated)(&record.run.settings).number(value);
+        }
+        let metric = self.error().and_then(|metric| record.metrics.get(&metric.name));
+        match metric.map_or("-", |metric| &*metric.unit) {
+            "-" | "1" => touchstone_report::percent(value, 2),
+            unit => format!("{}\u{a0}{unit}", touchstone_report::sig(value, 2)),
+        }
+    }
+
     /// The panel of the figure on the card: the first that shows the first run of the card, at whatever
     /// resolution the ladders of the case have.
     pub fn pictured(&self, card: &Card) -> Option<usize> {

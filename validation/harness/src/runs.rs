@@ -95,6 +95,13 @@ impl JudgedRun {
         (apply, absent.chain(of_ours).collect())
     }
 
+    /// Whether its plan expects that it may diverge: the run is allowed to be unstable, or no gate of it
+    /// fails, such as a control.
+    pub fn may_diverge(&self) -> bool {
+        let fails = self.judged.iter().any(|judged| judged.judgement.verdict.is_failure());
+        !fails && (self.planned.spec.allow_unstable || !self.judged.is_empty())
+    }
+
     /// Judges a record by the gates of its plan.
     pub fn new(planned: Planned, record: Record) -> Self {
         let judged =

@@ -5,14 +5,14 @@ use touchstone_base::{
     absent::Absent,
     gate::{Bound, Evidence, Gate},
     record::{self, Record, Status},
-    spec::RunSpec,
+    spec::{RunSpec, Task},
     submission::SESSION,
 };
-use touchstone_report::{Card, Counts};
+use touchstone_report::{Counts, Subject};
 
 use crate::{
     case::{Case, Planned, Tier},
-    declare::{self, Declaration},
+    declare::Declaration,
     make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs, counts},
@@ -28,8 +28,8 @@ pub struct CaseResults {
     pub runs: Runs,
     /// Its studies.
     pub studies: Vec<Study>,
-    /// What is said of it first.
-    pub card: Option<Card>,
+    /// Its row on the first screen of the report.
+    pub row: Option<Subject>,
     /// What it declares.
     pub declared: Declaration,
 }
@@ -60,10 +60,9 @@ impl CaseResults {
             .flat_map(move |(of, all)| all.iter().map(move |judged| JudgedOf { case, of, judged }))
     }
 
-    /// The card that it declares and the run of its recommended variant there.
-    pub fn recommended(&self) -> Option<(&declare::Card, &Record)> {
-        let card = self.declared.card.as_ref()?;
-        Some((card, self.runs.record(card.runs.first()?)?))
+    /// The run of the recommended variant on its card, if it has one.
+    pub fn recommended(&self) -> Option<&Record> {
+        self.runs.record(self.declared.card.as_ref()?.runs.first()?)
     }
 }
 
@@ -115,9 +114,15 @@ impl Suite {
 
     /// How all gates of our own runs ended, and how many simulations diverged.
     pub fn counts(&self) -> Counts {
-        let records = self.cases.iter().flat_map(|case| case.runs.simulations());
-        let diverged = records.filter(|record| matches!(record.status, Status::Diverged { .. }));
-        Counts { diverged: diverged.count(), ..counts(self.judged().map(|of| of.judged)) }
+        let all = self.cases.iter().flat_map(|case| &case.runs.all);
+        let has_diverged = |run: &&JudgedRun| {
+            let is_simulation = run.record.run.task == Task::Simulate;
+            is_simulation && matches!(run.record.status, Status::Diverged { .. })
+        };
+        let diverged: Vec<&JudgedRun> = all.filter(has_diverged).collect();
+        let unexpected = diverged.iter().filter(|run| !run.may_diverge()).count();
+        let judged = counts(self.judged().map(|of| of.judged));
+        Counts { diverged: diverged.len(), unexpected, ..judged }
     }
 }
 
@@ -165,9 +170,9 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
     let study = |(case, runs): (&'static dyn Case, Runs)| {
         let declared = case.declaration(tier);
         let mut studies = studies::of(case.name(), &declared, &runs);
-        let card = studies::card(case.name(), &declared, &studies, &runs);
+        let row = studies::row(case, &declared, &studies, &runs);
         studies.extend(unplanned(case, &runs));
-        CaseResults { case, runs, studies, card, declared }
+        CaseResults { case, runs, studies, row, declared }
     };
     let cases = of_plans.into_par_iter().map(study).collect();
     Suite { tier, cases, made }

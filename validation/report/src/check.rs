@@ -120,8 +120,8 @@ fn loads(style: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        Axis, Block, Card, Cell, Column, Counts, Explorer, Figure, Page, Plot, Section, Series,
-        Table, VERDICTS,
+        Axis, Block, Cell, Column, Counts, Explorer, Figure, Overview, Page, Plot, Section, Series,
+        Subject, Table, VERDICTS,
     };
     use touchstone_base::gate::Verdict;
 
@@ -140,27 +140,28 @@ mod tests {
             .block(Figure::new("fig", "A caption with `code`.").panel(plot))
             .block(Block::Details { summary: "more".into(), blocks: details })
             .child(Section::new("two", "Two").counts(Counts::of([Verdict::Pass])).block(table));
-        let card = Card {
+        let row = Subject {
             id: "one".into(),
             title: "One & *two*".into(),
+            about: "It is < 2.".into(),
             picture: Some(Figure::new("small", "").panel(Plot::new("", x(), x()))),
-            facts: vec![("error".into(), "**1 %**".into())],
-            counts: Counts::of([Verdict::Limitation]),
-            limitations: vec!["It is < 2.".into()],
+            cells: vec![Cell::marked("**1 %**")],
         };
+        let error = vec![Column::num("error", "")];
+        let overview = Overview { caption: "All".into(), columns: error, rows: vec![row] };
         let columns = ["verdict", "gate", "bound", "reasons"].map(Column::text);
         let cells = ["one.a&b", "at most 0.4", "1"].map(Cell::text);
         let gate = [vec![Cell::status(Verdict::Limitation)], cells.into()].concat();
         let gates = Table::new("", columns.into()).row(gate);
         let explorer = Explorer { gates, reasons: vec!["because".into()] };
-        let three = Section::new("three", "Three").counts(card.counts);
+        let three = Section::new("three", "Three").counts(Counts::of([Verdict::Limitation]));
         let verdicts = Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer));
         Page {
             title: "A & B".into(),
             lead: vec!["Lead.".into()],
             counts: Counts::of([Verdict::Pass]),
-            cards: vec![card],
-            notes: vec!["Note.".into()],
+            overview,
+            opening: vec![Block::Prose(vec!["Note.".into()])],
             sections: vec![section, three, verdicts],
             png_folder: "figures".into(),
             ..Page::default()
@@ -177,7 +178,7 @@ mod tests {
         let html = real_page().html();
         check_page(&html).unwrap();
         let counts = ["<figure", "<table", "<section"].map(|tag| html.matches(tag).count());
-        assert_eq!(counts, [1, 3, 4]);
+        assert_eq!(counts, [1, 4, 4]);
     }
 
     #[test]
@@ -186,7 +187,7 @@ mod tests {
         page.sections[1].id = "fig".into();
         assert!(check_page(&page.html()).unwrap_err().contains("twice"));
         let mut page = real_page();
-        page.notes = vec!["[lost](#lost)".into()];
+        page.opening = vec![Block::Prose(vec!["[lost](#lost)".into()])];
         assert!(check_page(&page.html()).unwrap_err().contains("leads nowhere"));
     }
 

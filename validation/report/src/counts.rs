@@ -1,5 +1,6 @@
 //! How gates ended, in numbers.
 
+use super::explorer::VERDICTS;
 use super::number::counted;
 use super::table::{class, mark};
 use maud::{Markup, html};
@@ -14,6 +15,8 @@ pub struct Counts {
     pub unexplained: usize,
     /// Runs that diverged.
     pub diverged: usize,
+    /// Runs that diverged although nothing planned that they may.
+    pub unexpected: usize,
 }
 
 impl Counts {
@@ -80,13 +83,33 @@ impl Counts {
         }
     }
 
-    pub(super) fn html(self) -> Markup {
-        let worst = self.worst().unwrap_or(Verdict::Pass);
-        html! {
-            div class=(format!("banner {}", class(worst))) {
-                p.verdict { span.mark { (mark(worst)) } " " (self.headline()) }
-            }
+    /// What a reader must know of the verdicts, as a line that links to all of them.
+    pub(super) fn line(self) -> Markup {
+        if self.worst().is_none() {
+            return html! { p.verdict { "Nothing was judged" } };
         }
+        let [_, _, limitation, fail] = self.gates;
+        let failed = match fail {
+            0 => "no gate fails".into(),
+            fail => counted(fail, "gate fails", "gates fail"),
+        };
+        let mut parts = vec![failed];
+        if limitation > 0 {
+            let limited = counted(limitation, "known limitation", "known limitations");
+            parts.push(format!("{limited}, {} of them unexplained", self.unexplained));
+        }
+        if self.diverged > 0 {
+            let expected = match self.unexpected {
+                0 => "all expected".into(),
+                count => format!("{count} of them unexpected"),
+            };
+            parts.push(format!(
+                "{}, {expected}",
+                counted(self.diverged, "run diverged", "runs diverged")
+            ));
+        }
+        let class = if fail > 0 { "verdict fail" } else { "verdict" };
+        html! { p class=(class) { a href=(format!("#{VERDICTS}")) { (parts.join(" · ")) } } }
     }
 }
 
@@ -99,7 +122,7 @@ mod tests {
         let counts = Counts::of([Verdict::Pass, Verdict::Pass, Verdict::ExpectedFailure]);
         assert_eq!(Verdict::ALL.map(|verdict| counts.count(verdict)), [2, 1, 0, 0]);
         assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
-        let all = Counts { gates: [2, 1, 2, 1], unexplained: 1, diverged: 3 };
+        let all = Counts { gates: [2, 1, 2, 1], unexplained: 1, diverged: 3, unexpected: 1 };
         let headline = "1 gate fails, 2 gates pass, 2 known limitations (1 of them unexplained), 1 control \
                         fails as it must, 3 runs diverged";
         assert_eq!(
@@ -107,9 +130,16 @@ mod tests {
             (Some(Verdict::Fail), Some(Verdict::ExpectedFailure))
         );
         assert_eq!(all.headline(), headline);
-        assert!(all.html().into_string().contains(headline));
+        let line = all.line().into_string();
+        let words = "1 gate fails · 2 known limitations, 1 of them unexplained · 3 runs diverged, 1 of them \
+                     unexpected";
+        assert!(line.contains(words) && line.contains("class=\"verdict fail\""), "{line}");
+        let good = Counts { gates: [2, 0, 0, 0], diverged: 1, ..Counts::default() };
+        assert!(
+            good.line().into_string().contains(">no gate fails · 1 run diverged, all expected<")
+        );
         assert_eq!(Counts::default().headline(), "Nothing was judged");
-        let one = Counts { gates: [1; 4], unexplained: 0, diverged: 1 };
+        let one = Counts { gates: [1; 4], diverged: 1, ..Counts::default() };
         let headline = "1 gate fails, 1 gate passes, 1 known limitation, 1 control fails as it must, 1 run \
                         diverged";
         assert_eq!(one.headline(), headline);

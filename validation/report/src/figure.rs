@@ -191,6 +191,8 @@ pub struct Series {
     pub x_bars: Vec<(f64, f64)>,
     /// A short text beside each point, left out where there is no room; empty for none.
     pub labels: Vec<String>,
+    /// A name of each point, shown beside its value where a page is pointed at; empty for none.
+    pub names: Vec<String>,
 }
 
 impl Series {
@@ -198,7 +200,8 @@ impl Series {
     pub fn line(name: impl Into<String>, points: Vec<(f64, f64)>) -> Self {
         let line = Some(Dash::Solid);
         let look = Look { colour: Colour::BLACK, line, width: 1.6, marker: None, open: false };
-        Self { name: name.into(), points, look, x_bars: Vec::new(), labels: Vec::new() }
+        let (x_bars, labels, names) = (Vec::new(), Vec::new(), Vec::new());
+        Self { name: name.into(), points, look, x_bars, labels, names }
     }
 
     /// Open markers in place of the line.

@@ -27,7 +27,7 @@
     all("tr.why", body).forEach(function (tr) { tr.remove(); });
     Array.from(body.rows).sort(compare).forEach(function (tr) { body.appendChild(tr); });
   };
-  all("thead th").forEach(function (head) {
+  all("table:not(.overview) thead th").forEach(function (head) {
     var button = make("button", { type: "button", class: "sort" });
     while (head.firstChild) { button.appendChild(head.firstChild); }
     head.appendChild(button);

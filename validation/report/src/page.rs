@@ -1,11 +1,11 @@
 //! One self-contained page: opens from disk, loads nothing, prints.
 
-use super::card::Card;
 use super::counts::Counts;
 use super::explorer::{Explorer, verdicts_where};
 use super::figure::Figure;
 use super::font;
 use super::inline::inline;
+use super::overview::Overview;
 use super::pixels::drawing;
 use super::render;
 use super::table::{Table, class, first_sentence, mark};
@@ -18,19 +18,19 @@ use touchstone_base::{files::OutputFolder, text::base64};
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// A report of sections, with a verdict on top.
+/// A report: a first screen, then sections.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Page {
     /// Title of the document.
     pub title: String,
     /// Paragraphs under the title; inline markup.
     pub lead: Vec<String>,
-    /// The verdict banner.
+    /// The results side by side.
+    pub overview: Overview,
+    /// How all gates ended: a line below the table.
     pub counts: Counts,
-    /// What is said first.
-    pub cards: Vec<Card>,
-    /// Paragraphs below the cards; inline markup.
-    pub notes: Vec<String>,
+    /// Figures and paragraphs before the table of contents.
+    pub opening: Vec<Block>,
     /// Sections in order.
     pub sections: Vec<Section>,
     /// Folder of the figures' PNG files beside the page; empty writes and links none.
@@ -101,6 +101,8 @@ pub enum Block {
     Figure(Figure),
     /// A table with its number.
     Table(Table),
+    /// Results side by side.
+    Overview(Overview),
     /// The table of all verdicts, once a page.
     Explorer(Explorer),
     /// Blocks behind a click.
@@ -152,14 +154,12 @@ impl Page {
                 body {
                     header {
                         h1 { (self.title) }
-                        @if self.counts.worst().is_some() { (self.counts.html()) }
                         @for paragraph in &self.lead { p.lead { (inline(paragraph)) } }
                     }
                     main {
-                        @if !self.cards.is_empty() {
-                            div.cards { @for card in &self.cards { (card.markup()) } }
-                        }
-                        @for note in &self.notes { p.note { (inline(note)) } }
+                        @if !self.overview.rows.is_empty() { (self.overview.markup()) }
+                        @if self.counts.worst().is_some() { (self.counts.line()) }
+                        @for block in &self.opening { (writer.block(block)) }
                         @if self.sections.len() > 1 {
                             nav aria-label="Contents" { (contents(&self.sections)) }
                         }
@@ -172,6 +172,14 @@ impl Page {
         page.into_string()
     }
 
+    /// All its drawings.
+    fn figures(&self) -> Vec<&Figure> {
+        let mut all = Vec::new();
+        add_figures(&self.opening, &mut all);
+        self.sections.iter().for_each(|section| section.figures(&mut all));
+        all
+    }
+
     /// Writes what [`Page::html`] has said, and the figures' PNG files into their folder beside it. Every
     /// file appears whole or not at all.
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
@@ -179,7 +187,7 @@ impl Page {
         if !self.png_folder.is_empty() {
             // What a report that was killed left there goes, too.
             let images = OutputFolder::create_inside(&folder.join(&self.png_folder));
-            write_images(&self.sections, &images.map_err(io::Error::other)?)?;
+            write_images(&self.figures(), &images.map_err(io::Error::other)?)?;
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let written = OutputFolder::unchecked(folder).write(&name, html.as_bytes());
@@ -198,10 +206,8 @@ pub fn made_from(html: &str) -> Option<&str> {
     Some(after.split_once('"')?.0)
 }
 
-/// Writes the PNG files of the drawings of sections.
-fn write_images(sections: &[Section], folder: &OutputFolder) -> io::Result<()> {
-    let mut all = Vec::new();
-    sections.iter().for_each(|section| section.figures(&mut all));
+/// Writes the PNG files of drawings.
+fn write_images(all: &[&Figure], folder: &OutputFolder) -> io::Result<()> {
     let write = |figure: &&Figure| -> io::Result<()> {
         let name = format!("{}.png", figure.id);
         folder.write(&name, &render::png_bytes(figure)?).map(drop).map_err(io::Error::other)
@@ -239,7 +245,11 @@ fn contents(sections: &[Section]) -> Markup {
 impl Writer<'_> {
     fn section(&mut self, section: &Section, level: usize) -> Markup {
         let title = inline(&section.title);
-        let gates = |status: &str| verdicts_where(&format!("q={}&status={status}", section.title));
+        let of = match level {
+            2 => format!("case={}", section.id),
+            _ => format!("q={}", section.title),
+        };
+        let gates = |status: &str| verdicts_where(&format!("{of}&status={status}"));
         html! {
             section id=(section.id) {
                 @match level {
@@ -273,6 +283,7 @@ impl Writer<'_> {
                 self.tables += 1;
                 table.markup(&format!("Table {}", self.tables))
             }
+            Block::Overview(overview) => overview.markup(),
             Block::Explorer(explorer) => explorer.markup(),
             Block::Details { summary, blocks } => html! {
                 details {
@@ -330,9 +341,10 @@ mod tests {
         let section = section.block(Figure::new("empty", "What is shown where there are runs"));
         let folder = tempfile::tempdir().unwrap();
         let images = OutputFolder::unchecked(folder.path());
-        write_images(std::slice::from_ref(&section), &images).unwrap();
+        let page = Page { sections: vec![section], ..Page::default() };
+        write_images(&page.figures(), &images).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        let html = Page { sections: vec![section], ..Page::default() }.html();
+        let html = page.html();
         crate::check_page(&html).expect("a page that opens");
         assert!(!html.contains("<figure"), "{html}");
         assert!(html.contains("<p id=\"empty\">No figure: "), "{html}");

@@ -36,12 +36,15 @@ pub struct Cell {
     pub value: Option<f64>,
     /// Colours the cell.
     pub status: Option<Verdict>,
+    /// A remark in small letters below it, such as the reason of a dash; inline markup.
+    pub remark: String,
 }
 
 impl Cell {
     /// Plain text, shown as it is.
     pub fn text(text: impl Into<String>) -> Self {
-        Self { text: text.into(), is_marked: false, value: None, status: None }
+        let (text, remark) = (text.into(), String::new());
+        Self { text, is_marked: false, value: None, status: None, remark }
     }
 
     /// Text of ours with inline markup.
@@ -89,6 +92,11 @@ impl Cell {
         Self::text(status.to_string()).with(status)
     }
 
+    /// The same cell with a remark.
+    pub fn because(self, remark: impl Into<String>) -> Self {
+        Self { remark: remark.into(), ..self }
+    }
+
     /// The same cell with a verdict.
     pub fn with(self, status: Verdict) -> Self {
         Self { status: Some(status), ..self }
@@ -104,14 +112,25 @@ impl Cell {
     }
 
     pub(super) fn html(&self, numeric: bool) -> Markup {
+        self.markup(numeric, None)
+    }
+
+    /// The cell with the head of its column as a label, for screens that are too narrow for columns.
+    pub(super) fn labelled(&self, column: &Column) -> Markup {
+        self.markup(column.numeric, Some(&column.head))
+    }
+
+    fn markup(&self, numeric: bool, label: Option<&str>) -> Markup {
         // What a column is sorted by: six digits. The style sheet shows a cell that has it as a number.
         let six = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
         let value: Option<f64> = self.value.filter(|value| value.is_finite()).map(six);
         let number = (numeric && value.is_none()).then_some("number");
         let classes: Vec<&str> = number.into_iter().chain(self.status.map(class)).collect();
         html! {
-            td class=[(!classes.is_empty()).then(|| classes.join(" "))] data-v=[value] {
+            td class=[(!classes.is_empty()).then(|| classes.join(" "))] data-v=[value]
+                data-label=[label] {
                 @if self.is_marked { (inline(&self.text)) } @else { (self.text) }
+                @if !self.remark.is_empty() { small { (inline(&self.remark)) } }
             }
         }
     }
@@ -155,7 +174,7 @@ impl Column {
         Self { head: head.into(), unit: unit.into(), numeric: true }
     }
 
-    fn markup(&self) -> Markup {
+    pub(super) fn markup(&self) -> Markup {
         html! {
             th class=[self.numeric.then_some("number")] scope="col" {
                 (inline(&self.head))

@@ -7,8 +7,8 @@ use std::io;
 use std::path::PathBuf;
 use touchstone_base::gate::Verdict;
 use touchstone_report::{
-    Axis, Block, Card, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Page, Plot,
-    Section, Series, Table, VERDICTS, check_page,
+    Axis, Block, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Overview, Page, Plot,
+    Section, Series, Subject, Table, VERDICTS, check_page,
 };
 
 #[test]
@@ -81,14 +81,18 @@ fn explorer() -> Explorer {
 }
 
 fn page() -> io::Result<Page> {
-    let card = Card {
+    let row = Subject {
         id: "curves".into(),
         title: "Curves".into(),
+        about: "of a made-up case".into(),
         picture: Some(Figure { id: "small".into(), ..figure() }),
-        facts: vec![("Error:".into(), "**1.2 %** in 3 s".into())],
-        counts: Counts::of([Verdict::Pass, Verdict::Limitation]),
-        limitations: vec!["It is made up.".into()],
+        cells: vec![
+            Cell::marked("**[1.2 %](#curves.gate0)**"),
+            Cell::text("–").because("no order"),
+        ],
     };
+    let columns = vec![Column::num("error", ""), Column::num("order", "")];
+    let overview = Overview { caption: "Results".into(), columns, rows: vec![row] };
     let curves = Section::new("curves", "Curves")
         .counts(Counts::of([Verdict::Fail]))
         .prose(
@@ -102,8 +106,8 @@ fn page() -> io::Result<Page> {
         title: "Demo of the report".into(),
         lead: vec!["Every block once, from made-up data. **Not a result.**".into()],
         counts: Counts::of(Verdict::ALL),
-        cards: vec![card],
-        notes: vec!["A note below the cards.".into()],
+        overview,
+        opening: vec![Block::Prose(vec!["A note below the table.".into()])],
         sections: vec![
             Section::new(VERDICTS, "Verdicts").block(Block::Explorer(explorer())),
             Section::new("maps", "A table")

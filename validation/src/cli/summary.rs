@@ -69,8 +69,8 @@ fn row(results: &CaseResults) -> Vec<String> {
         count => output::painted(verdict, &count.to_string()),
     }));
     row.extend(match results.recommended() {
-        Some((card, record)) => [
-            headline(card, record).unwrap_or_else(|_| "none".into()),
+        Some(record) => [
+            headline(&results.declared, record).unwrap_or_else(|_| "none".into()),
             record.run.variant.clone(),
             touchstone_report::seconds(record.cost.alone_median().unwrap_or(record.cost.cpu_s)),
         ],

@@ -710,6 +710,34 @@ fn a_run_states_the_error_by_its_own_settings() {
     }
 }
 
+/// A case had up to three errors: that of its card, that of its first figure and that of its documents.
+#[test]
+fn page_list_run_and_readme_state_the_same_number_of_a_case() {
+    let readme = include_str!("../../../README.md");
+    for &case in touchstone_cases::CASES {
+        let (name, declared) = (case.name(), case.declaration(Tier::Quick));
+        let Some(metric) = declared.error() else { continue };
+        let recommended = case.recommended();
+        let spec = case::spec(case, recommended.variant, &[]).expect("settings");
+        let mut record = Record::new(name, &spec.variant, spec.settings.clone(), 1);
+        record.put(metric.clone(), 0.0123);
+        let page = touchstone_harness::studies::headline(&declared, &record).expect("an error");
+        let (run, named) = super::summary::error_of(&declared, &record);
+        assert_eq!(named, metric.name, "{name}");
+        if declared.card.is_some() {
+            assert!(run.starts_with(&page), "{name}: `run` states {run}, the page {page}");
+            let of = format!("{name}.{};", recommended.variant);
+            let end = format!("; {} ", metric.name);
+            let states = |text: &str| {
+                let mut sources = text.split("<!-- ").filter_map(|text| text.split("-->").next());
+                sources.any(|source| source.starts_with(&of) && source.ends_with(&end))
+            };
+            assert!(states(recommended.because), "{name}: `list` has no {end}of {of}");
+            assert!(states(readme), "{name}: README has no {end}of {of}");
+        }
+    }
+}
+
 /// A fitted shift of the clock makes the distance nearly independent of the method, so the headline of the
 /// dam break is the distance without shift; both are printed, with the uncertainty of the experiment.
 #[test]

@@ -1,79 +1,221 @@
-//! What the report says first of a case: errors and costs of two variants, how far they got, verdicts.
+//! The row of a case on the first screen of the report: the errors of the recommended variant and of the
+//! paper's, the order of the error, the price of a tenth of it, and the setting at which runs break.
 
 use touchstone_base::{
-    record::{Record, Status},
+    functions::{ln, powf},
+    record::{MetricName, Record, Status},
     spec::RunSpec,
 };
-use touchstone_report::{Block, Card, Figure, exact, plain, sci, seconds, sig};
-
-use super::{
-    limit,
-    validation::{self, Found},
+use touchstone_report::{
+    Block, Cell, Column, Figure, Subject, code, exact, plain, sci, seconds, sig,
 };
+
+use super::{cost, validation::Found};
 use crate::{
-    declare::{self, Breaks, Comparison, Declaration},
-    runs::{Judged, Runs, by_cause, counts},
+    case::Case,
+    convergence::{Label, convergence, slope},
+    declare::{self, Accuracy, Breaks, Comparison, Declaration, Ladder},
+    runs::Runs,
     study::Study,
 };
 
-/// The card of a case, if it declares one.
-pub fn card(case: &str, declared: &Declaration, studies: &[Study], runs: &Runs) -> Option<Card> {
-    let card = declared.card.as_ref()?;
-    let of_runs = runs.all.iter().flat_map(|run| &run.judged);
-    let judged: Vec<&Judged> = of_runs.chain(studies.iter().flat_map(|s| &s.judged)).collect();
-    let stated = |spec: &RunSpec| (card.stated)(&spec.settings).in_words();
-    let mut facts: Vec<(String, String)> =
-        card.runs.first().map(|spec| ("Error:".to_string(), stated(spec))).into_iter().collect();
-    for (name, spec) in ["Recommended, ", "Paper's, "].into_iter().zip(&card.runs) {
-        facts.push((format!("{name}`{}`:", spec.variant), result(card, declared, spec, runs)));
-    }
-    for record in card.runs.iter().filter_map(|spec| runs.record(spec)) {
-        let words = card.beside.and_then(|beside| beside(record));
-        facts.extend(words.map(|words| (format!("`{}`:", record.run.variant), words)));
-    }
-    let stable = stable(declared, &card.runs, runs);
-    facts.extend(stable.map(|text| ("Largest stable time step over theory:".into(), text)));
-    let compared = validation::line(&declared.comparisons, runs);
-    facts.extend(compared.map(|text| ("Comparisons with references:".into(), text)));
-    facts.extend(breaks(card, runs).map(|text| ("Breaks".into(), text)));
-    // The two causes that most gates share.
-    let causes = by_cause(judged.iter().copied(), |judged| judged).into_iter().take(2);
-    Some(Card {
-        id: case.into(),
-        title: card.title.into(),
-        picture: picture(card, declared, studies),
-        facts,
-        counts: counts(judged.iter().copied()),
-        limitations: causes.map(|(cause, _)| cause.what.to_string()).collect(),
+/// The columns of the table on the first screen.
+pub fn columns() -> Vec<Column> {
+    let numbers = [
+        "its error",
+        "order",
+        "paper's error",
+        "a tenth of the error: pairs",
+        "a tenth: run time",
+        "breaks at",
+        "paper's breaks at",
+    ];
+    let numbers = numbers.map(|head| Column::num(head, ""));
+    [vec![Column::text("recommended")], numbers.into()].concat()
+}
+
+/// What a row is made of.
+struct Answer<'a> {
+    case: &'static dyn Case,
+    declared: &'a Declaration,
+    runs: &'a Runs,
+    metric: &'a MetricName,
+    /// The run of the recommended variant, and that of the paper's if there is one.
+    shown: Vec<RunSpec>,
+}
+
+/// The row of a case; none if no number is the error of the case.
+pub fn row(
+    case: &'static dyn Case,
+    declared: &Declaration,
+    studies: &[Study],
+    runs: &Runs,
+) -> Option<Subject> {
+    let card = declared.card.as_ref();
+    let shown = match card {
+        Some(card) => card.runs.clone(),
+        None => {
+            let recommended = case.recommended();
+            let named = [Some(recommended.variant), recommended.papers];
+            declared.accuracy.first()?.finest(&named.into_iter().flatten().collect::<Vec<_>>())
+        }
+    };
+    let first = shown.first()?;
+    let about = match card {
+        Some(card) => (card.stated)(&first.settings).name,
+        None => case.problem().into(),
+    };
+    let answer = Answer { case, declared, runs, metric: declared.error()?, shown };
+    Some(Subject {
+        id: case.name().into(),
+        title: card.map_or(case.name().replace('_', " "), |card| card.title.into()),
+        about,
+        picture: card.and_then(|card| picture(card, declared, studies)),
+        cells: answer.cells(),
     })
 }
 
-/// The error of a run, with its uncertainty if the case declares the comparison, and what it cost.
-fn result(card: &declare::Card, declared: &Declaration, spec: &RunSpec, runs: &Runs) -> String {
-    let Some(record) = runs.record(spec) else { return "not run".into() };
-    let error = match headline(card, record) {
-        Ok(error) => error,
-        Err(status) => return plain(&status),
-    };
-    let is_this = |of: &&Comparison| {
-        let finest = of.levels.last().map(|level| level.run.spec.key());
-        of.reference > 0.0 && of.metric == card.metric && finest == Some(spec.key())
-    };
-    let compared = declared.comparisons.iter().find(is_this);
-    let uncertainty = compared.map(|of| Found::of(of, runs).uncertainty());
-    let number = |value| format!(" ± {}", (card.stated)(&record.run.settings).number(value));
-    let uncertainty = uncertainty.filter(|u| u.is_finite()).map(number).unwrap_or_default();
-    format!("**{error}**{uncertainty} in {}", cost(record))
+impl Answer<'_> {
+    fn cells(&self) -> Vec<Cell> {
+        let [first, second] = [0, 1].map(|k| self.shown.get(k));
+        let size = |spec: Option<&RunSpec>| {
+            let record = self.runs.completed(spec?)?;
+            record.value(self.metric.clone()).map(f64::abs)
+        };
+        let is_best = |own: Option<f64>, other: Option<f64>| match (own, other) {
+            (Some(own), Some(other)) => own < other,
+            _ => false,
+        };
+        let [own, papers] = [size(first), size(second)];
+        let dash = || Cell::text("–");
+        let error = |spec, wins| self.error(spec, wins);
+        let recommended = Cell::marked(code(self.case.recommended().variant));
+        let mut cells =
+            vec![recommended, first.map_or_else(dash, |spec| error(spec, is_best(own, papers)))];
+        let [order, pairs, time] = self.price();
+        cells.push(order);
+        cells.push(second.map_or_else(dash, |spec| error(spec, is_best(papers, own))));
+        cells.extend([pairs, time]);
+        cells.extend([first, second].map(|spec| spec.map_or_else(dash, |spec| self.breaks(spec))));
+        cells
+    }
+
+    /// The error of a run, with its uncertainty if the case declares the comparison; a link to the gate that
+    /// judges the number, else to the study that shows the run.
+    fn error(&self, spec: &RunSpec, wins: bool) -> Cell {
+        let Some(run) = self.runs.judged(spec) else { return Cell::text("not run") };
+        let error = match headline(self.declared, &run.record) {
+            Ok(error) => error,
+            Err(status) => return Cell::text(status),
+        };
+        let gate = run.judged.iter().find(|judged| judged.gate.metric == self.metric.name);
+        let target = gate.map_or_else(|| self.study(), |judged| judged.gate.id.clone());
+        let link = format!("[{error}](#{target})");
+        let words = |value| format!("± {}", self.declared.number(&run.record, value));
+        let uncertainty = self.compared(spec).map(|found| found.uncertainty());
+        let remark = uncertainty.filter(|u| u.is_finite()).map(words).unwrap_or_default();
+        Cell::marked(if wins { format!("**{link}**") } else { link }).because(remark)
+    }
+
+    /// The comparison of the error of a run with a reference that has an uncertainty.
+    fn compared(&self, spec: &RunSpec) -> Option<Found> {
+        let is_this = |of: &&Comparison| {
+            let finest = of.levels.last().map(|level| level.run.spec.key());
+            of.reference > 0.0 && of.metric == *self.metric && finest == Some(spec.key())
+        };
+        let compared = self.declared.comparisons.iter().find(is_this);
+        compared.map(|of| Found::of(of, self.runs))
+    }
+
+    /// The anchor of the errors over resolutions of the case, or of the case.
+    fn study(&self) -> String {
+        let has_ladder = |of: &&Accuracy| of.ladders.iter().any(|ladder| ladder.levels.len() > 1);
+        let accuracy = self.declared.accuracy.first().filter(has_ladder);
+        accuracy.map_or(self.case.name().into(), |of| format!("study-{}-work-precision", of.id))
+    }
+
+    /// The ladder of the recommended variant, if the run of the table is its finest.
+    fn ladder(&self) -> Result<(&Accuracy, &Ladder), String> {
+        let first = self.shown.first().ok_or("not run")?;
+        let accuracy = self.declared.accuracy.first().ok_or("one resolution")?;
+        let ladder = accuracy.ladders.iter().find(|ladder| ladder.variant == first.variant);
+        let ladder = ladder.filter(|ladder| ladder.levels.len() > 1).ok_or("one resolution")?;
+        let finest = ladder.levels.last().map(|level| level.run.spec.key());
+        let is_own = finest == Some(first.key());
+        is_own
+            .then_some((accuracy, ladder))
+            .ok_or_else(|| "one resolution at these settings".into())
+    }
+
+    /// The observed order p of the error in the spacing, if its interval of 95 % is above 0 and the levels
+    /// determine the numerical uncertainty, and the factors by which pair interactions and run
+    /// time grow until the error is a tenth: 10^(q/p), where q is the order at which they grow.
+    fn price(&self) -> [Cell; 3] {
+        match self.orders() {
+            Ok([p, pairs, time]) => {
+                let link = |text: String| Cell::marked(format!("[{text}](#{})", self.study()));
+                let factor = |q: f64| {
+                    let factor = powf(10.0, q / p);
+                    match factor.is_finite() {
+                        true => link(format!("× {}", sig(factor, 2))),
+                        false => Cell::text("–").because("not timed"),
+                    }
+                };
+                [link(sig(p, 2)), factor(pairs), factor(time)]
+            }
+            Err(why) => [Cell::text("–").because(why), Cell::text("–"), Cell::text("–")],
+        }
+    }
+
+    /// The orders of the error, of the pair interactions and of the run time.
+    fn orders(&self) -> Result<[f64; 3], String> {
+        let (accuracy, ladder) = self.ladder()?;
+        let points = cost::points(self.metric, ladder, self.runs);
+        let levels: Vec<_> = points.iter().map(cost::Point::level).collect();
+        let found = convergence(&levels, accuracy.slope);
+        let found = found.map_err(|_| format!("{} resolutions", levels.len()))?;
+        let compared = self.shown.first().and_then(|spec| self.compared(spec));
+        let is_sure = compared.is_none_or(|found| found.tells());
+        if !is_sure || found.label == Label::FloorReached || found.interval[0] <= 0.0 {
+            return Err("the ladder does not tell".into());
+        }
+        let x: Vec<f64> = points.iter().map(|point| ln(point.spacing)).collect();
+        let growth = |of: fn(&cost::Point) -> f64| {
+            let y: Vec<f64> = points.iter().map(|point| ln(of(point))).collect();
+            -slope(&x, &y).0
+        };
+        Ok([found.order, growth(|point| point.pairs), growth(cost::Point::median)])
+    }
+
+    /// The smallest value of a setting at which a run of the variant broke, or the largest at which none did.
+    fn breaks(&self, spec: &RunSpec) -> Cell {
+        let Some(card) = &self.declared.card else { return Cell::text("–") };
+        let Breaks { words: [before, after], sign, .. } = card.breaks;
+        let map = self.declared.maps.first();
+        let target = map.map_or_else(|| self.study(), |map| format!("study-{}", map.id));
+        let link = |words: &str, value: f64| {
+            Cell::marked(format!("[{words}{before}{}{after}](#{target})", exact(value)))
+        };
+        match broken_at(card, &spec.variant, self.runs) {
+            Some(Broken::At(value)) => link("", value).because(sign),
+            Some(Broken::NotFrom(low, high)) if low == high => {
+                Cell::text("–").because(format!("tried at {before}{}{after} alone", exact(low)))
+            }
+            Some(Broken::NotFrom(_, high)) => link("not up to ", high),
+            None => Cell::text("–").because("not tried"),
+        }
+    }
 }
 
-/// The error of a run in its unit.
+/// The error of a run in the words of its case, as `run`, `verify` and the report state it.
 ///
 /// # Errors
 /// How the run ended, if the error was not measured.
-pub fn headline(card: &declare::Card, record: &Record) -> Result<String, String> {
-    let value = record.value(card.metric.clone());
-    let stated = (card.stated)(&record.run.settings);
-    value.map(|value| stated.number(value)).ok_or_else(|| record.status.to_string())
+pub fn headline(declared: &Declaration, record: &Record) -> Result<String, String> {
+    let value = declared.error().and_then(|metric| record.value(metric.clone()));
+    value
+        .map(|value| declared.number(record, value))
+        .ok_or_else(|| plain(&record.status.to_string()))
 }
 
 /// The cost of a run in words.
@@ -87,56 +229,35 @@ pub fn cost(record: &Record) -> String {
     format!("{time} on one core, {pairs} pairs")
 }
 
-/// The largest stable time steps over their theoretical limits.
-fn stable(declared: &Declaration, specs: &[RunSpec], runs: &Runs) -> Option<String> {
-    let of = |spec: &RunSpec| {
-        let own = declared.limits.of.iter().filter(|limit| limit.spec.variant == spec.variant);
-        let ratios = own.filter_map(|limit| limit::of_theory(limit, runs));
-        let least = ratios.min_by(f64::total_cmp)?;
-        Some(format!("{} (`{}`)", sig(least, 3), spec.variant))
-    };
-    let found: Vec<String> = specs.iter().filter_map(of).collect();
-    (!found.is_empty()).then(|| found.join(", "))
+/// Where runs of a variant break.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Broken {
+    /// The smallest value of the setting at which one did.
+    At(f64),
+    /// The smallest and the largest value, if none did.
+    NotFrom(f64, f64),
 }
 
-/// For the variant of each run of the card the smallest value of a setting at which a run broke, or the range
-/// of values at which none did.
-fn breaks(card: &declare::Card, runs: &Runs) -> Option<String> {
-    let Breaks { setting, words: [before, after], has_broken, sign } = card.breaks;
-    let of = |spec: &RunSpec| {
-        let own = runs.simulations().filter(|record| {
-            record.run.variant == spec.variant
-                && record.run.mutation.is_none()
-                && record.run.disorder.is_none()
-        });
-        let answers = own.filter_map(|record| {
-            let is_refused = matches!(record.status, Status::Refused { .. });
-            let has_broken = has_broken(record).filter(|_| !is_refused)?;
-            let broken = has_broken || record.status != Status::Completed;
-            Some((record.run.settings[setting].as_f64()?, broken))
-        });
-        let answers: Vec<(f64, bool)> = answers.collect();
-        let broken = answers.iter().filter(|(_, broken)| *broken).map(|(value, _)| *value);
-        let least = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::min);
-        let text = match least(&mut broken.into_iter()) {
-            Some(value) => format!("at {before}{}{after} ({sign}, or it diverges)", exact(value)),
-            None => {
-                let low = least(&mut answers.iter().map(|(value, _)| *value))?;
-                let high = answers.iter().map(|(value, _)| *value).fold(low, f64::max);
-                let values = match low == high {
-                    true => exact(low),
-                    false => format!("{} to {}", exact(low), exact(high)),
-                };
-                format!("in no run at {before}{values}{after}")
-            }
-        };
-        Some(format!("`{}` {text}", spec.variant))
-    };
-    let found: Vec<String> = card.runs.iter().filter_map(of).collect();
-    (!found.is_empty()).then(|| found.join("; "))
+/// Where the simulations of a variant break; none if no run answers the question.
+fn broken_at(card: &declare::Card, variant: &str, runs: &Runs) -> Option<Broken> {
+    let own = runs.simulations().filter(|record| {
+        let is_plain = record.run.mutation.is_none() && record.run.disorder.is_none();
+        record.run.variant == variant && is_plain
+    });
+    let answers = own.filter_map(|record| {
+        let is_refused = matches!(record.status, Status::Refused { .. });
+        let has_broken = (card.breaks.has_broken)(record).filter(|_| !is_refused)?;
+        let broken = has_broken || record.status != Status::Completed;
+        Some((record.run.settings[card.breaks.setting].as_f64()?, broken))
+    });
+    let (broken, whole): (Vec<_>, Vec<_>) = answers.partition(|(_, broken)| *broken);
+    let least = broken.iter().map(|(value, _)| *value).reduce(f64::min);
+    let of_whole = |of: fn(f64, f64) -> f64| whole.iter().map(|(value, _)| *value).reduce(of);
+    let not = of_whole(f64::min).zip(of_whole(f64::max));
+    least.map(Broken::At).or(not.map(|(low, high)| Broken::NotFrom(low, high)))
 }
 
-/// The panel that shows the run of the card, as small as a card is.
+/// The panel that shows the first run of the card, as small as a row is.
 fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> Option<Figure> {
     let (id, panel) = (card.picture, declared.pictured(card)?);
     let figures = studies.iter().flat_map(|study| &study.blocks).filter_map(|block| match block {
@@ -144,7 +265,9 @@ fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> O
         _ => None,
     });
     let figure = figures.into_iter().find(|figure| figure.id == id)?;
-    let plot = figure.panels.get(panel)?.clone().without_legend();
+    let mut plot = figure.panels.get(panel)?.clone().without_legend();
+    plot.title.clear();
+    [&mut plot.x, &mut plot.y].into_iter().for_each(|axis| axis.label.clear());
     let small = Figure::new(format!("{id}-small"), figure.caption.clone()).panel(plot);
     Some(small.panel_size(150.0, 90.0))
 }
@@ -153,9 +276,8 @@ fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> O
 mod tests {
     use super::*;
     use crate::{
-        bisect::STABLE,
-        declare::{Stated, StepLimit, StepLimits},
-        studies::tests::{ERROR, comparison, records, run, spec},
+        declare::Stated,
+        studies::tests::{ERROR, comparison, run, spec},
     };
 
     fn made_up() -> declare::Card {
@@ -163,6 +285,7 @@ mod tests {
             title: "Made up",
             picture: "none",
             metric: ERROR.into(),
+            axis: "error [a]",
             stated: |settings| Stated {
                 name: format!("distance at n = {}", settings["n"]),
                 against: "nothing",
@@ -190,62 +313,126 @@ mod tests {
             Status::Diverged { step: 1, time: 0.1, particle: 0, field, value_text };
         let good = [of("good", 2, 0.5), of("good", 7, 0.9)];
         let all = |more: Vec<_>| Runs::new(good.iter().cloned().chain(more).collect());
-        let whole = "`good` in no run at n = 2 to 7";
+        let at = |variant: &str, runs: &Runs| broken_at(&made_up(), variant, runs);
         let torn = all(vec![of("bad", 1, 0.5), of("bad", 5, 2.0), of("bad", 6, 0.5)]);
-        let at = |n: usize| format!("{whole}; `bad` at n = {n} (it is torn, or it diverges)");
-        assert_eq!(breaks(&made_up(), &torn), Some(at(5)));
-        let both = all(vec![of("bad", 5, 2.0), diverged]);
-        assert_eq!(breaks(&made_up(), &both), Some(at(4)));
-        assert_eq!(breaks(&made_up(), &all(Vec::new())), Some(whole.into()));
-        let one = Runs::new(vec![of("good", 2, 0.5)]);
-        assert_eq!(breaks(&made_up(), &one).as_deref(), Some("`good` in no run at n = 2"));
+        assert_eq!(at("good", &torn), Some(Broken::NotFrom(2.0, 7.0)));
+        assert_eq!(at("bad", &torn), Some(Broken::At(5.0)));
+        assert_eq!(at("bad", &all(vec![of("bad", 5, 2.0), diverged])), Some(Broken::At(4.0)));
+        assert_eq!(at("bad", &all(Vec::new())), None);
+    }
+
+    /// A case of which a row is made.
+    struct MadeUp;
+
+    impl Case for MadeUp {
+        fn name(&self) -> &'static str {
+            "case"
+        }
+        fn family(&self) -> &'static str {
+            "none"
+        }
+        fn problem(&self) -> &'static str {
+            "made up"
+        }
+        fn about(&self) -> &'static str {
+            "Made up."
+        }
+        fn variants(&self) -> Vec<crate::case::Variant> {
+            Vec::new()
+        }
+        fn recommended(&self) -> crate::case::Recommended {
+            let because = "it is good";
+            crate::case::Recommended { variant: "good", because, papers: Some("bad") }
+        }
+        fn fields(&self) -> &'static [touchstone_base::settings::Field] {
+            &[]
+        }
+        fn settings(
+            &self,
+            _: &str,
+            _: &[String],
+        ) -> Result<serde_json::Value, crate::case::RunError> {
+            Ok(serde_json::json!({}))
+        }
+        fn run(
+            &self,
+            _: &RunSpec,
+            _: &crate::context::Context,
+        ) -> Result<Record, crate::case::RunError> {
+            Err(crate::case::RunError::NoRules("case".into()))
+        }
+        fn plan(&self, _: crate::case::Tier) -> Vec<crate::case::Planned> {
+            Vec::new()
+        }
+    }
+
+    /// The cells of a row of these errors of `good` at n = 10, 20 and 40, and of `bad` at 40; pairs are n⁴.
+    fn cells(errors: [f64; 3], of_bad: f64, reference: f64) -> Vec<Cell> {
+        let of = |variant: &str, n: usize, error: f64| {
+            run(spec(variant, n), |record| {
+                record.put(ERROR, error);
+                record.cost.pair_interactions = (n as u64).pow(4);
+                record.cost.alone_s = vec![1e-3 * (n as f64).powi(3)];
+            })
+        };
+        let levels = [10, 20, 40];
+        let mut all: Vec<_> =
+            levels.into_iter().zip(errors).map(|(n, e)| of("good", n, e)).collect();
+        all.push(of("bad", 40, of_bad));
+        let runs = Runs::new(all);
+        let compared = Comparison { reference, ..comparison("good", &levels) };
+        let ladder = Ladder { variant: "good", levels: compared.levels.clone(), order: None };
+        let accuracy =
+            Accuracy { ladders: vec![ladder], ..Accuracy::new("case", ERROR, "Error [-]") };
+        let card = declare::Card { runs: vec![spec("good", 40), spec("bad", 40)], ..made_up() };
+        let declared = Declaration {
+            card: Some(card),
+            comparisons: vec![compared],
+            accuracy: vec![accuracy],
+            ..Declaration::default()
+        };
+        row(&MadeUp, &declared, &[], &runs).expect("a row").cells
+    }
+
+    fn texts(cells: &[Cell]) -> Vec<String> {
+        let text = |cell: &Cell| {
+            let shown = cell.text.replace(['*', '[', '\u{a0}'], " ");
+            shown.split("](").next().unwrap_or_default().trim().to_string()
+        };
+        cells.iter().map(text).collect()
+    }
+
+    /// Errors of order 2, pairs of order 4 and seconds of order 3: a tenth takes 10^(4/2) and 10^(3/2).
+    #[test]
+    fn the_price_of_a_tenth_follows_from_the_ladder() {
+        let [coarse, middle, fine] = [10.0, 20.0, 40.0].map(|n: f64| 8.0 / (n * n));
+        let good = cells([coarse, middle, fine], 0.5, 0.0);
+        let expected = ["`good`", "0.0050 a", "2.0", "0.50 a", "× 100", "× 32"];
+        assert_eq!(texts(&good)[..6], expected);
+        assert!(good[1].text.starts_with("**[") && !good[3].text.starts_with("**"), "{good:?}");
+        // An error that a finer level does not lower has no price, and the reason stands below the dash.
+        let floor = cells([coarse, middle, middle], 0.01, 0.0);
+        assert_eq!(texts(&floor)[2..6], ["–", "0.010 a", "–", "–"]);
+        assert_eq!(floor[2].remark, "the ladder does not tell");
+        assert!(floor[3].text.starts_with("**["), "the paper's is better: {:?}", floor[3]);
     }
 
     /// The uncertainty beside an error is u_val, of which that of the reference is a part: here
-    /// (0.6² + 0.4²)^(1/2), for u_num is 3/2 of the range of the levels 0.6, 0.2 and 0.2. A run that is
-    /// compared nowhere, or with an exact reference, has none.
+    /// (0.6² + 0.4²)^(1/2), for u_num is 3/2 of the range of the levels 0.6, 0.2 and 0.2.
     #[test]
     fn an_error_has_the_uncertainty_of_its_comparison() {
-        let of = |n, error: f64| run(spec("good", n), |r| r.put(ERROR, error));
-        let runs = Runs::new(vec![of(10, 0.6), of(14, 0.2), of(20, 0.2), of(40, 0.5)]);
-        let compared = Comparison { reference: 0.4, ..comparison("good", &[10, 14, 20]) };
-        let exact = comparison("good", &[14, 20, 40]);
-        let declared = Declaration { comparisons: vec![compared, exact], ..Declaration::default() };
-        let told = |n| result(&made_up(), &declared, &spec("good", n), &runs);
-        let unit = "\u{a0}a";
-        assert!(told(20).starts_with(&format!("**0.20{unit}** ± 0.72{unit} in ")), "{}", told(20));
-        for n in [14, 40] {
-            assert!(!told(n).contains('±'), "n = {n}: {}", told(n));
-        }
-        assert_eq!(told(80), "not run");
-    }
-
-    /// The largest stable step of a variant is that of its worst scene.
-    #[test]
-    fn the_stable_step_of_a_variant_is_the_least_of_its_scenes() {
-        let limit = |(variant, n): (&str, usize)| StepLimit {
-            scene: "made up".into(),
-            spec: spec(variant, n),
-            theory: 1.0,
-            theory_at: 2.0,
-            default_at: 1.0,
-            gate: None,
-        };
-        let scenes = [("good", 1), ("good", 2), ("good", 3), ("bad", 1)];
-        let stable_at = |of: f64| move |r: &mut Record| r.put(STABLE, of);
-        let made = scenes.iter().zip([2.4, 2.2, 3.0, 1.0]);
-        let runs = records(made.map(|((variant, n), of)| (spec(variant, *n), stable_at(of))));
-        let limits = StepLimits { about: String::new(), of: scenes.map(limit).into() };
-        let declared = Declaration { limits, ..Declaration::default() };
-        let found = stable(&declared, &[spec("good", 9), spec("bad", 9)], &runs);
-        assert_eq!(found.as_deref(), Some("1.10 (`good`), 0.500 (`bad`)"));
+        let cells = cells([0.6, 0.2, 0.2], 0.5, 0.4);
+        assert_eq!(cells[1].remark, "± 0.72\u{a0}a");
+        assert_eq!(cells[3].remark, "", "a run that is compared nowhere has none");
+        assert_eq!(cells[2].remark, "the ladder does not tell");
     }
 
     /// An error has the unit and the words of the run that has it.
     #[test]
     fn an_error_is_stated_with_the_settings_of_its_run() {
         let judged = run(spec("good", 3), |r| r.put(ERROR, -0.0576));
-        assert_eq!(headline(&made_up(), &judged.record), Ok("−0.058\u{a0}a".into()));
+        let declared = Declaration { card: Some(made_up()), ..Declaration::default() };
+        assert_eq!(headline(&declared, &judged.record), Ok("−0.058\u{a0}a".into()));
         let stated = (made_up().stated)(&judged.record.run.settings).in_words();
         assert_eq!(stated, "distance at n = 3, against nothing (± 0.50\u{a0}a)");
     }

@@ -2,15 +2,19 @@
 //! reach an error with the least work, in seconds of a run that was made alone, and in pair interactions,
 //! which do not depend on the machine or on other programs.
 
-use touchstone_base::record::median;
+use touchstone_base::{
+    record::{MetricName, median},
+    submission::OURS,
+};
 use touchstone_report::{
-    Axis, Cell, Colour, Figure, Plot, Series, Table, exact, first_sentence, percent,
+    Axis, Cell, Colour, Figure, Plot, Series, Shape, Table, exact, first_sentence, percent,
 };
 
 use crate::{
+    case::Case,
     columns::Columns,
     convergence::{Level, convergence},
-    declare::{Accuracy, Ladder, error_of},
+    declare::{Accuracy, Declaration, Ladder, error_of},
     orders::{self, Found},
     runs::Runs,
     study::Study,
@@ -45,6 +49,11 @@ impl Point {
         median(&self.seconds).unwrap_or(f64::NAN)
     }
 
+    /// Spacing and error.
+    pub fn level(&self) -> Level {
+        Level { spacing: self.spacing, value: self.error }
+    }
+
     /// Fastest and slowest \[s\].
     fn spread(&self) -> (f64, f64) {
         let end = |value: Option<&f64>| value.copied().unwrap_or(f64::NAN);
@@ -52,12 +61,12 @@ impl Point {
     }
 }
 
-/// The points of a ladder.
-fn points(accuracy: &Accuracy, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+/// The points of a ladder, whose error is the magnitude of a metric.
+pub(super) fn points(error: &MetricName, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
     let levels = ladder.levels.iter();
     let of = levels.map(|level| {
         let record = runs.record(&level.run.spec);
-        let error = record.and_then(|record| error_of(&accuracy.error, record));
+        let error = record.and_then(|record| error_of(error, record));
         let mut seconds = record.map_or(Vec::new(), |record| record.cost.alone_s.clone());
         seconds.sort_by(f64::total_cmp);
         Point {
@@ -111,9 +120,8 @@ struct Row<'a> {
 /// The study of the errors of all ladders.
 pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
     let row = |of| {
-        let points = points(accuracy, of, runs);
-        let level = |point: &Point| Level { spacing: point.spacing, value: point.error };
-        let levels: Vec<Level> = points.iter().map(level).collect();
+        let points = points(&accuracy.error, of, runs);
+        let levels: Vec<Level> = points.iter().map(Point::level).collect();
         let found = convergence(&levels, accuracy.slope);
         Row { of, points, levels, found }
     };
@@ -125,6 +133,43 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
         study.judge(gate, found.as_ref().map_or(f64::NAN, |found| found.order))
     });
     study.block(figure(&id, accuracy, &rows)).block(table(accuracy, &rows))
+}
+
+/// The error of a case over run time: the recommended variant, the paper's, and other codes at the settings
+/// of the case. The names are those of the legend, the same in the panels of all cases.
+pub fn against_run_time(
+    title: &str,
+    case: &dyn Case,
+    declared: &Declaration,
+    runs: &Runs,
+) -> Option<Plot> {
+    let (metric, accuracy) = (declared.error()?, declared.accuracy.first()?);
+    let card = declared.card.as_ref()?;
+    let plot = Plot::new(title, Axis::log("run time [s]"), Axis::log(card.axis));
+    let peers = runs.peers.iter().filter_map(|run| {
+        let of = run.record.run.submission.as_ref().filter(|of| of.code != OURS)?;
+        let error = error_of(metric, &run.record)?;
+        Some((of.to_string(), (run.record.cost.cpu_s, error)))
+    });
+    let peers: Vec<_> = peers.filter(|(_, (seconds, _))| seconds.is_finite()).collect();
+    let (names, marks) = peers.into_iter().unzip();
+    let others =
+        Series::line("other codes", marks).colour(Colour::GREY).open_markers(Shape::Diamond);
+    let others = Series { names, ..others };
+    let recommended = case.recommended();
+    let named = [
+        Some(("recommended", recommended.variant)),
+        recommended.papers.map(|of| ("the paper's", of)),
+    ];
+    let lines = named.into_iter().flatten().enumerate().filter_map(|(k, (name, variant))| {
+        let ladder = accuracy.ladders.iter().find(|ladder| ladder.variant == variant)?;
+        let points = points(metric, ladder, runs);
+        let known = points.iter().filter(|point| point.error.is_finite());
+        let line = known.clone().map(|point| (point.median(), point.error)).collect();
+        let names = known.map(|point| format!("{variant}, {}", point.label)).collect();
+        Some(Series { names, ..Series::line(name, line).cycle(k) })
+    });
+    Some(lines.fold(plot.layer(others), Plot::layer))
 }
 
 /// Error over spacing, over run time and over work.

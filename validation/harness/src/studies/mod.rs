@@ -15,7 +15,8 @@ mod sweep;
 mod tests;
 pub mod validation;
 
-pub use card::{card, cost as cost_in_words, headline};
+pub use card::{columns, cost as cost_in_words, headline, row};
+pub use cost::against_run_time;
 pub use limit::of_theory as limit_of_theory;
 pub use sweep::{Resolution, study as sweep};
 

@@ -125,6 +125,11 @@ impl Found {
         parts.into_iter().fold(0.0, |sum, part| sum + part * part).sqrt()
     }
 
+    /// Whether the ladder shows an order and the uncertainty is small enough to say something of the error.
+    pub fn tells(&self) -> bool {
+        !matches!(self.said(), Said::TooUncertain | Said::LadderDoesNotTell | Said::Unknown)
+    }
+
     /// The ends of the interval of 95 % of the limit of refinement, by the ladder alone.
     pub fn interval(&self) -> [f64; 2] {
         [self.error - self.numerical.expanded, self.error + self.numerical.expanded]

@@ -92,6 +92,7 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         title,
         picture,
         metric: L2_WORST.into(),
+        axis: "largest relative rms error of u [-]",
         stated: |settings| Stated {
             name: {
                 let [re, rows, end] =

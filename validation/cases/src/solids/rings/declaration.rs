@@ -159,6 +159,7 @@ fn card(accuracy: &Accuracy) -> Card {
         title: "Colliding rubber rings",
         picture: "rubber-rings-pictures",
         metric: HISTORIES.into(),
+        axis: "rms distance of the histories [diameters]",
         stated: |settings| {
             let of: Option<RingSettings> = touchstone_base::settings::of_json(settings).ok();
             Stated {

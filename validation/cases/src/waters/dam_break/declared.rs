@@ -59,6 +59,7 @@ fn card(accuracy: &Accuracy) -> Card {
         title: "Dam break",
         picture: "dam-break-martin-moyce",
         metric: FRONT_AWAY.at(2),
+        axis: "error of the front at T = 2 [a]",
         stated: |settings| {
             let n = &settings["n"];
             let (name, uncertainty, unit) = match scene(settings) {
@@ -80,7 +81,7 @@ fn card(accuracy: &Accuracy) -> Card {
         runs: accuracy.finest(&[DAM_BREAK.recommended.variant, "seed"]),
         breaks: Breaks {
             setting: "n",
-            words: ["", " spacings across the column"],
+            words: ["", " spacings"],
             has_broken: |record| Some(record.value(MACH).is_some_and(|mach| mach >= 0.5)),
             sign: "water is faster than half of the sound speed",
         },
