@@ -41,9 +41,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Outcome::Diverged(divergence) = flow.advance(end, dt, &mut ()) {
         return Err(divergence.into());
     }
-    let error = |(_, p): (f64, &touchstone_solver::Evolved<()>)| {
-        p.velocity.x / speed - p.position.y / width
-    };
+    let error =
+        |(_, p): (f64, &touchstone_solver::State<()>)| p.velocity.x / speed - p.position.y / width;
     let largest = flow.data().fluid().map(error).fold(0.0, |a: f64, e| a.max(e.abs()));
     println!("{} particles, {} steps", flow.data().fluid_count(), flow.work().steps);
     println!("largest error {largest:.1e} of the speed of the plate");

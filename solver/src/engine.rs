@@ -16,8 +16,8 @@ use crate::{
     numbers::{Numbers, Symmetric},
     parallel,
     particle_data::{BlockExtrema, Checkpoint, Counts, InvalidState, ParticleData, Phase, Stepped},
-    particles::{Column, Common, Evolved, Fixed, Rate, Role},
-    physics::{Derived, Physics, State},
+    particles::{Column, Common, Constants, Rate, Role, State},
+    physics::{Derived, Particles, Physics},
     sweep::{self, BlockUpdate, PairSweep, Sweep},
     terms::{Rates, Term, moments::InverseMoments},
     walls::{Extrapolated, Extrapolation, WallState, Walls},
@@ -30,11 +30,11 @@ pub(crate) trait Equations<X>: Sync {
     /// Allocates `count` columns; the last is the sentinel. Returns their memory \[bytes\].
     fn make_room(&mut self, count: usize) -> usize;
     /// Derives the columns of these particles, the first ones, and the extent of each block of them.
-    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [BlockExtrema]);
+    fn derive(&mut self, of: &ParticleData<X>, state: &[State<X>], extents: &mut [BlockExtrema]);
     /// Refills the images of particles from `first` on, with this share of the walls' own motion.
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64);
     /// Derives the columns of wall particles from these.
-    fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]);
+    fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[State<X>]);
     /// Calls `run` with the pair sweep over wall particles; not at all if walls have no terms.
     fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>));
     /// Calls `run` with the pair sweep that extrapolates to wall particles; not at all if walls do not
@@ -47,7 +47,7 @@ impl<X: Numbers> ParticleData<X> {
     fn begin(
         &mut self,
         equations: &mut dyn Equations<X>,
-        state: &mut [Evolved<X>],
+        state: &mut [State<X>],
         along: &mut dyn FnMut(usize, usize),
     ) -> Stepped {
         if self.slips {
@@ -68,7 +68,7 @@ impl<X: Numbers> ParticleData<X> {
         Ok(())
     }
 
-    fn refresh(&mut self, equations: &mut dyn Equations<X>, state: &[Evolved<X>]) -> Stepped {
+    fn refresh(&mut self, equations: &mut dyn Equations<X>, state: &[State<X>]) -> Stepped {
         let extent = self.fill(equations, state)?;
         if self.is_stale(extent) {
             self.build_lists(equations, &mut places(state));
@@ -101,7 +101,7 @@ impl<X: Numbers> ParticleData<X> {
     fn fill(
         &mut self,
         equations: &mut dyn Equations<X>,
-        state: &[Evolved<X>],
+        state: &[State<X>],
     ) -> Result<BlockExtrema, InvalidState> {
         self.enter(Phase::Refresh);
         let Counts { fluid, walls } = self.counts;
@@ -124,12 +124,7 @@ impl<X: Numbers> ParticleData<X> {
 
     /// Refreshes images, and the states that wall particles extrapolate. `motion` is the share of the walls'
     /// own motion that images have.
-    fn refresh_walls(
-        &mut self,
-        equations: &mut dyn Equations<X>,
-        state: &[Evolved<X>],
-        motion: f64,
-    ) {
+    fn refresh_walls(&mut self, equations: &mut dyn Equations<X>, state: &[State<X>], motion: f64) {
         equations.fill_images(&self.neighbours, 0, motion);
         if self.extrapolates && self.counts.walls > 0 {
             self.extrapolate(equations, state, motion);
@@ -138,7 +133,7 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Gives the columns and images of wall particles the state extrapolated from the fluid.
-    fn extrapolate(&mut self, equations: &mut dyn Equations<X>, state: &[Evolved<X>], motion: f64) {
+    fn extrapolate(&mut self, equations: &mut dyn Equations<X>, state: &[State<X>], motion: f64) {
         let own = &state[self.neighbours.wall_lists.of.clone()];
         let mut implied = take(&mut self.buffers.extrapolated);
         implied.clear();
@@ -174,7 +169,7 @@ impl<X: Numbers> ParticleData<X> {
         phase: Phase,
         sweep: &dyn PairSweep<Rate<X>>,
         equations: &dyn Equations<X>,
-        targets: &mut [Evolved<X>],
+        targets: &mut [State<X>],
         update: &BlockUpdate<X>,
     ) {
         self.count(phase);
@@ -266,7 +261,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
         size_of_val(&self.columns[..])
     }
 
-    fn derive(&mut self, of: &ParticleData<X>, state: &[Evolved<X>], extents: &mut [BlockExtrema]) {
+    fn derive(&mut self, of: &ParticleData<X>, state: &[State<X>], extents: &mut [BlockExtrema]) {
         let terms = &self.terms;
         derive_blocks(&mut self.columns, of, state, extents, &|columns, state, fixed| {
             derive_all(terms, fixed, state, columns);
@@ -277,7 +272,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
         fill_images(neighbours, first, P::Walls::SLIPS, motion, &mut self.columns);
     }
 
-    fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[Evolved<X>]) {
+    fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[State<X>]) {
         let at = of.neighbours.wall_lists.of.clone();
         derive_all(&self.terms, &of.fixed[at.clone()], walls, &mut self.columns[at]);
     }
@@ -340,13 +335,13 @@ impl<P: Physics> Engine<P> {
     /// Starts a step at this state: may sort the particles, wrap them into the period and put them back
     /// before a wall along which they slip; gives the terms the largest speed; refreshes all data derived
     /// from the state.
-    pub fn begin(&mut self, state: &mut State<P>) -> Stepped {
+    pub fn begin(&mut self, state: &mut Particles<P>) -> Stepped {
         self.data.begin(&mut self.equations, state, &mut |_, _| ())
     }
 
     /// Starts a step as [`Engine::begin`] does, and sorts `kept` along with the first particles; `kept` may
     /// be empty.
-    pub fn begin_with<T>(&mut self, state: &mut State<P>, kept: &mut [T]) -> Stepped {
+    pub fn begin_with<T>(&mut self, state: &mut Particles<P>, kept: &mut [T]) -> Stepped {
         let mut along = |i, j| {
             if !kept.is_empty() {
                 kept.swap(i, j);
@@ -356,20 +351,20 @@ impl<P: Physics> Engine<P> {
     }
 
     /// Refreshes all data derived from a state inside a step.
-    pub fn refresh(&mut self, state: &State<P>) -> Stepped {
+    pub fn refresh(&mut self, state: &Particles<P>) -> Stepped {
         self.data.refresh(&mut self.equations, state)
     }
 
     /// Refreshes everything for a state inside a step whose velocities are differences of two velocities,
     /// 0 for wall particles: walls are at rest, and images have the differences that follow.
-    pub fn refresh_differences(&mut self, state: &State<P>) -> Stepped {
+    pub fn refresh_differences(&mut self, state: &Particles<P>) -> Stepped {
         self.data.fill(&mut self.equations, state)?;
         self.data.refresh_walls(&mut self.equations, state, 0.0);
         Ok(())
     }
 
     /// Sums the forces: `update` with dv/dt, for fluid particles.
-    pub fn sweep_forces(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+    pub fn sweep_forces(&mut self, targets: &mut Particles<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
         let sweep = self.equations.forces(true);
         self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
@@ -379,7 +374,7 @@ impl<P: Physics> Engine<P> {
     /// particles.
     pub fn sweep_part<T: Term<P::Extra>>(
         &mut self,
-        targets: &mut State<P>,
+        targets: &mut Particles<P>,
         part: &T,
         read: impl Fn(&Derived<P>) -> T::Derived + Sync,
         update: &BlockUpdate<P::Extra>,
@@ -389,13 +384,13 @@ impl<P: Physics> Engine<P> {
     }
 
     /// Sums the drift: `update` with dx/dt, dρ/dt and the terms' own rates.
-    pub fn sweep_drift(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+    pub fn sweep_drift(&mut self, targets: &mut Particles<P>, update: &BlockUpdate<P::Extra>) {
         let sweep = self.equations.drift(true);
         self.data.sweep(Phase::Drift, &sweep, &self.equations, targets, update);
     }
 
     /// Sums forces and drift in one pair sweep: `update` with the whole rate.
-    pub fn sweep_all(&mut self, targets: &mut State<P>, update: &BlockUpdate<P::Extra>) {
+    pub fn sweep_all(&mut self, targets: &mut Particles<P>, update: &BlockUpdate<P::Extra>) {
         self.normalise();
         let sweep = self.equations.all(true);
         self.data.sweep(Phase::Both, &sweep, &self.equations, targets, update);
@@ -486,7 +481,7 @@ fn together<X: Numbers>(
 }
 
 /// Positions of particles, as an iterator whose type does not depend on the scheme.
-pub(crate) fn places<X>(state: &[Evolved<X>]) -> impl Iterator<Item = Vector2<f64>> {
+pub(crate) fn places<X>(state: &[State<X>]) -> impl Iterator<Item = Vector2<f64>> {
     state.iter().map(|evolved| evolved.position)
 }
 
@@ -530,13 +525,13 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
 }
 
 /// Derives columns of particles.
-type Derives<'a, X, D> = dyn Fn(&mut [Column<D>], &[Evolved<X>], &[Fixed]) + Sync + 'a;
+type Derives<'a, X, D> = dyn Fn(&mut [Column<D>], &[State<X>], &[Constants]) + Sync + 'a;
 
 /// [`Equations::derive`], block by block.
 fn derive_blocks<X: Numbers, D: Numbers>(
     columns: &mut [Column<D>],
     of: &ParticleData<X>,
-    state: &[Evolved<X>],
+    state: &[State<X>],
     extents: &mut [BlockExtrema],
     derive: &Derives<X, D>,
 ) {
@@ -552,8 +547,8 @@ fn derive_blocks<X: Numbers, D: Numbers>(
 /// Writes the columns of particles.
 fn derive_all<X, T: Term<X>>(
     terms: &T,
-    fixed: &[Fixed],
-    state: &[Evolved<X>],
+    fixed: &[Constants],
+    state: &[State<X>],
     columns: &mut [Column<T::Derived>],
 ) {
     // A copy, so that no write can alias it: the compiler moves loop-invariant numbers out of the loop.
@@ -569,8 +564,8 @@ fn derive_all<X, T: Term<X>>(
 #[inline(always)]
 fn derive<X, T: Term<X>>(
     terms: &T,
-    fixed: &Fixed,
-    evolved: &Evolved<X>,
+    fixed: &Constants,
+    evolved: &State<X>,
     column: &mut Column<T::Derived>,
 ) {
     let (mass, density) = (fixed.mass, evolved.density);
@@ -592,8 +587,8 @@ fn derived<X, T: Term<X>>(terms: &T, role: Role, own: &Common, extra: &X) -> T::
 
 /// Turns an update of one particle into an update of a block, so that a closure is called once a block.
 pub fn each<X>(
-    update: impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync,
-) -> impl Fn(usize, &mut [Evolved<X>], &[Rate<X>]) + Sync {
+    update: impl Fn(usize, &mut State<X>, &Rate<X>) + Sync,
+) -> impl Fn(usize, &mut [State<X>], &[Rate<X>]) + Sync {
     move |first, targets, rates| {
         for (k, (target, rate)) in (first..).zip(targets.iter_mut().zip(rates)) {
             update(k, target, rate);

@@ -59,7 +59,7 @@ pub use particle_data::{
     Checkpoint, Interval, InvalidState, Limits, ParticleData, Phase, PhaseWatch, PreviousStep,
     Progress, Work,
 };
-pub use particles::{Evolved, Particle, Rate, Role};
+pub use particles::{Particle, Rate, Role, State};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};

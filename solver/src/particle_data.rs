@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use crate::{
     neighbours::{BLOCK, GROUP, Lists, Neighbours},
     numbers::Numbers,
-    particles::{Evolved, Fixed, Particle, Role},
+    particles::{Constants, Particle, Role, State},
     walls::Map,
 };
 
@@ -228,7 +228,7 @@ pub(crate) struct SweepBuffers<X> {
     /// build of lists.
     pub still: Option<BlockExtrema>,
     /// Wall particles with extrapolated velocities and densities; empty for other walls.
-    pub extrapolated: Vec<Evolved<X>>,
+    pub extrapolated: Vec<State<X>>,
 }
 
 impl<X> Default for SweepBuffers<X> {
@@ -241,8 +241,8 @@ impl<X> Default for SweepBuffers<X> {
 #[derive(Default)]
 pub struct ParticleData<X = ()> {
     /// Empty during a step, which owns the state.
-    pub(crate) state: Vec<Evolved<X>>,
-    pub(crate) fixed: Vec<Fixed>,
+    pub(crate) state: Vec<State<X>>,
+    pub(crate) fixed: Vec<Constants>,
     pub(crate) counts: Counts,
     /// [`crate::Walls::SLIPS`].
     pub(crate) slips: bool,
@@ -271,9 +271,10 @@ impl<X: Numbers> ParticleData<X> {
         let count = |role| particles.iter().filter(|(_, p)| p.role == role).count();
         let evolved = |(_, p): &(u32, Particle<X>)| {
             let Particle { position, velocity, density, extra, .. } = *p;
-            Evolved { position, velocity, density, extra }
+            State { position, velocity, density, extra }
         };
-        let fixed = |(id, p): &(u32, Particle<X>)| Fixed { mass: p.mass, id: *id, role: p.role };
+        let fixed =
+            |(id, p): &(u32, Particle<X>)| Constants { mass: p.mass, id: *id, role: p.role };
         self.state = particles.iter().map(evolved).collect();
         self.fixed = particles.iter().map(fixed).collect();
         self.counts = Counts { fluid: count(Role::Fluid), walls: count(Role::Wall) };
@@ -285,13 +286,13 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Mass \[kg/m\] and state of the fluid particles in the order of storage, for observers that sum.
-    pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
+    pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &State<X>)> {
         let fluid = self.counts.fluid;
         self.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
     }
 
     /// Mass \[kg/m\] and state of the wall particles with an evolving density, in the order of storage.
-    pub fn walls(&self) -> impl ExactSizeIterator<Item = (f64, &Evolved<X>)> {
+    pub fn walls(&self) -> impl ExactSizeIterator<Item = (f64, &State<X>)> {
         let range = self.neighbours.wall_lists.of.clone();
         self.fixed[range.clone()].iter().map(|f| f.mass).zip(&self.state[range])
     }
@@ -318,19 +319,19 @@ impl<X: Numbers> ParticleData<X> {
 
     /// All particles in the order of storage, with their numbers in the scene.
     fn stored(&self) -> impl Iterator<Item = (u32, Particle<X>)> {
-        self.fixed.iter().zip(&self.state).map(|(&Fixed { mass, id, role }, evolved)| {
-            let Evolved { position, velocity, density, extra } = *evolved;
+        self.fixed.iter().zip(&self.state).map(|(&Constants { mass, id, role }, evolved)| {
+            let State { position, velocity, density, extra } = *evolved;
             (id, Particle { role, position, velocity, density, mass, extra })
         })
     }
 
     /// The moving particles in the order of storage.
-    pub fn fluid_state(&self) -> &[Evolved<X>] {
+    pub fn fluid_state(&self) -> &[State<X>] {
         &self.state[..self.counts.fluid]
     }
 
     /// The moving particles, to be advanced.
-    pub fn fluid_mut(&mut self) -> &mut [Evolved<X>] {
+    pub fn fluid_mut(&mut self) -> &mut [State<X>] {
         &mut self.state[..self.counts.fluid]
     }
 
@@ -389,17 +390,17 @@ impl<X: Numbers> ParticleData<X> {
 
     /// Memory held \[bytes\].
     pub fn bytes(&self) -> usize {
-        self.state.capacity() * size_of::<Evolved<X>>()
-            + self.fixed.capacity() * size_of::<Fixed>()
+        self.state.capacity() * size_of::<State<X>>()
+            + self.fixed.capacity() * size_of::<Constants>()
             + self.order.capacity() * size_of::<u32>()
             + self.buffers.extents.capacity() * size_of::<BlockExtrema>()
-            + self.buffers.extrapolated.capacity() * size_of::<Evolved<X>>()
+            + self.buffers.extrapolated.capacity() * size_of::<State<X>>()
             + self.neighbours.bytes()
     }
 
     /// Sorts fluid particles along strips and wraps them into the period. `along` swaps other data in the
     /// order of the particles.
-    pub(crate) fn sort(&mut self, state: &mut [Evolved<X>], along: &mut dyn FnMut(usize, usize)) {
+    pub(crate) fn sort(&mut self, state: &mut [State<X>], along: &mut dyn FnMut(usize, usize)) {
         self.enter(Phase::Sorting);
         for evolved in &mut *state {
             evolved.position = self.neighbours.domain.wrap(evolved.position);
@@ -437,7 +438,7 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// The extremes of a part of a state that was built at these places.
-    pub(crate) fn extent(&self, state: &[Evolved<X>], built_at: &[Vector2<f64>]) -> BlockExtrema {
+    pub(crate) fn extent(&self, state: &[State<X>], built_at: &[Vector2<f64>]) -> BlockExtrema {
         let mut extent = BlockExtrema::NIL;
         for (evolved, built_at) in state.iter().zip(built_at) {
             let moved = evolved.position - built_at;
@@ -453,7 +454,7 @@ impl<X: Numbers> ParticleData<X> {
     /// Combines the extremes of all parts of a state; an error is the first invalid particle.
     pub(crate) fn check(
         &self,
-        state: &[Evolved<X>],
+        state: &[State<X>],
         of: &[BlockExtrema],
     ) -> Result<BlockExtrema, InvalidState> {
         let extent = of.iter().copied().fold(BlockExtrema::NIL, BlockExtrema::and);
@@ -486,8 +487,8 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// The first particle, in the order of the scene, that is out of bounds.
-    fn find_fault(&self, state: &[Evolved<X>]) -> InvalidState {
-        let fault = |((evolved, fixed), built_at): ((&Evolved<X>, &Fixed), &Vector2<f64>)| {
+    fn find_fault(&self, state: &[State<X>]) -> InvalidState {
+        let fault = |((evolved, fixed), built_at): ((&State<X>, &Constants), &Vector2<f64>)| {
             let displacement2 = (evolved.position - built_at).norm_squared();
             let (field, value) = evolved.fault().or_else(|| self.excess(evolved, displacement2))?;
             Some(InvalidState { particle: fixed.id, field, value })
@@ -499,7 +500,7 @@ impl<X: Numbers> ParticleData<X> {
 
     /// The first field beyond its limit. A NaN fails every comparison.
     #[inline(always)]
-    fn excess(&self, evolved: &Evolved<X>, displacement2: f64) -> Option<(&'static str, f64)> {
+    fn excess(&self, evolved: &State<X>, displacement2: f64) -> Option<(&'static str, f64)> {
         let ([least, most], speed2) = (self.limits.density, evolved.velocity.norm_squared());
         // The square of the limit may be infinite.
         let limit2 = self.limits.speed * self.limits.speed;

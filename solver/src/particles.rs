@@ -1,6 +1,6 @@
 //! Particle data in three kinds: fixed, evolved, and derived (the column that a pair sweep reads).
 //!
-//! The integrator advances [`Evolved`] only. A [`Column`] is derived from it before each sweep, laid out for
+//! The integrator advances [`State`] only. A [`Column`] is derived from it before each sweep, laid out for
 //! the pair sweep.
 
 use nalgebra::Vector2;
@@ -56,7 +56,7 @@ impl<X: Numbers> Particle<X> {
 
 /// Numbers of a particle that never change.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Fixed {
+pub(crate) struct Constants {
     pub mass: f64,
     pub id: u32,
     pub role: Role,
@@ -64,7 +64,7 @@ pub(crate) struct Fixed {
 
 /// Numbers of a particle that the integrator advances; `X` holds the extra fields of terms, `()` for a fluid.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Evolved<X> {
+pub struct State<X> {
     /// Position \[m\].
     pub position: Vector2<f64>,
     /// Velocity \[m/s\].
@@ -75,9 +75,9 @@ pub struct Evolved<X> {
     pub extra: X,
 }
 
-const _: () = assert!(size_of::<Evolved<()>>() == 40, "a fluid evolves x, v and rho only");
+const _: () = assert!(size_of::<State<()>>() == 40, "a fluid evolves x, v and rho only");
 
-/// d/dt of [`Evolved`].
+/// d/dt of [`State`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rate<X> {
     /// dx/dt \[m/s\].
@@ -90,7 +90,7 @@ pub struct Rate<X> {
     pub extra: X,
 }
 
-impl<X: Numbers> Evolved<X> {
+impl<X: Numbers> State<X> {
     /// The velocity alone advanced by dt.
     #[inline(always)]
     pub fn kick(&mut self, dt: f64, rate: &Rate<X>) {

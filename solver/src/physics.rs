@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use crate::{kernel::Kernel, numbers::Numbers, particles::Evolved, terms::Term, walls::Walls};
+use crate::{kernel::Kernel, numbers::Numbers, particles::State, terms::Term, walls::Walls};
 
 /// The right-hand side of d(x, v, ρ, …)/dt as types. Schemes that differ only in their integrator have one
 /// physics and share its compiled code.
@@ -36,7 +36,7 @@ impl<K: Kernel, F: Term<X>, D: Term<X>, W: Walls<X>, I: 'static, X: Numbers> Phy
 }
 
 /// The particles of the physics `P` as the integrator advances them.
-pub type State<P> = [Evolved<<P as Physics>::Extra>];
+pub type Particles<P> = [State<<P as Physics>::Extra>];
 
 /// The derived data of a particle in the physics `P`: of the forces and of the drift.
 pub type Derived<P> =

@@ -17,7 +17,7 @@ use crate::{
     neighbours::{BLOCK, Block, GROUP, Lists},
     numbers::{Buffer, In, MANY, Numbers},
     parallel,
-    particles::{Column, Common, Evolved, Rate},
+    particles::{Column, Common, Rate, State},
     terms::{Pair, PairSum},
 };
 
@@ -34,7 +34,7 @@ static APART: [f64; 2 * GROUP] = {
 };
 
 /// Updates some particles: receives the number of the first, the particles, and their rates.
-pub type BlockUpdate<'a, X> = Receive<'a, Evolved<X>, Rate<X>>;
+pub type BlockUpdate<'a, X> = Receive<'a, State<X>, Rate<X>>;
 
 /// Receives the number of the first of some targets, these, and their results.
 type Receive<'a, T, O> = dyn Fn(usize, &mut [T], &[O]) + Sync + 'a;

@@ -4,9 +4,9 @@
 use nalgebra::{Matrix2, Vector2};
 use touchstone_solver::{
     CauchyStress, Compose, ConjugateStress, ConsistentContinuity, ConsistentJaumannRate,
-    CubicSpline, Domain, EquationOfState, Evolved, JaumannRate, Leapfrog, Linear, Open, Particle,
+    CubicSpline, Domain, EquationOfState, JaumannRate, Leapfrog, Linear, Open, Particle,
     ParticleData, PredictorCorrector, PrincipalStress, Rate, Role, Scene, Scheme, Simulation,
-    Smoothing, Stepper, Symmetric, lattice, terms::Tensile, walls::Walls,
+    Smoothing, State, Stepper, Symmetric, lattice, terms::Tensile, walls::Walls,
 };
 
 use crate::random::random;
@@ -78,7 +78,7 @@ fn force_and_torque(particles: &ParticleData<Symmetric>, rates: &[Rate<Symmetric
 }
 
 /// V σ:G of a particle from the rates of its density and its stress.
-fn stored(mass: f64, p: &Evolved<Symmetric>, rate: &Rate<Symmetric>) -> f64 {
+fn stored(mass: f64, p: &State<Symmetric>, rate: &Rate<Symmetric>) -> f64 {
     let (s, t) = (p.extra, rate.extra);
     let product = s.xx * t.xx + s.yy * t.yy + (s.xx + s.yy) * (t.xx + t.yy) + 2.0 * s.xy * t.xy;
     let pressure = EOS.pressure(p.density);

@@ -13,7 +13,7 @@ use serde_json::Value;
 use touchstone_base::functions::{cos, sin};
 use touchstone_solver::{
     Compose, Domain, Engine, Integrator, Kernel, Open, Outcome, Particle, Physics, Rate, Scene,
-    Stepper, Term, integrator::Stepped, lattice, numbers::Numbers, physics::State,
+    Stepper, Term, integrator::Stepped, lattice, numbers::Numbers, physics::Particles,
 };
 
 /// The JSON of a committed snapshot, `case.variant`; `None` if there is none.
@@ -85,7 +85,7 @@ impl<P: Physics> Integrator<P> for NoStep {
     const NAME: &'static str = "none";
     type Memory = ();
 
-    fn step(_: &mut Engine<P>, (): &mut (), _: &mut State<P>, _: f64) -> Stepped {
+    fn step(_: &mut Engine<P>, (): &mut (), _: &mut Particles<P>, _: f64) -> Stepped {
         Ok(())
     }
 }

@@ -4,10 +4,9 @@ use nalgebra::Vector2;
 use touchstone_solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
-    Evolved, ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic, Integrator, Leapfrog,
-    Linear, NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, Scene, ShiftAdvection,
-    Shifting, Simulation, Stepper, Tait, Term, Viscosity, Xsph, particles::Column,
-    physics::Derived,
+    ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic, Integrator, Leapfrog, Linear,
+    NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, Scene, ShiftAdvection, Shifting,
+    Simulation, State, Stepper, Tait, Term, Viscosity, Xsph, particles::Column, physics::Derived,
 };
 use touchstone_tests::{assert_small, difference, patch};
 
@@ -26,7 +25,7 @@ fn wall_sum<E: Extrapolation>() -> usize {
 
 #[test]
 fn a_fluid_evolves_40_bytes_and_shows_64() {
-    assert_eq!(size_of::<Evolved<()>>(), 40);
+    assert_eq!(size_of::<State<()>>(), 40);
     assert_eq!(size_of::<Column<Derived<Fluid>>>(), 64);
 }
 

@@ -15,10 +15,10 @@ use touchstone_harness::{
 use touchstone_maths::theory::lattice::SquareLattice;
 use touchstone_solver::{
     ArtificialViscosity, CauchyStress, ComponentStress, Compose, Continuity, CubicSpline, Domain,
-    EquationOfState, Euler, Evolved, Flow, Integrator, JaumannRate, Kernel, Leapfrog, Linear,
-    Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, PrincipalStress,
-    QuinticSpline, Rate, Scene, Simulation, Smoothing, Stepper, Symmetric, Tait, Term, Viscosity,
-    WendlandC2, Xsph,
+    EquationOfState, Euler, Flow, Integrator, JaumannRate, Kernel, Leapfrog, Linear, Numbers,
+    Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, PrincipalStress,
+    QuinticSpline, Rate, Scene, Simulation, Smoothing, State, Stepper, Symmetric, Tait, Term,
+    Viscosity, WendlandC2, Xsph,
     lane::Lane,
     lattice,
     particles::{Column, Common},
@@ -499,13 +499,13 @@ fn a_turned_collision_is_the_collision_turned_with_principal_axes_only() {
 
 #[test]
 fn a_solid_takes_24_bytes_more_and_a_fluid_none() {
-    assert_eq!((size_of::<Symmetric>(), size_of::<Evolved<Symmetric>>()), (24, 64));
+    assert_eq!((size_of::<Symmetric>(), size_of::<State<Symmetric>>()), (24, 64));
     assert_eq!(size_of::<Column<Derived<Rings<PrincipalStress>>>>(), 128);
     assert_eq!(size_of::<Column<Derived<Rings<()>>>>(), 104);
     assert_eq!(size_of::<<CauchyStress<Linear> as Term<Symmetric>>::Derived>(), 24);
     assert_eq!(size_of::<<JaumannRate as Term<Symmetric>>::Derived>(), 24);
     type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
-    assert_eq!((size_of::<Evolved<()>>(), size_of::<Column<Derived<Fluid>>>()), (40, 64));
+    assert_eq!((size_of::<State<()>>(), size_of::<Column<Derived<Fluid>>>()), (40, 64));
 }
 
 // Waves and growth --------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_lanes::{LANES, Lane, OnLanes, gather_vector, on_four, total};
-use touchstone_solver::{Evolved, Potential, Symmetric, parallel};
+use touchstone_solver::{Potential, State, Symmetric, parallel};
 
 use crate::{
     law::{Energies, Law, Moduli, Strain},
@@ -42,7 +42,7 @@ impl<L: Law> Body<L> {
 
     /// Gives the particles the density and the deviator of the Cauchy stress that their places imply, and
     /// writes their accelerations \[m/s²\].
-    pub fn deform(&mut self, state: &mut [Evolved<Symmetric>], accelerations: &mut [Vector2<f64>]) {
+    pub fn deform(&mut self, state: &mut [State<Symmetric>], accelerations: &mut [Vector2<f64>]) {
         self.displace(state);
         let count = self.reference.count();
         let (mut tensors, body) = (std::mem::take(&mut self.tensors), &*self);
@@ -62,7 +62,7 @@ impl<L: Law> Body<L> {
     }
 
     /// Sets the displacements of particles and images from the state.
-    fn displace(&mut self, state: &[Evolved<Symmetric>]) {
+    fn displace(&mut self, state: &[State<Symmetric>]) {
         let of = self.displacements.iter_mut().zip(&self.reference.places);
         for ((displacement, place), evolved) in of.zip(state) {
             *displacement = evolved.position - place;
@@ -143,7 +143,7 @@ fn arms<V: Lane>(four: &Four) -> Vector2<V> {
 struct Stresses<'a, L> {
     body: &'a Body<L>,
     first: usize,
-    evolved: &'a mut [Evolved<Symmetric>],
+    evolved: &'a mut [State<Symmetric>],
     tensors: &'a mut [Matrix2<f64>],
 }
 

@@ -2,7 +2,7 @@
 //! derives from an energy.
 
 use nalgebra::Vector2;
-use touchstone_solver::{Evolved, Smoothing, Symmetric, WendlandC2};
+use touchstone_solver::{Smoothing, State, Symmetric, WendlandC2};
 
 use crate::{law::Moduli, reference::Reference};
 
@@ -10,7 +10,7 @@ use crate::{law::Moduli, reference::Reference};
 #[derive(Clone, Copy, Debug)]
 pub struct Loaded<'a> {
     /// Present state.
-    pub state: &'a [Evolved<Symmetric>],
+    pub state: &'a [State<Symmetric>],
     /// Reference configuration.
     pub reference: &'a Reference,
 }
@@ -62,8 +62,7 @@ impl Load for Weight {
         0
     }
     fn energy(&self, on: &Loaded) -> f64 {
-        let of =
-            |(evolved, mass): (&Evolved<Symmetric>, &f64)| -mass * self.0.dot(&evolved.position);
+        let of = |(evolved, mass): (&State<Symmetric>, &f64)| -mass * self.0.dot(&evolved.position);
         on.state.iter().zip(&on.reference.masses).map(of).fold(0.0, |sum, one| sum + one)
     }
 }

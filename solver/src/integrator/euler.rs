@@ -3,7 +3,7 @@
 use super::{Integrator, Stepped, advance};
 use crate::{
     engine::{Engine, each},
-    physics::{Physics, State},
+    physics::{Particles, Physics},
 };
 
 /// Forward Euler: yⁿ⁺¹ = yⁿ + dt f(yⁿ). Unstable for sound at every dt; used only in tests.
@@ -14,7 +14,7 @@ impl<P: Physics> Integrator<P> for Euler {
     const NAME: &'static str = "euler";
     type Memory = ();
 
-    fn step(engine: &mut Engine<P>, (): &mut (), state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, (): &mut (), state: &mut Particles<P>, dt: f64) -> Stepped {
         engine.begin(state)?;
         engine.sweep_all(state, &each(advance(dt)));
         Ok(())

@@ -9,8 +9,8 @@ use crate::{
     engine::{Engine, each},
     numbers::Numbers,
     particle_data::Checkpoint,
-    particles::{Evolved, Rate},
-    physics::{Physics, State},
+    particles::{Rate, State},
+    physics::{Particles, Physics},
 };
 
 /// Staggered leapfrog: vⁿ⁺½ = vⁿ⁻½ + dt a(xⁿ, ρⁿ, vⁿ⁻½), then with the **new** velocities
@@ -35,7 +35,7 @@ pub trait Kick<P: Physics>: 'static {
     fn kick(
         engine: &mut Engine<P>,
         memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         times: KickTimes,
     ) -> Stepped;
 }
@@ -61,7 +61,7 @@ impl<P: Physics> Kick<P> for ForwardKick {
     fn kick(
         engine: &mut Engine<P>,
         (): &mut (),
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         times: KickTimes,
     ) -> Stepped {
         engine.sweep_forces(state, &each(kick(times)));
@@ -69,8 +69,8 @@ impl<P: Physics> Kick<P> for ForwardKick {
     }
 }
 
-fn kick<X: Numbers>(times: KickTimes) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
-    move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| {
+fn kick<X: Numbers>(times: KickTimes) -> impl Fn(usize, &mut State<X>, &Rate<X>) + Sync {
+    move |_, evolved: &mut State<X>, rate: &Rate<X>| {
         evolved.kick(times.velocity, rate);
         evolved.position += evolved.velocity * times.position;
     }
@@ -78,8 +78,8 @@ fn kick<X: Numbers>(times: KickTimes) -> impl Fn(usize, &mut Evolved<X>, &Rate<X
 
 /// Advances all but the velocity by dt; the first `fluid` particles, which move, from the middle of this
 /// time.
-fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
-    move |i, evolved: &mut Evolved<X>, rate: &Rate<X>| {
+fn drift<X: Numbers>(dt: f64, fluid: usize) -> impl Fn(usize, &mut State<X>, &Rate<X>) + Sync {
+    move |i, evolved: &mut State<X>, rate: &Rate<X>| {
         evolved.drift(dt, rate);
         if i < fluid {
             evolved.position -= evolved.velocity * (0.5 * dt);
@@ -98,14 +98,14 @@ pub struct Staggered {
 
 impl Staggered {
     /// Gives the state back the velocities that were held, if any were.
-    pub(super) fn release<X>(&mut self, state: &mut [Evolved<X>]) {
+    pub(super) fn release<X>(&mut self, state: &mut [State<X>]) {
         for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
             evolved.velocity = velocity;
         }
     }
 
     /// The lag of velocities that are not synchronised yet \[s\], which are held from now on.
-    pub(super) fn hold<X>(&mut self, fluid: &[Evolved<X>]) -> KickTimes {
+    pub(super) fn hold<X>(&mut self, fluid: &[State<X>]) -> KickTimes {
         self.held.extend(fluid.iter().map(|evolved| evolved.velocity));
         KickTimes { velocity: self.lag, position: 0.0 }
     }
@@ -140,7 +140,7 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     fn step(
         engine: &mut Engine<P>,
         memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         dt: f64,
     ) -> Stepped {
         let (staggered, kick) = memory;
@@ -159,7 +159,7 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
     fn synchronise(
         engine: &mut Engine<P>,
         memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
     ) -> Stepped {
         let (staggered, kick) = memory;
         if staggered.is_behind() {

@@ -19,8 +19,8 @@ use crate::{
     kernel::Kernel,
     numbers::Numbers,
     particle_data::Checkpoint,
-    particles::{Evolved, Rate},
-    physics::{Compose, Physics, State},
+    particles::{Rate, State},
+    physics::{Compose, Particles, Physics},
     terms::Term,
     walls::Walls,
 };
@@ -36,7 +36,7 @@ pub trait Integrator<P: Physics>: 'static {
     fn step(
         engine: &mut Engine<P>,
         memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         dt: f64,
     ) -> Stepped;
 
@@ -44,7 +44,7 @@ pub trait Integrator<P: Physics>: 'static {
     fn synchronise(
         engine: &mut Engine<P>,
         _memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
     ) -> Stepped {
         engine.begin(state)
     }
@@ -94,9 +94,9 @@ impl<X: Numbers, A: Memory<X>, B: Memory<X>> Memory<X> for (A, B) {
 }
 
 /// States inside a step.
-impl<X: Numbers> Memory<X> for Vec<Evolved<X>> {
+impl<X: Numbers> Memory<X> for Vec<State<X>> {
     fn bytes(&self) -> usize {
-        self.capacity() * size_of::<Evolved<X>>()
+        self.capacity() * size_of::<State<X>>()
     }
 }
 
@@ -125,6 +125,6 @@ pub type PhysicsOf<S> = Compose<
 >;
 
 /// Advances a particle by dt \[s\]. Like every update it does not depend on the scheme and is compiled once.
-fn advance<X: Numbers>(dt: f64) -> impl Fn(usize, &mut Evolved<X>, &Rate<X>) + Sync {
-    move |_, evolved: &mut Evolved<X>, rate: &Rate<X>| *evolved = evolved.advanced(dt, rate)
+fn advance<X: Numbers>(dt: f64) -> impl Fn(usize, &mut State<X>, &Rate<X>) + Sync {
+    move |_, evolved: &mut State<X>, rate: &Rate<X>| *evolved = evolved.advanced(dt, rate)
 }

@@ -3,8 +3,8 @@
 use super::{Integrator, Stepped, advance};
 use crate::{
     engine::{Engine, each},
-    particles::Evolved,
-    physics::{Physics, State},
+    particles::State,
+    physics::{Particles, Physics},
 };
 
 /// The predictor-corrector of the paper, taken to be the explicit midpoint rule (inferred; the paper does
@@ -18,12 +18,12 @@ pub struct PredictorCorrector;
 impl<P: Physics> Integrator<P> for PredictorCorrector {
     const NAME: &'static str = "predictor-corrector";
     /// The state in the middle of a step.
-    type Memory = Vec<Evolved<P::Extra>>;
+    type Memory = Vec<State<P::Extra>>;
 
     fn step(
         engine: &mut Engine<P>,
         midpoint: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         dt: f64,
     ) -> Stepped {
         engine.begin(state)?;

@@ -8,8 +8,8 @@ use crate::{
     engine::{Engine, each},
     numbers::Numbers,
     particle_data::{Checkpoint, PreviousStep},
-    particles::{Evolved, Rate},
-    physics::{Physics, State},
+    particles::{Rate, State},
+    physics::{Particles, Physics},
 };
 
 /// Forces a and drift D from one pair sweep at (xⁿ, vⁿ⁻½, ρ̃ⁿ):
@@ -50,7 +50,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
     fn step(
         engine: &mut Engine<P>,
         memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         dt: f64,
     ) -> Stepped {
         let (staggered, past) = memory;
@@ -59,14 +59,14 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         let (half, fluid) = (0.5 * dt, engine.data.fluid_count());
         let (kick, known) = (staggered.lag + half, 2.0 * staggered.lag);
         if known == 0.0 {
-            let start = |e: &Evolved<P::Extra>| PreviousStep {
+            let start = |e: &State<P::Extra>| PreviousStep {
                 drifted: (e.density, e.extra),
                 rate: Default::default(),
             };
             past.clear();
             past.extend(state[..engine.swept()].iter().map(start));
         }
-        let update = |i: usize, evolved: &mut Evolved<_>, rate: &Rate<_>| {
+        let update = |i: usize, evolved: &mut State<_>, rate: &Rate<_>| {
             if i < fluid {
                 // dx/dt beyond v: the sweep has added the velocity before the kick.
                 let shift = rate.position - evolved.velocity;
@@ -92,7 +92,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
     fn synchronise(
         engine: &mut Engine<P>,
         memory: &mut Self::Memory,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
     ) -> Stepped {
         let (staggered, past) = memory;
         if staggered.is_behind() {

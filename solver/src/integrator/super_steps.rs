@@ -8,8 +8,8 @@ use super::{Kick, KickTimes, Memory, Stepped};
 use crate::{
     engine::{Engine, each},
     numbers::Numbers,
-    particles::{Evolved, Rate},
-    physics::{Physics, State},
+    particles::{Rate, State},
+    physics::{Particles, Physics},
     terms::{Split, Term},
 };
 
@@ -43,11 +43,11 @@ fn weight(j: u32) -> f64 {
 #[derive(Default)]
 pub struct Stages<X> {
     /// dv/dt by all forces at the start of the kick, in the place of v.
-    start: Vec<Evolved<X>>,
+    start: Vec<State<X>>,
     /// v minus its value at the start, in the last stage but one.
-    older: Vec<Evolved<X>>,
+    older: Vec<State<X>>,
     /// v minus its value at the start, in the last stage.
-    newer: Vec<Evolved<X>>,
+    newer: Vec<State<X>>,
 }
 
 impl<X: Numbers> Memory<X> for Stages<X> {
@@ -65,7 +65,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
     fn kick(
         engine: &mut Engine<P>,
         stages: &mut Stages<P::Extra>,
-        state: &mut State<P>,
+        state: &mut Particles<P>,
         times: KickTimes,
     ) -> Stepped {
         const { assert!(!T::NORMALISES, "moments are not summed for a part") };
@@ -79,7 +79,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
             stage.extend_from_slice(state);
             stage.iter_mut().for_each(|evolved| evolved.velocity = Vector2::zeros());
         }
-        let take = |_, start: &mut Evolved<_>, rate: &Rate<_>| start.velocity = rate.velocity;
+        let take = |_, start: &mut State<_>, rate: &Rate<_>| start.velocity = rate.velocity;
         engine.sweep_forces(start, &each(take));
         for (newer, start) in newer.iter_mut().zip(&*start) {
             newer.velocity = start.velocity * (weight(1) * length);
@@ -88,7 +88,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
             let share = |back: u32| weight(j) / (weight(j - back) * f64::from(j));
             let (last, before) = (f64::from(2 * j - 1) * share(1), f64::from(j - 1) * share(2));
             engine.refresh_differences(newer)?;
-            let update = |i: usize, older: &mut Evolved<_>, rate: &Rate<_>| {
+            let update = |i: usize, older: &mut State<_>, rate: &Rate<_>| {
                 let rate = rate.velocity + start[i].velocity * weight(j - 1);
                 let advanced = newer[i].velocity + rate * length;
                 older.velocity = advanced * last - older.velocity * before;

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Walls;
-use crate::particles::Evolved;
+use crate::particles::State;
 
 /// A straight wall of infinite length.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl PlaneWall {
     /// Moves a particle that has crossed the wall to the place of its mirror particle, which left the wall
     /// when the particle entered it, and reverses its velocity into the wall.
     #[inline(always)]
-    pub(crate) fn put_back<X>(&self, particle: &mut Evolved<X>) {
+    pub(crate) fn put_back<X>(&self, particle: &mut State<X>) {
         let depth = self.depth(particle.position);
         if depth < 0.0 {
             particle.position -= self.normal * (2.0 * depth);

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 use std::time::Instant;
 
 use touchstone_base::breakdown::{Breakdown, Part};
-use touchstone_solver::{Evolved, GROUP, Numbers, Phase, Stepper};
+use touchstone_solver::{GROUP, Numbers, Phase, State, Stepper};
 
 /// The pair sweep over the forces.
 pub const FORCES: &str = "force sweep";
@@ -140,7 +140,7 @@ impl Profiler {
         lists.count += 1.0;
         lists.particles += simulation.data().fluid_count() as f64;
         lists.column_bytes += simulation.data().column_bytes as f64;
-        lists.state_bytes += (particles * size_of::<Evolved<X>>()) as f64;
+        lists.state_bytes += (particles * size_of::<State<X>>()) as f64;
     }
 
     /// What was found so far.

@@ -9,7 +9,7 @@ use std::time::Instant;
 use touchstone_base::functions::sin;
 
 use nalgebra::Vector2;
-use touchstone_solver::{integrator::Stepped, physics::State, *};
+use touchstone_solver::{integrator::Stepped, physics::Particles, *};
 
 /// The scheme whose right-hand side is measured.
 pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;
@@ -47,7 +47,7 @@ impl<P: Physics> Integrator<P> for Rebuilding {
     const NAME: &'static str = "rebuilding";
     type Memory = ();
 
-    fn step(engine: &mut Engine<P>, (): &mut (), state: &mut State<P>, dt: f64) -> Stepped {
+    fn step(engine: &mut Engine<P>, (): &mut (), state: &mut Particles<P>, dt: f64) -> Stepped {
         state.iter_mut().for_each(|evolved| evolved.position.x += dt);
         engine.begin(state)
     }

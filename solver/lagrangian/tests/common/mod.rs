@@ -70,10 +70,10 @@ pub fn put<L: Law, C: Load>(
 }
 
 /// Mass, position, velocity and force.
-pub type State = (f64, Vector2<f64>, Vector2<f64>, Vector2<f64>);
+pub type StoredState = (f64, Vector2<f64>, Vector2<f64>, Vector2<f64>);
 
 /// For all particles in the order of storage.
-pub fn forces<L: Law, C: Load>(solid: &Block<L, C>) -> Vec<State> {
+pub fn forces<L: Law, C: Load>(solid: &Block<L, C>) -> Vec<StoredState> {
     let rates = solid.total_rates();
     let all = solid.data().fluid().zip(&rates);
     all.map(|((m, e), r)| (m, e.position, e.velocity, r.velocity * m)).collect()
@@ -88,6 +88,6 @@ pub fn stored<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
 /// The whole energy.
 pub fn energy<L: Law, C: Load>(solid: &Block<L, C>) -> f64 {
     let kinetic =
-        |(m, e): (f64, &touchstone_solver::Evolved<Symmetric>)| 0.5 * m * e.velocity.norm_squared();
+        |(m, e): (f64, &touchstone_solver::State<Symmetric>)| 0.5 * m * e.velocity.norm_squared();
     stored(solid) + solid.data().fluid().map(kinetic).fold(0.0, |sum, one| sum + one)
 }

@@ -182,7 +182,7 @@ fn parts(method: &Method, s: &BoxSettings) -> Parts {
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
 fn energy(simulation: &dyn Stepper<()>) -> f64 {
-    let of = |(mass, e): (f64, &touchstone_solver::Evolved<()>)| {
+    let of = |(mass, e): (f64, &touchstone_solver::State<()>)| {
         0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
     };
     simulation.data().fluid().map(of).sum()

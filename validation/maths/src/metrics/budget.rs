@@ -12,13 +12,13 @@
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, Evolved,
-    FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation, Stepper, Term, Xsph,
+    ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, FluidPairs,
+    Numbers, Pressure, Rate, Scheme, Simulation, State, Stepper, Term, Xsph,
     terms::{Rest, Tensile},
 };
 
 /// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
-pub type Slope<'a, X> = &'a dyn Fn(f64, &Evolved<X>, &Rate<X>) -> f64;
+pub type Slope<'a, X> = &'a dyn Fn(f64, &State<X>, &Rate<X>) -> f64;
 
 /// Powers of terms \[W/m\]: artificial viscosity (16), (17), artificial stress (18), (19), density diffusion,
 /// XSPH (22), and pressure against walls whose particles are outside of the energy budget.
@@ -37,7 +37,7 @@ struct Sums {
 }
 
 /// Masses and states of particles.
-type Masses<'a, X> = dyn Iterator<Item = (f64, &'a Evolved<X>)> + 'a;
+type Masses<'a, X> = dyn Iterator<Item = (f64, &'a State<X>)> + 'a;
 
 // Compiled once for all schemes.
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use touchstone_base::functions::{exp_m1, ln};
-use touchstone_solver::{EquationOfState, Evolved, Numbers, Rate, Stepper, Tait};
+use touchstone_solver::{EquationOfState, Numbers, Rate, State, Stepper, Tait};
 
 /// Parameters of the energy of a particle.
 #[derive(Clone, Copy, Debug)]
@@ -56,10 +56,10 @@ impl Water {
 
 /// The slope of that energy: m (v·v̇ + (p/ρ²) ρ̇ − g·ẋ), ẋ without v, whose part is the work of
 /// gravity on both sides.
-pub fn water_slope<X>(water: &Water) -> impl Fn(f64, &Evolved<X>, &Rate<X>) -> f64 + use<X> {
+pub fn water_slope<X>(water: &Water) -> impl Fn(f64, &State<X>, &Rate<X>) -> f64 + use<X> {
     let Water { eos, gravity } = *water;
     move |mass, particle, rate| {
-        let Evolved { velocity, density, .. } = particle;
+        let State { velocity, density, .. } = particle;
         let pressure = eos.pressure(*density) / (density * density);
         mass * (velocity.dot(&rate.velocity) + pressure * rate.density
             - gravity.dot(&rate.position))

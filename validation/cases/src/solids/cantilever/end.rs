@@ -45,7 +45,7 @@ impl End {
     fn energy(&self, simulation: &dyn Stepper<Symmetric>) -> [f64; 3] {
         let mut found = Energy::of(simulation, &self.settings.material());
         if simulation.potential().is_none() {
-            let height = |(mass, p): (f64, &Evolved<Symmetric>)| mass * p.position.y;
+            let height = |(mass, p): (f64, &State<Symmetric>)| mass * p.position.y;
             let height = simulation.data().fluid().map(height).fold(0.0, |sum, one| sum + one);
             found.compression += self.settings.gravity * height;
         }

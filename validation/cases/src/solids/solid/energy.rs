@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 use touchstone_base::functions::ln_1p;
-use touchstone_solver::{Evolved, Numbers, Particle, Potential, Stepper, Symmetric};
+use touchstone_solver::{Numbers, Particle, Potential, State, Stepper, Symmetric};
 
 use super::Material;
 
@@ -30,7 +30,7 @@ impl Energy {
     /// Of a simulation whose forces derive from energies.
     pub fn known(simulation: &dyn Stepper<Symmetric>) -> Option<Self> {
         let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
-        let half = |(mass, p): (f64, &Evolved<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
+        let half = |(mass, p): (f64, &State<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
         let kinetic = simulation.data().fluid().map(half).fold(0.0, |sum, one| sum + one);
         Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
     }
@@ -39,12 +39,12 @@ impl Energy {
     pub fn of_all(particles: &[Particle<Symmetric>], of: &Material) -> Self {
         particles.iter().fold(Self::default(), |sum, p| {
             let Particle { position, velocity, density, extra, .. } = *p;
-            sum.with(p.mass, &Evolved { position, velocity, density, extra }, of)
+            sum.with(p.mass, &State { position, velocity, density, extra }, of)
         })
     }
 
     /// With those of one more particle of this mass \[kg/m\].
-    fn with(self, mass: f64, particle: &Evolved<Symmetric>, material: &Material) -> Self {
+    fn with(self, mass: f64, particle: &State<Symmetric>, material: &Material) -> Self {
         let ratio = particle.density / material.density;
         let c2 = material.bulk / material.density;
         // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
@@ -83,7 +83,7 @@ pub fn angular_momentum<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
         },
     );
     let (centre, drift) = (sums.1 / sums.0, sums.2 / sums.0);
-    let spin = |(m, p): (f64, &Evolved<X>)| m * (p.position - centre).perp(&(p.velocity - drift));
+    let spin = |(m, p): (f64, &State<X>)| m * (p.position - centre).perp(&(p.velocity - drift));
     simulation.data().fluid().map(spin).fold(0.0, |sum, one| sum + one)
 }
 
@@ -92,12 +92,12 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    fn particle(density: f64, speed: f64, extra: Symmetric) -> Evolved<Symmetric> {
+    fn particle(density: f64, speed: f64, extra: Symmetric) -> State<Symmetric> {
         let velocity = Vector2::new(0.6 * speed, -0.8 * speed);
-        Evolved { position: Vector2::zeros(), velocity, density, extra }
+        State { position: Vector2::zeros(), velocity, density, extra }
     }
 
-    fn of_one(mass: f64, particle: &Evolved<Symmetric>, material: &Material) -> Energy {
+    fn of_one(mass: f64, particle: &State<Symmetric>, material: &Material) -> Energy {
         Energy::default().with(mass, particle, material)
     }
 

@@ -28,7 +28,7 @@ const LOST: f64 = 0.5;
 ///
 /// A gauge that adds up what is wet, not one that finds the topmost drop. Exact for columns of a
 /// lattice, wherever they stand, if w is a whole number of spacings.
-fn depth<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, x: f64, w: f64) -> f64 {
+fn depth<'a>(particles: impl Iterator<Item = (f64, &'a State<()>)>, x: f64, w: f64) -> f64 {
     particles.fold(0.0, |sum, (mass, p)| {
         let hat = (1.0 - ((p.position.x - x) / w).abs()).max(0.0);
         sum + mass / p.density * hat / w
@@ -45,7 +45,7 @@ fn probe(x: f64, spacings: f64, dx: f64, width: f64) -> (f64, f64) {
 }
 
 /// x of the foremost particle below a quarter of the height of the column \[m\]: spray is no front.
-fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a Evolved<()>)>, height: f64) -> f64 {
+fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a State<()>)>, height: f64) -> f64 {
     let low = particles.filter(|(_, p)| p.position.y < 0.25 * height);
     low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -525,9 +525,9 @@ mod tests {
         }
     }
 
-    fn still(x: f64, y: f64) -> Evolved<()> {
+    fn still(x: f64, y: f64) -> State<()> {
         let (position, velocity) = (Vector2::new(x, y), Vector2::zeros());
-        Evolved { position, velocity, density: 1000.0, extra: () }
+        State { position, velocity, density: 1000.0, extra: () }
     }
 
     #[test]

@@ -47,7 +47,7 @@ pub struct Watch {
 /// Keeps the particles with their pressure for a picture.
 fn picture(dam: &Dam, simulation: &dyn Metered<()>, record: &mut Record) {
     let (height, unit) = (dam.settings.height, dam.unit_pressure());
-    let value = |p: &Evolved<()>| dam.medium.eos.pressure(p.density) / unit;
+    let value = |p: &State<()>| dam.medium.eos.pressure(p.density) / unit;
     let fluid = simulation.data().fluid().map(|(_, p)| (p.position / height, value(p)));
     pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
 }
