@@ -22,7 +22,7 @@ use crate::solids::{
 };
 use crate::waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};
 
-/// Every case, in the order of the report: the five of the paper, then those that support them.
+/// Every case, in the order of the report: the five of the paper, then the supporting ones.
 pub static CASES: &[&dyn Case] = &[
     &channel::COUETTE,
     &channel::POISEUILLE,
@@ -71,7 +71,7 @@ pub fn users(reference: &str) -> &'static [&'static str] {
     USERS.iter().find(|(name, _)| *name == reference).map_or(&[], |(_, cases)| cases)
 }
 
-/// What stands behind the references that a case is compared with: name and grade of each.
+/// Name and grade of each reference of a case.
 pub fn graded(case: &str) -> Vec<(&'static str, String)> {
     let is_user = |name: &str| users(name).contains(&case);
     let found = Reference::names().into_iter().filter(|name| is_user(name));

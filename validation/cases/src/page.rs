@@ -173,7 +173,7 @@ fn of_others(suite: &Suite) -> Option<String> {
     (!links.is_empty()).then(|| format!("{words} ({}).", links.join(", ")))
 }
 
-/// What all runs of the report cost together.
+/// Total cost of all runs of the report.
 fn cost(suite: &Suite) -> String {
     let records = || suite.cases.iter().flat_map(|results| &results.runs.all).map(|r| &r.record);
     let cost = || records().map(|record| &record.cost);
@@ -188,7 +188,7 @@ fn cost(suite: &Suite) -> String {
     )
 }
 
-/// What was not made for this page.
+/// Runs that were not made for this page.
 fn reused(suite: &Suite) -> String {
     if suite.made.reused == 0 {
         return String::new();
@@ -255,7 +255,7 @@ fn verdicts(suite: &Suite) -> Section {
         })
 }
 
-/// What holds for all diagrams of a kind.
+/// Notes for all diagrams of a kind.
 const READING: [&str; 2] = [
     "A cost diagram shows one point for each run. The number at a point is the resolution. Run time is the \
      processor time of the time stepping on one core, the median of repeated runs with no other run at work; \
@@ -343,7 +343,7 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
         .table(caption, runs.iter().map(|run| &run.record))
 }
 
-/// `key=value` of what differs from the defaults of the variant, and what is done with it.
+/// Settings that differ from the defaults of the variant, as `key=value`, and the use of the run.
 pub(crate) fn what(case: &dyn Case, spec: &RunSpec) -> String {
     let mut words = case::changed(case, spec);
     match &spec.task {

@@ -1,4 +1,4 @@
-//! What other codes made of exported problems, and this one in turn with them: the records of
+//! Runs of other codes for exported problems, and runs of this one in turn with them: the records of
 //! `references/peers`, which the program contains.
 
 use touchstone_base::{pack, record::Record, spec::RunKey, submission::SESSION};
@@ -9,7 +9,7 @@ const RECORDS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/peers"));
 /// The day on which they were made, in one session.
 const MADE: &str = include_str!("../../../references/peers/made.txt");
 
-/// All of them. A test reads each.
+/// All records. A test reads each.
 pub fn records() -> impl Iterator<Item = Record> {
     let session = |mut record: Record| {
         record.numerics.insert(SESSION.into(), MADE.trim().into());
@@ -19,7 +19,7 @@ pub fn records() -> impl Iterator<Item = Record> {
     texts.filter_map(|text| Record::from_json(&text).ok()).map(session)
 }
 
-/// Adds those of the cases of the plans, except where the store has a run of the same code and method.
+/// Adds the records for the cases of the plans, except where the store has a run of the same code and method.
 pub fn add(made: &mut Made, plans: &Plans) {
     let is_planned = |of: &Record| plans.iter().any(|(case, _)| case.name() == of.run.case);
     // Its results may be new.

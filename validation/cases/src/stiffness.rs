@@ -1,4 +1,4 @@
-//! Which mechanism limits the time step of each variant, and what it costs that the others are slower.
+//! The mechanism that limits the time step of each variant, and the cost of the gap to the slower ones.
 
 use touchstone_harness::{
     case::{self, Case, Rules, RunError},
@@ -14,7 +14,7 @@ pub struct Row {
     pub case: &'static str,
     /// Name of the variant.
     pub variant: &'static str,
-    /// What its rules choose.
+    /// The step by its rules.
     pub rules: Rules,
 }
 
@@ -37,19 +37,19 @@ impl Row {
         self.rules.end / self.rules.dt()
     }
 
-    /// The limit of the slowest mechanism over that of the stiffest.
+    /// The limit of the slowest mechanism over the limit of the stiffest.
     pub fn stiffness(&self) -> f64 {
         let Rules { limits, end, .. } = &self.rules;
         limits.slowest(*end) / limits.alone(limits.binding())
     }
 
-    /// Steps of the run over those that the slowest mechanism alone would need.
+    /// Steps of the run over the steps that the slowest mechanism alone would need.
     pub fn cost(&self) -> f64 {
         self.rules.limits.slowest(self.rules.end) / self.rules.dt()
     }
 }
 
-/// What the columns of [`table`] mean.
+/// Explanation of the columns of [`table`].
 pub const READING: &str = "\
     Limits of the time step at default settings, each over the step that is taken: below 1 the \
     mechanism would forbid the step by itself. Limits of waves, viscosity, artificial viscosity and \

@@ -11,7 +11,7 @@ use touchstone_report::{Cell, Section};
 /// A run with its profile.
 type Profiled<'a> = (&'a Record, &'a Breakdown);
 
-/// The largest run of the recommended variant of a case among those that were profiled.
+/// The largest profiled run of the recommended variant of a case.
 fn largest(results: &CaseResults) -> Option<Profiled<'_>> {
     let recommended = results.recommended()?;
     let profiled =

@@ -108,8 +108,8 @@ impl Closed {
     }
 }
 
-/// Fluid at rest on a lattice, and walls on the same lattice. All that is above the lid moves with it: it is
-/// a plate that slides along on the side walls.
+/// Fluid at rest on a lattice, and walls on the same lattice. All particles above the lid move with it: the
+/// lid is a plate that slides along on the side walls.
 fn particles(method: &Method, flow: &UnitFlow) -> Vec<Particle> {
     let (dx, first) = (flow.medium.dx, method.properties.first_row.depth());
     let behind = (flow.support / dx - first - 1e-9).floor() + first;
@@ -127,8 +127,8 @@ fn particles(method: &Method, flow: &UnitFlow) -> Vec<Particle> {
     lattice(Vector2::repeat(-behind * dx), dx, count, count).map(particle).collect()
 }
 
-/// An inner place of a mid-line, the component of the velocity there, what finite differences and Ghia et al.
-/// have.
+/// An inner point of a mid-line, the component of the velocity there, and its values by finite differences
+/// and by Ghia et al.
 type Place = (Vector2<f64>, usize, [f64; 2]);
 
 fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
@@ -145,8 +145,8 @@ fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
     Ok([line(0)?, line(1)?].concat())
 }
 
-/// The velocity at a place: that of a quadratic field that is fitted to the fluid within 4.5 spacings, with
-/// weights V W, so that a boundary layer is not smoothed. NaN without a fit.
+/// The velocity at a point, from a quadratic field fitted to the fluid within 4.5 spacings with weights V W,
+/// so that a boundary layer is not smoothed. NaN without a fit.
 fn velocity((place, component, _): &Place, particles: &[Particle], dx: f64) -> f64 {
     let kernel = Smoothing::<QuinticSpline>::new(1.5 * dx);
     let (mut moments, mut sum) = (SMatrix::<f64, 6, 6>::zeros(), SVector::<f64, 6>::zeros());
@@ -165,7 +165,7 @@ fn velocity((place, component, _): &Place, particles: &[Particle], dx: f64) -> f
 /// Samples of the last fifth of the run.
 const SAMPLES: usize = 20;
 
-/// What is measured of the means at these places over the last fifth of the run.
+/// Metrics from the mean velocities at these points over the last fifth of the run.
 fn measure(places: &[Place], means: &[f64], record: &mut Record) {
     if places.is_empty() {
         return record.leave_out(STRENGTH, "the reference has Re 100 and 1000");
@@ -297,7 +297,7 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     let inside = of(OUTSIDE, Bound::Equals(0.0), Invariant, "No particle passes a wall.");
     let volume = of(VOLUME, Bound::Within(-mach2, mach2), Invariant, closed);
     let strength = of(STRENGTH, Bound::Within(-0.02, mach2), Reference, driven);
-    // The lid and its layer are most of the strength, which does not see that what comes back is weak.
+    // The lid and its layer are most of the strength, which does not show that the return flow is weak.
     let back = of(RETURN, Bound::Within(-0.02, mach2), Reference, driven);
     let [u, v] = [U_RMS, V_RMS].map(|metric| of(metric, half_dx, Reference, half));
     let control = of(U_RMS, half_dx, Reference, control);
@@ -398,9 +398,10 @@ mod tests {
         (method, flow)
     }
 
-    /// The lid is a plate that slides along on the side walls: what is above y = L moves with it, in front of
-    /// the cavity and above its sides, and nothing else does. Sides that end below the lid and a lid between
-    /// them would move the same water, with less flow back; at the corners the walls decide, not the problem.
+    /// The lid is a plate that slides along on the side walls: particles above y = L move with it, in front
+    /// of the cavity and above its sides, and no others do. Sides that end below the lid with a lid between
+    /// them would drive the same water with less return flow: the solution at the corners would depend on the
+    /// walls, not on the problem.
     #[test]
     fn all_particles_above_the_lid_and_no_others_move_with_it() {
         let (method, flow) = setup();
@@ -434,7 +435,7 @@ mod tests {
         }
     }
 
-    /// Velocities 5 % too large at all places, and 0.1 U too large at one.
+    /// Velocities 5 % too large at all points, and 0.1 U too large at one.
     #[test]
     fn what_is_too_much_at_the_places_is_measured() {
         let places = places(100.0).expect("a reference");

@@ -157,7 +157,7 @@ fn measure(Medium { eos, nu, .. }: &Medium, particles: &[Particle], record: &mut
     record.put(PRESSURE_L2, rms(off.iter().map(|p| p - mean)) / rms(fluid().map(pressure)));
 }
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum For {
     /// Re 0.5: the lattice is strained by 0.4 at most.
@@ -173,7 +173,7 @@ fn table(tier: Tier) -> Table {
     let ladders = [SEED, MODERN, CONSISTENT].concat();
     let sides: &[usize] = &[12, 17, 24, 34, 48, 68];
     table.over(For::Strained, &ladders, [&sides[..3], sides], |s, n| s.n = n);
-    // The same time in units of L²/ν, and the speed of sound that Mach 0.05 asks for.
+    // The same time in units of L²/ν, and the speed of sound for Mach 0.05.
     table.over(For::Mixed, &ladders, [&[], &sides[1..]], |s, n| {
         (s.n, s.re, s.end, s.c0) = (n, 10.0, 1.2, 20.0);
     });
@@ -221,7 +221,7 @@ fn gate(of: For, variant: &str) -> Gate {
     gate.with_limitation(Bound::Within(least, low), reason, cause)
 }
 
-/// What the report shows of the case.
+/// Studies of the case.
 fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let refinement = |(of, title): (For, &'static str)| {

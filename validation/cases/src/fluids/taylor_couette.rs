@@ -70,7 +70,7 @@ impl Cylinders {
         let dx = s.gap / s.layers as f64;
         let (h, speed) = (s.h_over_dx * dx, s.re * s.nu / s.gap);
         let inner = s.gap / (s.ratio - 1.0);
-        // Mach 0.1, and not below what is as stiff as viscosity.
+        // Mach 0.1, and at least the sound speed as stiff as viscosity.
         let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
         let medium = method.properties.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
         let medium = Medium { nu: s.nu, ..medium };

@@ -28,7 +28,7 @@ touchstone_base::settings! {
     }
 }
 
-/// The scales of a flow: what a case adds to the numerical settings.
+/// The scales of a flow: additions of a case to the numerical settings.
 #[derive(Clone, Copy, Debug)]
 pub struct Scales {
     /// Reynolds number, 1/ν.
@@ -54,7 +54,7 @@ pub struct Scales {
 /// The numbers of one run.
 #[derive(Clone, Debug)]
 pub struct UnitFlow {
-    /// What terms are made from.
+    /// Constants of the terms.
     pub medium: Medium,
     /// Support radius \[m\].
     pub support: f64,
@@ -93,7 +93,7 @@ impl UnitFlow {
         Self { medium, support, rules, particles, h_over_dx, speed, skin }
     }
 
-    /// What is known of its run before the particles are made.
+    /// Data of its run that need no particles.
     pub fn brief(&self) -> Brief {
         let dx = self.medium.dx;
         Brief::new(self.medium, self.rules, self.particles, DECISIVE)

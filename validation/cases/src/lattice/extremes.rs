@@ -1,8 +1,8 @@
 //! Settings far outside of the usual, each with its own criterion.
 //!
-//! Common to all: nothing hangs, nothing panics, and a run that leaves its bounds ends as
-//! [`touchstone_solver::Outcome::Diverged`] with step, time, particle and quantity. What is not a scene is
-//! refused with its reason; `tests/tests/extremes.rs` shows that, and particles without neighbours.
+//! Common to all: no run hangs or panics, and a run that leaves its bounds ends as
+//! [`touchstone_solver::Outcome::Diverged`] with step, time, particle and quantity. An invalid scene is
+//! refused with the reason; `tests/tests/extremes.rs` tests this, and particles without neighbours.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -83,7 +83,7 @@ fn variants() -> Compositions<ExtremeSettings> {
     const SHORT: &[&str] = &["distance", "steps", "dt"];
     let cubic = touchstone_schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
-    // Positive pressure pairs particles of a cubic spline, not those of a Wendland function.
+    // Positive pressure pairs particles of a cubic spline, not of a Wendland function.
     let pressed = "does it under pressure? Wendland function";
     let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
     let bullet = "does a block that hits another keep the momentum?";
@@ -253,7 +253,7 @@ fn plan(tier: Tier) -> Vec<Planned> {
     table.plan()
 }
 
-/// What is judged of a run, and why.
+/// Gates of a run, with reasons.
 fn gates(Row { variant, settings: s, .. }: &Row<ExtremeSettings, ()>) -> Vec<Gate> {
     let gate = |id: &str, metric: MetricKey, bound, evidence, because: &str| {
         Gate::new(format!("extremes.{id}"), String::from(metric), bound, evidence, because)

@@ -117,8 +117,8 @@ const ETA2: f64 = 0.01;
 const NOISE: f64 = 1e-8;
 /// Resolution of the bisection, relative to the theoretical limit.
 const RESOLUTION: f64 = 0.004;
-/// A growth that theory gives at this much beyond the limit must be seen, so it sets the number of
-/// steps; the number has no other influence on the limit that is found.
+/// Ratio of the step to the limit at which the theoretical growth must be detectable, which sets the number
+/// of steps; it does not affect the resulting limit otherwise.
 const SEEN_FROM: f64 = 1.005;
 /// Fewest and most steps of a run.
 const STEPS: [f64; 2] = [300.0, 12_000.0];
@@ -148,7 +148,7 @@ struct Resting {
 }
 
 impl Resting {
-    /// What the settings say, and theory.
+    /// Setup from settings and theory.
     fn new(method: &Method, s: &BoxSettings) -> Result<Self, RunError> {
         if s.delta > 0.0 && !method.properties.uses.contains(&Knob::Diffusion) {
             let variant = "without density diffusion".into();
@@ -246,7 +246,7 @@ impl Problem for Resting {
     }
 }
 
-/// Sets the step to the limit of a box with what damps it, c₀h/ν, α, δ, and the number of steps.
+/// Sets the step to the limit of a box with its damping, c₀h/ν, α, δ, and sets the number of steps.
 fn at_limit(variant: &str) -> impl Fn(&mut BoxSettings, [f64; 3]) {
     let method = method(variant);
     move |s, [stiffness, alpha, delta]| {
@@ -287,7 +287,7 @@ fn table(tier: Tier) -> Table<BoxSettings, ()> {
     table
 }
 
-/// What is judged of a bisection.
+/// The gate of a bisection.
 fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
     let Properties { kernel, integrator, .. } = method(variant).properties;
     let is_damped = s.alpha > 0.0 || s.delta > 0.0;
@@ -367,7 +367,7 @@ mod tests {
         assert!(!is_stable(&record) && record.value(GREW) == Some(1.0));
     }
 
-    /// What a variant does not damp with must not be set: theory would have it, and the run not.
+    /// A damping that a variant lacks must not be set: theory would include it, and the run would not.
     #[test]
     fn damping_that_a_variant_lacks_is_refused() {
         for set in [|s: &mut BoxSettings| s.alpha = 1.0, |s: &mut BoxSettings| s.delta = 1.0] {

@@ -1,4 +1,4 @@
-//! Why elastic bodies lie outside of their bounds.
+//! Causes why elastic bodies are outside their bounds.
 
 use touchstone_base::gate::Cause;
 
@@ -36,7 +36,7 @@ pub static ONE_LATTICE: Cause = Cause::new(
     "A law of contact between bodies, which pushes and does not pull.",
 );
 
-/// What artificial viscosity does beside damping shocks.
+/// Effects of artificial viscosity other than damping shocks.
 pub static VISCOSITY: Cause = Cause::new(
     "Artificial viscosity, which is proportional to the spacing, takes energy from motion and shifts and \
      widens the front of a wave.",

@@ -80,7 +80,7 @@ touchstone_base::metrics! {
     ENERGY_CHANGE = "energy_change" ["-"] "kinetic and strain energy, end over start, minus 1";
 }
 
-/// What is read from the motion between two steps.
+/// Metrics that need the motion between two steps.
 const STEPWISE: &[MetricKey] =
     &[TRAVEL_ERROR, TRAVEL_LATTICE_ERROR, STRESS_ERROR, CONTACT_TIME_ERROR, EXCHANGE];
 
@@ -185,7 +185,7 @@ pub struct Motion {
     energy: f64,
     /// t \[s\], centre of the velocity \[m\], mean velocities left and right of x = 0 \[m/s\].
     series: Vec<[f64; 4]>,
-    /// Mean −σˣˣ within L/2 of the contact when the bars have come to rest \[Pa\].
+    /// Mean −σˣˣ within L/2 of the contact when the bars are at rest \[Pa\].
     stress: Option<f64>,
 }
 
@@ -308,12 +308,12 @@ impl Watch for Motion {
     }
 }
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
 enum For {
     /// The time of a pulse.
     Pulse,
-    /// The same, for the order alone.
+    /// For the order only.
     Order,
     /// The contact of two bars, in touch from the start or out of each other's reach.
     Meeting,
@@ -337,11 +337,11 @@ fn table(tier: Tier) -> Table<BarSettings, For> {
     table
 }
 
-/// What a lattice of long waves and a front of a few spacings leave of linear theory: G1 differs from
-/// 1 by 0.7 % at h/dx = 1.5, by at most 1.7 % from 1.2 to 1.5.
+/// Deviation of a lattice with a front of a few spacings from linear theory: G1 differs from 1 by 0.7 % at
+/// h/dx = 1.5, by at most 1.7 % from 1.2 to 1.5.
 const LATTICE: f64 = 0.02;
 
-/// Why bars that stood apart are soft.
+/// Why bars with a gap are soft.
 const SOFT: &str = "Until they bear the strain V/c_p, faces sink 0.7 dx into each other's support, because \
     density rises as 0.14 (d/h)^3.5 with the depth d. That takes as long as 2 L/c_p, and viscosity \
     dissipates meanwhile. The bound: what bars of 20 to 80 spacings have at this speed, and `bare` at any \
@@ -369,7 +369,7 @@ fn gates(row: &Row<BarSettings, For>) -> Vec<Gate> {
     gates
 }
 
-/// Of a pulse.
+/// Gates of a pulse.
 fn pulse(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
     let group = "The centre of the velocity moves at the group speed of long waves, whatever the dispersion: \
                  1.0068 c_p on the lattice, c_p with exact gradients. The case was made to show at most 1 %.";
@@ -514,7 +514,7 @@ mod tests {
         let peak = s.particles().into_iter().max_by(|a, b| a.velocity.x.total_cmp(&b.velocity.x));
         let peak = peak.expect("particles");
         assert!((peak.position.x / s.length - 0.25).abs() < 0.02);
-        // The particle stands half a spacing, 0.2 standard deviations, from the peak.
+        // The particle is half a spacing, 0.2 standard deviations, from the peak.
         let speed = 0.6483 * exp(-0.02);
         assert_relative_eq!(peak.velocity.x, speed, max_relative = 1e-3);
         // A wave to the right: strain -v/c_p, stress -rho c_p v.
@@ -548,7 +548,7 @@ mod tests {
         let time = 0.5 * s.length / s.wave();
         let of = |factor: f64| {
             let place = move |k: i32| (0.01 * f64::from(k) + 0.005) * 0.1;
-            // The peak has run from 0.25 to 0.75 L; what has come back is below 1e-6 of it.
+            // The peak has moved from 0.25 to 0.75 L; the reflected part is below 1e-6 of it.
             let v = move |x: f64| {
                 let z = (x / 0.1 - 0.75) / 0.0625;
                 let back = (1.25 - x / 0.1) / 0.0625;
@@ -616,8 +616,8 @@ mod tests {
         assert_relative_eq!(right, 0.5, max_relative = 1e-9);
     }
 
-    /// The series began after the first step, and that of bars that collide had the centre of a momentum of
-    /// 0, places of 1e14 m and infinite ones, and that of a pulse the mean of no particles.
+    /// The series must include the start, and must not divide by a momentum of 0, for colliding bars, or
+    /// average over no particles, for a pulse.
     #[test]
     fn the_series_begins_at_the_start_and_is_finite() {
         for collide in [false, true] {
@@ -639,7 +639,7 @@ mod tests {
         assert!(matches!(refused("bare", "xsph=0.5"), Some(RunError::Unused { .. })));
         assert!(matches!(refused("bare", "poisson=0.5"), Some(RunError::Setting(_))));
         assert!(matches!(refused("bare", "courant=2"), Some(RunError::TimeStep { .. })));
-        // Each variant is refused by the theory of its own integrator, which the error names.
+        // Each variant is refused by the theory of its own integrator, whose name is in the error.
         for (variant, name) in [("bare", "leapfrog"), ("seed", "predictor-corrector")] {
             let error = refused(variant, "courant=2").map(|error| error.to_string());
             assert!(error.as_ref().is_some_and(|error| error.contains(name)), "{error:?}");
@@ -648,7 +648,7 @@ mod tests {
         assert!(matches!(refused("nothing", "n=40"), Some(RunError::Unknown { .. })));
     }
 
-    /// What is a term's own is 0 in the record of a method without it.
+    /// Settings of a term are 0 in the record of a method without it.
     #[test]
     fn absent_terms_have_no_settings() {
         let settings = ELASTIC_BAR.settings("bare", &[]).expect("defaults");

@@ -1,8 +1,8 @@
 //! Waves of an elastic solid on a lattice against the gradient symbol: both moduli, exactly.
 //!
-//! Stress and strain rate are both sums of the same symbol g(k), so that on a stress-free lattice a
-//! longitudinal wave has ω² = |g|² (K + 4μ/3)/ρ and a transverse one ω² = |g|² μ/ρ, whatever the
-//! kernel. The leapfrog turns by θ a step, 2 sin(θ/2) = ω dt, which is divided out.
+//! Stress and strain rate are sums with one symbol g(k), so that on a stress-free lattice a longitudinal wave
+//! has ω² = |g|² (K + 4μ/3)/ρ and a transverse one ω² = |g|² μ/ρ, for any kernel. The leapfrog turns by θ a
+//! step, 2 sin(θ/2) = ω dt, which is divided out.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -74,9 +74,9 @@ fn variants() -> Compositions<WaveSettings> {
 /// Particles along each side of the unit square, and their spacing.
 const N: usize = 16;
 const DX: f64 = 1.0 / N as f64;
-/// Velocity amplitude \[c₀\]: what is not linear is smaller than round-off of the density.
+/// Velocity amplitude \[c₀\]: nonlinear effects are below the round-off of the density.
 const AMPLITUDE: f64 = 1e-6;
-/// Density and K are 1, the shear modulus is that of the rubber rings.
+/// Density and K are 1, the shear modulus is the rubber rings'.
 const RUBBER: Material = Material { density: 1.0, bulk: 1.0, shear: 0.22 };
 /// Steps of a wave.
 const STEPS: usize = 400;
@@ -92,7 +92,7 @@ impl WaveSettings {
         Parts::new(medium, Domain::torus(1.0, 1.0), wave.collect())
     }
 
-    /// Of the particles' motion in a wave along x.
+    /// Direction of the particles' motion in a wave along x.
     fn direction(&self) -> Vector2<f64> {
         if self.transverse { Vector2::y() } else { Vector2::x() }
     }

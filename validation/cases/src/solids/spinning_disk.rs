@@ -100,7 +100,7 @@ impl Body for DiskSettings {
     }
 }
 
-/// What happens to the disk through time.
+/// History of the disk.
 #[derive(Serialize, Deserialize)]
 pub struct History {
     #[serde(with = "touchstone_base::settings::as_json")]
@@ -132,7 +132,8 @@ impl History {
         }
         let energy = Energy::of(simulation, &self.settings.material()).total();
         let spin = angular_momentum(simulation);
-        // A sample after the last step, when the velocities of a leapfrog lag, gives way to that of the end.
+        // A sample after the last step, when the velocities of a leapfrog lag, is replaced by the
+        // synchronised one.
         self.series.pop_if(|row| row[0] == simulation.time());
         self.series.push([simulation.time(), spin, energy, stress / mass]);
     }
@@ -213,7 +214,7 @@ fn metrics(series: &[[f64; 4]], revolutions: f64, scale: f64, record: &mut Recor
     record.profiles.insert("spin".into(), profile);
 }
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
 enum For {
     /// How fast the stress in the rim brakes the disk.
@@ -246,7 +247,7 @@ const BRAKED: &str = "The bound: disks of 4 spacings lose 1.9 % of their angular
     revolution without viscosity and 13 % with it, and the loss falls at least as fast as the width of the \
     rim.";
 
-/// How far the angular momentum can be from what it was.
+/// Largest change of the angular momentum.
 const REVERSED: &str = "The disk can spring back. The bound: the square of the angular momentum is at most \
     twice the moment of inertia times the energy, which grows by at most 5 %.";
 
@@ -254,7 +255,7 @@ const REVERSED: &str = "The disk can spring back. The bound: the square of the a
 const ALL_SHEAR: &str = "The stress grows as long as there is kinetic energy to feed it. The bound: all of \
     it, rho U^2/4 per area, and 5 % more, stored as energy of shear, S:S/(4 mu).";
 
-/// Those of all disks, and those of what keeps spinning or does not.
+/// Gates of all disks, and of disks that keep spinning or do not.
 fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
     if matches!(row.group, For::Order | For::Steps) {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Why water lies outside of its bounds.
+//! Causes why water is outside its bounds.
 
 use touchstone_base::gate::Cause;
 
@@ -10,14 +10,14 @@ pub static NO_SLIP_IMAGES: Cause = Cause::new(
      `modern`.",
 );
 
-/// Nothing holds a particle in the plane of a ghost wall.
+/// No force holds a particle in the plane of a ghost wall.
 pub static PRESSED_THROUGH: Cause = Cause::new(
     "A particle that is pressed into the plane of a ghost wall feels equal forces from both sides and may \
      cross it.",
     "Walls of particles, as in `modern`, or ghosts along which water slips, which put it back.",
 );
 
-/// What artificial viscosity does beside damping noise.
+/// Effects of artificial viscosity other than damping noise.
 pub static VISCOSITY: Cause = Cause::new(
     "Artificial viscosity, which is proportional to spacing and sound speed, takes energy from the water and \
      slows its front.",

@@ -68,8 +68,8 @@ touchstone_base::metrics! {
 /// Samples of a run.
 const SAMPLES: usize = 80;
 
-/// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of 1.2 at least for
-/// its sums to be those of a continuum: 2.5 leaves 1.25 at the end.
+/// The strain moves rows apart to two spacings, and the Wendland kernel needs h/dx of at least 1.2 for sums
+/// near the continuum's: 2.5 leaves 1.25 at the end.
 fn modern(s: &mut DropSettings) {
     (s.water.h_over_dx, s.water.alpha, s.water.courant) = (2.5, 0.02, 0.6);
 }
@@ -120,14 +120,14 @@ impl Drop {
             .collect()
     }
 
-    /// The exact drop of the same second moment as these particles at the start.
+    /// The exact drop with the second moment of these initial particles.
     fn exact(&self, start: &[Particle]) -> Exact {
         Exact::circle(shape(start).axes[0], self.settings.strain)
     }
 }
 
-/// Mean place and velocity, and the semi-axes of the ellipse of the same second moments:
-/// a² = 4 Σ m (x − x_c)²/Σ m.
+/// Mean position and velocity, and the semi-axes of the ellipse with equal second moments: a² = 4 Σ m (x −
+/// x_c)²/Σ m.
 struct Shape {
     mass: f64,
     centre: Vector2<f64>,
@@ -151,7 +151,7 @@ fn shape(particles: &[Particle]) -> Shape {
     Shape { mass, centre, velocity, axes }
 }
 
-/// What is measured through time.
+/// Measurements through time.
 #[derive(Serialize, Deserialize)]
 struct History {
     /// The exact drop at the start.
@@ -160,7 +160,7 @@ struct History {
     rows: Vec<[f64; 5]>,
     /// Largest errors of momentum and of the place of the centre.
     free_fall: [f64; 2],
-    /// Sum over samples of the mean square error of the velocities, over that of the exact ones.
+    /// Sum over samples of the mean square error of the velocities, over the mean square of the exact ones.
     velocity: f64,
 }
 
@@ -300,12 +300,12 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     plan: |tier| table(tier).plan(),
 };
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
 enum Group {
     /// Judged, without gravity.
     Judged,
-    /// Beside those, over resolutions.
+    /// Further resolutions.
     Ladder,
     /// With as short a smoothing length as the paper's variant.
     Narrow,
@@ -499,7 +499,8 @@ mod tests {
         assert!(matches!(run("modrn", |_| {}), Err(RunError::Unknown { .. })));
     }
 
-    /// The exact ellipse was that of the nominal radius, which a lattice has to a few per mille only.
+    /// The exact ellipse has the second moment of the particles: the nominal radius of a lattice is exact to
+    /// a few per mille only.
     #[test]
     fn a_drop_that_has_not_moved_has_no_error_whatever_its_spacing() {
         for (n, variant) in [(8, "modern"), (17, "modern"), (20, "seed"), (40, "modern")] {
@@ -523,7 +524,7 @@ mod tests {
         }
     }
 
-    /// Four particles that do not see each other, on the axes, moving as the strain and freely falling.
+    /// Four particles without neighbours, on the axes, moving with the strain and freely falling.
     #[test]
     fn extents_and_places_of_a_drop_put_by_hand_are_measured() {
         let settings: DropSettings = {
@@ -579,7 +580,7 @@ mod tests {
         is(value(MOMENTUM_ERROR), 0.1);
         // Each is off by A a (0.03, 0.06), and four are at (r^2 + |at|^2)^(1/2) in the mean square.
         is(value(VELOCITY_RMS), (0.018 / 2.01_f64).sqrt());
-        // Later they have flown straight on and fallen, and the exact axes are those of that time.
+        // Later they have moved uniformly and fallen, and the exact axes belong to the later time.
         let (mut falling, mut later, t) =
             (simulation([1.0, 1.0], zero, zero), history(), 0.3 / rate);
         falling.advance(t, 1e-4, &mut ());

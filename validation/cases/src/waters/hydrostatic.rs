@@ -1,5 +1,5 @@
-//! Water at rest in an open tank: a column of Tait fluid, compressed by its own weight, whose density
-//! and pressure are known exactly. What walls and density treatments do to it is all that happens.
+//! Water at rest in an open tank: a column of Tait fluid, compressed by its own weight, with exactly known
+//! density and pressure. All motion is an effect of walls and density treatments.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -135,7 +135,7 @@ struct Column {
     medium: Medium,
     rules: Rules,
     tank: geometry::Tank,
-    /// Height of the first row above bottom and beside the left side \[m\].
+    /// Height of the first row above bottom and its distance from the left side \[m\].
     first: f64,
     /// Height of the surface, half a spacing above the highest row \[m\].
     level: f64,
@@ -172,8 +172,7 @@ impl Column {
         self.exact.pressure(self.level - p.position.y)
     }
 
-    /// A particle that does not move, with the density that is exact at its place, or that of the
-    /// surface.
+    /// A particle at rest, with the density that is exact at its position, or with the surface density.
     fn at_rest(&self, place: Vector2<f64>) -> Particle {
         let depth = if self.settings.uniform { 0.0 } else { self.level - place.y };
         let (density, dx) = (self.exact.density(depth), self.medium.dx);
@@ -193,9 +192,9 @@ impl Column {
             .map(move |x| self.at_rest(x + Vector2::new(jitter(), jitter())))
     }
 
-    /// The scene. Particles of walls have the density of the water that would be in their place: that of the
-    /// interface is frozen, and what others push with is their mass by p/ρ², so that with the mass of the
-    /// surface a compressed column would sink into the bottom.
+    /// The scene. Wall particles have the density of water at their position: the density of the interface is
+    /// constant, and its effect on others is its mass by p/ρ², so that with the surface mass a compressed
+    /// column would sink into the bottom.
     fn parts(&self) -> Result<Parts, RunError> {
         let m = &self.method;
         let walls = water::wall_particles(
@@ -260,8 +259,8 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
     simulation.particles().into_iter().filter(|p| p.role == Role::Fluid).collect()
 }
 
-/// Names and units of the columns of a history: time, error of the pressure, mean height of the highest
-/// particles and of the lowest less that at the start, kinetic energy.
+/// Names and units of the columns of a history: time, error of the pressure, mean height of the highest and
+/// of the lowest particles minus the height at the start, kinetic energy.
 const HISTORY: [(&str, &str); 5] =
     [("t", "4 H/c0"), ("p_l2", "-"), ("level_drift", "H"), ("gap", "dx"), ("kinetic", "M g H")];
 
@@ -308,7 +307,7 @@ impl History {
         ]);
     }
 
-    /// The history, and what it says of a run that reached its end.
+    /// The history, and the metrics of a run that reached its end.
     fn measure(&self, record: &mut Record) {
         if let Some([end, pressure, level, gap, _]) = self.rows.last().copied()
             && record.status == Status::Completed
@@ -325,7 +324,7 @@ impl History {
     }
 }
 
-/// The mean distance of the share of the water at less x from that of water everywhere in the tank.
+/// The mean distance between the fraction of the water at smaller x and the fraction for uniform water.
 fn spread(water: &[Particle], width: f64) -> f64 {
     let mut places: Vec<(f64, f64)> =
         water.iter().map(|p| (p.position.x / width, p.mass)).collect();
@@ -351,14 +350,14 @@ fn ends(column: &Column, water: &[Particle]) -> [f64; 2] {
     [0, 1].map(|k| filled.iter().map(|s| s[k]).sum::<f64>() / filled.len() as f64)
 }
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
 enum Group {
     /// Judged, with 20 rows.
     Judged,
     /// A start that is not at rest, judged when the water has come to rest.
     Disturbed,
-    /// What must fail: a wall that extrapolates the pressure, or density diffusion, as if nothing weighed.
+    /// Controls that must fail: walls that extrapolate the pressure, or density diffusion, without gravity.
     Control,
     /// Resolutions.
     Ladder,
@@ -386,8 +385,8 @@ fn table(tier: Tier) -> table::Table<HydrostaticSettings, Group> {
     table
 }
 
-/// The error of the pressure over resolutions, and what the gates must detect.
-/// Water at rest is exact for any compressibility; judged are 20 rows.
+/// The error of the pressure over resolutions, and the errors that gates must detect. Water at rest is exact
+/// for any compressibility; the judged run has 20 rows.
 const SEALED: Draws = Draws {
     variants: &["modern"],
     resolution: ("rows", [14.0, 32.0]),
@@ -475,7 +474,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     let spread = exact(SPREAD, Bound::Below(0.5), across);
     let kinetic = exact(KINETIC, Bound::Below(2.5e-5), still);
     let mut gates = vec![pressure, gap, kinetic, outside, spread];
-    // A start of other densities or places has another level than the column that it comes to rest as.
+    // A start with other densities or positions has another level than the column at rest.
     if row.group == Group::Judged {
         gates.push(exact(LEVEL_DRIFT, Bound::Within(-0.005, 0.005), stays));
     }

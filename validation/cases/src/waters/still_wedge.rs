@@ -1,4 +1,4 @@
-//! Still water over a wedge: corners and edges at which walls must bear what is above them. Depth H = 1 m.
+//! Still water over a wedge: corners and edges at which walls must bear the weight above them. Depth H = 1 m.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -168,8 +168,8 @@ fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Par
     Ok(particles)
 }
 
-/// What is measured over the last quarter of the run. The start is not quite at rest, and what sound is left
-/// must not be taken for a pressure: means over periods hide it, and the kinetic energy shows it.
+/// Metrics over the last quarter of the run. The start is not exactly at rest, and the remaining sound must
+/// not count as pressure: means over periods remove it, and the kinetic energy shows it.
 #[derive(Default, Serialize, Deserialize)]
 struct Moments {
     samples: f64,
@@ -284,7 +284,7 @@ fn table(tier: Tier) -> table::Table<Wedge, ()> {
     table
 }
 
-/// Why walls of particles whose density follows (3) do not bear what is above them.
+/// Why walls of particles with a density by (3) do not bear the weight above them.
 static UNWEIGHED: Cause = Cause::new(
     "The density of interface and wall particles follows (3) and knows no weight, so that a wall that is too \
      light stays so.",

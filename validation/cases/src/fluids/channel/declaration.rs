@@ -1,7 +1,7 @@
-//! What the channel flows declare: profiles over the exact ones, ladders of resolutions, an error budget, the
-//! largest stable steps, maps and the errors of constants that gates must detect; and what only they have to
-//! say: what a step saves that viscosity does not limit, and the paper's hypotheses on waves and instability.
-//! Its claims on profiles (H1, H2) and walls (M4) are gates.
+//! Declaration of the channel flows: profiles against exact ones, ladders of resolutions, an error budget,
+//! the largest stable steps, maps and the errors of constants that gates must detect; and studies of channels
+//! only: the gain of a step that viscosity does not limit, and the paper's hypotheses on waves and
+//! instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
     ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,
@@ -11,7 +11,7 @@ use touchstone_base::{gate::*, mutation::Constant, record::*, spec::*};
 use touchstone_harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
 use touchstone_report::Axis;
 
-/// What a flow declares.
+/// The declaration of a flow.
 pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
     let table = plan::table(flow, tier);
     let at_half = at_half(flow, &table);
@@ -36,8 +36,8 @@ pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
     }
 }
 
-/// The series is exact at any Reynolds number; judged are 20 rows, between which and those drawn errors
-/// change with the second order of walls and kernel.
+/// The series is exact at any Reynolds number; the judged run has 20 rows, and from there to drawn
+/// resolutions errors change with the second order of walls and kernel.
 const SEALED: Draws = Draws {
     variants: &["modern", "curved"],
     resolution: ("rows", [14.0, 32.0]),
@@ -48,7 +48,7 @@ const SEALED: Draws = Draws {
     free: &["end"],
 };
 
-/// The velocities of rows across the channel: each row of particles stands for one.
+/// The velocities of rows across the channel: each row of particles represents one.
 fn profile() -> Curve {
     Curve {
         columns: &[("y", "m"), ("u", "m/s")],
@@ -82,7 +82,7 @@ fn comparisons(flow: Flow, accuracy: &Accuracy) -> Vec<Comparison> {
     accuracy.ladders.iter().filter(compared).map(of).collect()
 }
 
-/// What the report says first of the flow.
+/// Summary of the flow in the report.
 fn card(flow: Flow, accuracy: &Accuracy) -> Card {
     let (title, picture) = match flow {
         Flow::Couette => ("Couette flow", "couette-profiles"),
@@ -190,7 +190,7 @@ fn budgets(flow: Flow, tier: Tier) -> Budgets {
 fn changes(flow: Flow, variant: &str, tier: Tier) -> Vec<Change> {
     let case = flow.case();
     let spec = |set: &dyn Fn(&mut ChannelSettings)| case.spec(variant, set);
-    // Of a variant that has no rules every run is refused, and its record says why.
+    // Without rules of its step every run of a variant is refused, and its record states why.
     let rules = case.rules(&spec(&|_| ())).unwrap_or(Rules::REFUSED);
     let (dt, stiffer) = (rules.dt(), 2.0 * rules.sound_speed);
     let (wall, other, ratio, eta2) = match variant {
@@ -235,8 +235,8 @@ pub fn is_stable(record: &Record) -> bool {
         && compared.all(|tau| is_small(L2.at(tau)))
 }
 
-/// The step limits of a flow: of Couette flow all in the full tier, of Poiseuille flow the paper's and what
-/// Couette flow does not have.
+/// The step limits of a flow: all of Couette flow in the full tier; for Poiseuille flow the paper's variant,
+/// and the variants that Couette flow lacks.
 fn limits(flow: Flow, tier: Tier) -> StepLimits {
     let variants = match (flow, tier) {
         (Flow::Couette, Tier::Quick) => vec!["seed", "modern"],
@@ -335,7 +335,7 @@ pub fn studies(flow: Flow, tier: Tier, runs: &Runs) -> Vec<Study> {
 mod tests {
     use super::*;
 
-    /// The gates of a variant whose default settings were refused were not there at all.
+    /// The gates of a variant with refused default settings must exist.
     #[test]
     fn a_variant_that_is_refused_keeps_its_gates() {
         let gate = limit(Flow::Couette, "no such variant").gate.expect("a gate");

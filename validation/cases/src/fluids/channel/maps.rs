@@ -1,7 +1,7 @@
 //! Poiseuille flow of the seed, which becomes unstable: hypotheses H4 and H5 of the paper, that waves grow
 //! with the Reynolds number until the run is unstable (H4) and that a lower sound speed stabilises (H5), and
-//! what cures the instability. It grows from the disorder of the start, or from round-off if there is none,
-//! so that a single run of a chaotic flow says little, and a cell of a map has several starts.
+//! remedies of the instability. It grows from the disorder of the start, or from round-off if there is none.
+//! A single run of a chaotic flow is no evidence, so a cell of a map has several starts.
 
 use std::cmp::Ordering;
 
@@ -16,8 +16,8 @@ const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];
 /// Sound speeds of the map \[V\]. H4 is judged at the middle one, Morris' rule with 1 % density variation.
 const SOUND: [f64; 3] = [5.0, 10.0, 20.0];
 
-/// What is tried against the instability, in the full tier: nothing, the remedies of the paper, those of
-/// others, and the rule; and at which Reynolds numbers.
+/// Remedies of the instability in the full tier (none, the paper's, remedies of others, and the rule), and
+/// their Reynolds numbers.
 const CURES: [&str; 6] =
     ["seed", "cure-stress", "cure-viscosity", "cure-xsph", "cure-shifting", "modern"];
 const CURED: [f64; 3] = [5.0, 20.0, 50.0];
@@ -48,7 +48,7 @@ pub fn runs(table: &mut ChannelTable) {
     }
 }
 
-/// The maps as they are declared: Couette flow has none, and the quick tier no cures.
+/// The declared maps: none for Couette flow, and no remedies in the quick tier.
 pub fn declared(table: &ChannelTable) -> Vec<Map> {
     let over_sound = MapPanel::over("", &reynolds(table), &SOUND, |re, sound| {
         of_sound(table, re, sound).collect()
@@ -66,7 +66,7 @@ pub fn declared(table: &ChannelTable) -> Vec<Map> {
     maps.filter(|(group, _)| table.of(*group).next().is_some()).map(|(_, map)| map).collect()
 }
 
-/// Those of a tier.
+/// The Reynolds numbers of a tier.
 fn reynolds(table: &ChannelTable) -> Vec<f64> {
     let is_run = |re: &f64| of_sound(table, *re, SOUND[0]).next().is_some();
     REYNOLDS.into_iter().filter(is_run).collect()
@@ -105,7 +105,7 @@ fn map(id: &str, title: &str, y: &str, panel: MapPanel) -> Map {
     }
 }
 
-/// Which of the outcomes a cell is, and its text.
+/// The outcome of a cell, and its text.
 fn outcome(records: &[&Record]) -> (usize, String) {
     let ends = ends(records);
     let Some(median) = ends.get(ends.len().saturating_sub(1) / 2) else {
@@ -128,8 +128,8 @@ const MOST_ERROR: f64 = 1e3;
 /// A run that diverged at νt/L² = t counts as this less t: worse than any error, and the worse the earlier.
 const DIVERGED: f64 = 1e6;
 
-/// How bad each run of a cell ended, the worst first: its worst relative L2 error, or by its divergence
-/// [`DIVERGED`] less the time. Runs that were refused are left out.
+/// Severity of the end of each run of a cell, the worst first: its worst relative L2 error, or for a
+/// divergence [`DIVERGED`] minus the time. Refused runs are left out.
 fn ends(records: &[&Record]) -> Vec<f64> {
     let end = |record: &&Record| match record.status {
         // L²/ν is 1 s in these channels.

@@ -1,4 +1,4 @@
-//! What is measured in a channel flow, each norm with its formula.
+//! Metrics of a channel flow, each norm with its formula.
 
 use touchstone_solver::{EquationOfState, Particle, Stepper};
 
@@ -89,8 +89,8 @@ fn row_profile(setup: &Setup, fluid: &[Particle], t: f64) -> Profile {
     Profile::of_rows(&[("y", "m"), ("u", "m/s"), ("u_exact", "m/s")], &rows)
 }
 
-/// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within
-/// 3 dx of the wall, and to the exact flow at the same places, so that the fit itself cancels.
+/// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within 3 dx of
+/// the wall, and to the exact flow at the same points, so that the error of the fit cancels.
 fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
     let s = &setup.settings;
     let speed = if wall == 1 { setup.plate_speed() } else { 0.0 };
@@ -197,7 +197,7 @@ mod tests {
             assert_eq!(compared(&setup, 0.05, &exact).value(L2_WORST), None);
             let shifted = compared(&setup, 0.1, &|y, t| exact(y, t) + 0.01 * v);
             assert_near(&shifted, LINF.at(0.1), 0.01, 1e-9);
-            // 0.02 V y (L - y)/L^2 has the slope 0.02 V/L at either wall, seen from it.
+            // 0.02 V y (L - y)/L^2 has the slope 0.02 V/L at either wall, in the direction away from it.
             let bent = |y: f64, t: f64| exact(y, t) + 0.02 * v * y * (width - y) / width.powi(2);
             let bent = compared(&setup, 0.1, &bent);
             assert_near(&bent, SHEAR_LOWER.at(0.1), 0.02, 1e-9);

@@ -23,7 +23,7 @@ pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];
 /// A case of a channel flow.
 pub type ChannelCase = Composed<ChannelSettings>;
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum For {
     /// Error over spacing and cost at Re 0.5.
@@ -36,7 +36,7 @@ pub enum For {
     Waves,
     /// H4 and H5: outcomes over Reynolds number and sound speed.
     Map,
-    /// What cures the instability.
+    /// Remedies of the instability.
     Cures,
 }
 

@@ -27,15 +27,15 @@ pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
     (Flow::Poiseuille, 40, [5.064e-4, 1.196e-3]),
 ];
 
-/// The gate for a code with another kernel or step: `most` holds for our own steps alone, whose error cancels
-/// a part of that of the sums.
+/// The gate for a code with another kernel or step: `most` holds for our own steps only, whose error cancels
+/// a part of the error of the sums.
 fn of_others(gate: Gate, most: f64) -> Gate {
     let because = "The exact solution has the error 0. Allowed is 2 %, by which sums over a lattice may \
                    change the viscosity, and beside it the error of our own walls.";
     gate.of_others(Bound::Below(0.02 + most), because)
 }
 
-/// All runs of a flow with their gates, beside those of budgets, step limits and sensitivity.
+/// All runs of a flow with their gates, without the runs of budgets, step limits and sensitivity.
 pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
     let mut table = Table::new(flow.case(), tier);
     // Couette flow has no force that disorders rows, so that the lower Reynolds numbers are enough.
@@ -130,7 +130,7 @@ fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
     }
 }
 
-/// What must hold of `plain` whatever the settings.
+/// Gates of `plain` that hold for any settings.
 fn invariants(flow: Flow, gate: impl Fn(MetricName, Bound, Evidence, &str) -> Gate) -> Vec<Gate> {
     let within = |most: f64| Bound::Within(-most, most);
     let volume = "Density by the continuity equation (3) follows the volume, which may oscillate by less \

@@ -1,4 +1,4 @@
-//! One run of a channel flow: what is measured, and when.
+//! One run of a channel flow: measurements and their times.
 
 use touchstone_base::record::{Record, Status};
 use touchstone_harness::{
@@ -21,7 +21,7 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
 impl Problem for Setup {
     type Extra = ();
     type Simulation = dyn Stepper<()>;
-    /// Time and amplitude of the pressure mode after every step, if that is asked for.
+    /// Time and amplitude of the pressure mode after every step, if requested.
     type Watch = Vec<[f64; 2]>;
 
     fn method(&self) -> &Method {

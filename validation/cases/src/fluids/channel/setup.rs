@@ -95,7 +95,7 @@ impl ChannelSettings {
     }
 }
 
-/// What drives the fluid.
+/// Drive of the fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
     /// The upper plate moves at V from t = 0.
@@ -135,13 +135,13 @@ pub struct Setup {
     pub settings: ChannelSettings,
     /// The method that they are for.
     pub method: Method,
-    /// What drives the fluid.
+    /// Drive of the fluid.
     pub flow: Flow,
     /// V = Re ν/L \[m/s\].
     pub v: f64,
     /// Body force along the channel \[m/s²\].
     pub force: f64,
-    /// What terms are made from.
+    /// Constants of the terms.
     pub medium: Medium,
     /// Particles along the channel.
     pub columns: usize,
@@ -151,7 +151,7 @@ pub struct Setup {
 
 /// The settings on which time and memory of a run depend.
 pub const DECISIVE: &str = "end, dt, c0, rows or columns";
-/// A sound speed above the range of the setting is refused, whatever it follows from \[m/s\].
+/// Largest sound speed \[m/s\], in whatever way it follows from the settings.
 const MOST_SOUND: f64 = 1e6;
 
 impl Setup {
@@ -222,9 +222,9 @@ impl Setup {
         }
     }
 
-    /// Fluid, then both plates. Rows of the fluid at (j + 1/2) dx, mirrored by the walls into themselves, or
-    /// at j dx between interface rows on the plates, which are rows of the same lattice. Rows of plates reach
-    /// out to the support, all with the velocity of the plate.
+    /// Fluid, then both plates. Rows of the fluid at (j + 1/2) dx, which the walls mirror into each other, or
+    /// at j dx between interface rows on the plates, which are rows of the same lattice. Rows of plates
+    /// extend to the support, all with the velocity of the plate.
     fn particles(&self, method: &Method) -> Vec<Particle> {
         let (dx, rows, width) = (self.medium.dx, self.settings.rows, self.settings.width);
         let (mut particles, first) = match method.properties.first_row {

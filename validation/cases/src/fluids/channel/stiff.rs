@@ -1,12 +1,12 @@
-//! What super-time-stepping of viscosity saves: pair interactions of `stiff` against `modern` at one error,
-//! over the Reynolds number.
+//! Gain of super-time-stepping of viscosity: pair interactions of `stiff` against `modern` at one error, over
+//! the Reynolds number.
 
 use super::{ChannelSettings, ChannelTable, Flow, For, measure::L2};
 use touchstone_base::{gate::*, record::Record};
 use touchstone_harness::{runs::Runs, study::Study};
 
-/// Reynolds numbers, and the share of the pair interactions of `modern` that is allowed. At the lower one
-/// sound limits no step any more, so that the cost is that of accuracy.
+/// Reynolds numbers, and the largest allowed ratio of pair interactions to those of `modern`. At the lower
+/// one sound does not limit the step, so that accuracy determines the cost.
 pub const REYNOLDS: [(f64, f64); 2] = [(0.5, 1.0 / 5.0), (1e-4, 1.0 / 10.0)];
 
 static SOUND: Cause = Cause::new(
@@ -15,8 +15,8 @@ static SOUND: Cause = Cause::new(
     "A sound speed chosen by the pressure of the flow, which is 0 here, and not by its force.",
 );
 
-/// The gates of a run of `stiff`: on its error, and on its pair interactions over those of `modern`. The
-/// error of `modern` is given, NaN without a run.
+/// The gates of a run of `stiff`: on its error, and on its pair interactions over the ones of `modern`.
+/// `modern` is the error of `modern`, NaN without a run.
 fn gates(flow: Flow, settings: &ChannelSettings, modern: f64) -> [Gate; 2] {
     let ChannelSettings { rows, re, .. } = *settings;
     let id = |what: &str| format!("{}.stiff.{rows}.re{re}.{what}", flow.case().name);

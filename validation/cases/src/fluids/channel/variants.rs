@@ -11,7 +11,7 @@ fn modern(s: &mut ChannelSettings) {
     (s.courant, s.viscous, s.c0_viscous) = (1.0, 0.4, 2.2);
 }
 
-/// The same with the reach of Wendland's kernel and the viscous number that suits it.
+/// The support of Wendland's kernel and the viscous number for it.
 fn wendland(s: &mut ChannelSettings) {
     modern(s);
     (s.h_over_dx, s.viscous) = (2.0, 0.23);
@@ -32,8 +32,8 @@ fn stiff(s: &mut ChannelSettings) {
     (s.c0_viscous, s.limit_share, s.least_steps) = (0.0, Some(0.75), 8);
 }
 
-/// One pair sweep a step, in the same share of its limit: sound has 1/8^(1/2) of that of the leapfrog, so
-/// that c0 is lower by as much where sound costs no step.
+/// One pair sweep a step, at the same fraction of its limit: sound has 1/8^(1/2) of the limit of the
+/// leapfrog, so that c0 is lower by this factor where sound costs no step.
 fn single_sweep(s: &mut ChannelSettings) {
     curved(s);
     (s.courant, s.c0_viscous) = (s.courant / 8_f64.sqrt(), s.c0_viscous / 8_f64.sqrt());
@@ -44,8 +44,8 @@ pub fn of_couette() -> Compositions<ChannelSettings> {
     both(Flow::Couette, flow::couette()).all
 }
 
-/// Those of Poiseuille flow, whose profile is curved, and in which the seed is unstable: the paper's method
-/// with one thing against its instability each.
+/// Variants of Poiseuille flow, whose profile is curved, and in which the seed is unstable: each adds one
+/// remedy to the paper's method.
 pub fn of_poiseuille() -> Compositions<ChannelSettings> {
     let bent =
         "plain with ghosts that know the curvature of the velocity at the wall: is it their error?";

@@ -1,5 +1,5 @@
-//! Hypothesis H3 of the paper: pressure waves leave the walls. The lowest pressure mode between them rings
-//! with the period 2L/c0 of a wave that bounces between them, whatever c0.
+//! Hypothesis H3 of the paper: pressure waves leave the walls. The lowest pressure mode between them
+//! oscillates with the period 2L/c0 of a wave that bounces between them, at any c0.
 
 use super::{ChannelTable, For, measure::MODE};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
@@ -16,20 +16,20 @@ pub fn runs(table: &mut ChannelTable) {
     });
 }
 
-/// The dominant period \[2L/c0\] of the mode; NaN, which fails a gate, if the run ended before there was
-/// enough to see.
+/// The dominant period \[2L/c0\] of the mode; NaN, which fails a gate, if the run ended too early to
+/// determine it.
 fn period(record: Option<&Record>) -> f64 {
     let Some(mode) = record.and_then(|record| record.profiles.get(MODE)) else { return f64::NAN };
     let [times, values] = ["t", "amplitude"].map(|name| mode.column(name).iter().copied());
     0.5 * dominant_period(&times.zip(values).collect::<Vec<_>>())
 }
 
-/// Periods \[2L/c0\] that count as those of a bouncing wave: the next modes have 0.5 and, between a wall
-/// and a free surface, 2, and these are the geometric means. How far disorder lengthens the period is not
-/// known from theory.
+/// Periods \[2L/c0\] that count as a bouncing wave: the next modes have 0.5 and, between a wall and a free
+/// surface, 2, and the ends are the geometric means. Theory does not predict the effect of disorder on the
+/// period.
 const PERIOD: Bound = Bound::Within(FRAC_1_SQRT_2, SQRT_2);
-/// What this program computed before, from the same starts, by the sound speed \[V\]; 3 % more or less is a
-/// change of the program.
+/// Earlier results of this program, from the same starts, by the sound speed \[V\]; a deviation of 3 %
+/// indicates a change of the program.
 const BEFORE: [(f64, f64); 2] = [(10.0, 1.0535), (20.0, 1.0608)];
 
 /// The study.

@@ -1,6 +1,6 @@
-//! What the studies that every case has are made of: profiles and shear over finite elements, order, error
-//! against run time, error budget, largest stable time step, errors of constants that gates must detect; and
-//! what only the hills have to say: whether the start matters.
+//! Declaration of the case: profiles and shear against finite elements, order, error against run time, error
+//! budget, largest stable time step, errors of constants that gates must detect; and for hills only: whether
+//! the start matters.
 
 use nalgebra::Vector2;
 
@@ -32,7 +32,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     let posed = Posed { further: Some(drive), ..Posed::new(boundary, &[ALL]) };
     Declaration {
         posed,
-        // The force of our own controller: that of another code is in no file.
+        // The force of our own controller; no file of another code contains one.
         stepwise: &[FORCE, FORCE_ERROR, DRAG_BALANCE],
         card: Some(card(tier, &accuracy)),
         comparisons: comparisons(tier, &accuracy),
@@ -49,7 +49,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     }
 }
 
-/// What drives the flow: the flux that is asked for.
+/// Drive of the flow: the requested flux.
 fn drive(settings: &serde_json::Value) -> Vec<Fact> {
     let setting = |name: &str| settings[name].as_f64().unwrap_or(f64::NAN);
     let flux = "the flux of volume through every section, the integral of u over y from the hill to the \
@@ -93,8 +93,8 @@ fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
     ladder.flat_map(comparison).collect()
 }
 
-/// What the report says first of the case, at Re 50, where the flow separates: the ladder of the quick tier
-/// is at Re 10.
+/// Summary of the case in the report, at Re 50, where the flow separates: the ladder of the quick tier is at
+/// Re 10.
 fn card(tier: Tier, accuracy: &Accuracy) -> Card {
     let shown = [RECOMMENDED, "interface-wall"];
     let quick = |variant| CASE.spec(variant, |s| flow(s, (50.0, 10, 30.0, false)));
@@ -141,7 +141,7 @@ fn left_of_start(settings: &serde_json::Value) -> String {
     }
 }
 
-/// Runs from rest alone: those from the reference end before they could leave it.
+/// Runs from rest only: runs from the reference end before they could leave it.
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let level = |s: &HillSettings| (1.0 / s.n as f64, Resolution::new(s.n, "H/dx = {}"));
     let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
@@ -192,7 +192,7 @@ fn budgets() -> Budgets {
         change("`modern`: weaker shifting, no velocities", "shifting", "modern", |_| {}),
         change("`interface-wall` over `modern`", "wall", "interface-wall", |_| {}),
     ];
-    // The walls are compared with those of `modern`, before it in the list.
+    // The walls are compared with `modern`, earlier in the list.
     changes[10].against = 9;
     Budgets { about: about.into(), of: vec![changes] }
 }
@@ -250,8 +250,8 @@ fn shear(rows: &[&Row], reference: &Reference) -> CurvePanel {
     CurvePanel::linear(&title, axes, rows.iter().map(line).collect(), ("finite elements", exact))
 }
 
-/// Ended, and no sample of the kinetic energy is above twice that of the first one after the start, which is
-/// near the answer.
+/// Completed, and no sample of the kinetic energy exceeds twice the first one after the start, which is near
+/// the solution.
 pub fn is_stable(record: &Record) -> bool {
     let energy = record.column("series", "kinetic energy").get(1..).unwrap_or_default();
     let bounded = |first: &f64| energy.iter().all(|e| *e <= 2.0 * first);

@@ -1,4 +1,4 @@
-//! What is measured: the field at stations and along the walls, averaged over the end of the run.
+//! Metrics: the field at stations and along the walls, averaged over the end of the run.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
@@ -46,14 +46,14 @@ touchstone_base::metrics! {
         "integral over a period of the pressure times slope of the hill";
 }
 
-/// What the drag is made of, named as in the reference.
+/// Parts of the drag, named as in the reference.
 pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSURE_DRAG];
 
-/// What is measured against the reference.
+/// Metrics that compare with the reference.
 const COMPARED: [MetricKey; 5] = [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REATTACHMENT_ERROR];
 
-/// Velocity and pressure where it is asked for: a linear field fitted to the particles in reach, walls
-/// included, with the weights V W (moving least squares).
+/// Velocity and pressure at any point: a linear field fitted to the particles in reach, walls included, with
+/// the weights V W (moving least squares).
 struct Field<'a> {
     /// W \[1/m²\] of r² \[m²\], and where it ends \[m\].
     weight: &'a dyn Fn(f64) -> f64,
@@ -70,7 +70,7 @@ impl<'a> Field<'a> {
     ) -> Self {
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
         let mut field = Self { weight, reach, bands: Vec::new() };
-        // One more than holds the lid: what is farther out is in the first and the last.
+        // One band more than the lid needs: particles farther out are in the first and the last.
         field.bands.resize(field.band(lid) + 2, Vec::new());
         for point in points {
             let band = field.band(point[1]).min(field.bands.len() - 1);
@@ -94,8 +94,9 @@ impl<'a> Field<'a> {
         })
     }
 
-    /// What values of the particles in reach of a place have there: they are fitted to a basis, of which the
-    /// first member counts, with the weights V W. The basis is a function of a particle and of its distance.
+    /// The value at a point of the values of the particles in reach: they are fitted to a basis with the
+    /// weights V W, and the first coefficient is the result. The basis is a function of a particle and of its
+    /// distance.
     fn fit<const N: usize>(
         &self,
         place: Vector2<f64>,
@@ -127,11 +128,11 @@ impl<'a> Field<'a> {
         self.fit(Vector2::new(x, y), linear, |p| [p[3], p[4], p[5]])
     }
 
-    /// The derivative along `g` of the velocity in the direction `along` at a point of a wall, of which a
-    /// point is `g` above (negative behind) and where the velocity is 0: g (a + b s + c g), s being the
-    /// distance along x, is fitted to the fluid particles in reach, and a is the derivative. Every smooth
-    /// field that is 0 on the wall is g times a smooth one, so what the fit leaves out is of second order in
-    /// the reach, whatever the shape of the wall.
+    /// The derivative along `g` of the velocity in the direction `along` at a point of a wall where the
+    /// velocity is 0; `g` is the height above the wall (negative behind it). g (a + b s + c g), with the
+    /// distance s along x, is fitted to the fluid particles in reach, and a is the derivative. Every smooth
+    /// field that is 0 on the wall is g times a smooth field, so the error of the fit is of second order in
+    /// the reach, for any shape of the wall.
     fn slope_at(
         &self,
         place: Vector2<f64>,
@@ -270,7 +271,7 @@ fn section_flux(setup: &Setup, sections: &[[f64; 2]]) -> f64 {
     largest((0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()))
 }
 
-/// [`DRAGS`], by the trapezoidal rule over the period: the ends are the same point.
+/// [`DRAGS`], by the trapezoidal rule over the period, whose ends are one point.
 fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
     let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * along(1);
     [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
@@ -317,8 +318,8 @@ fn compare(setup: &Setup, sections: &[[f64; 2]], record: &mut Record) {
     record.put_or(REATTACHMENT_ERROR, reattachment, none);
 }
 
-/// How far wall particles are from where they belong \[dx\]: over the places along floor and lid, the
-/// largest difference between the depth of the nearest one and that of their first row.
+/// Displacement of wall particles from their places \[dx\]: over the points along floor and lid, the largest
+/// difference between the depth of the nearest particle and the depth of the first row.
 fn wall_offset(setup: &Setup, all: &[Particle]) -> f64 {
     let (dx, lid, period) = (setup.flow.medium.dx, setup.hill.lid(), setup.hill.period());
     let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
@@ -443,7 +444,7 @@ mod tests {
         assert!((found - exact).abs() < tolerance, "{name}: {found} is not {exact}");
     }
 
-    /// Errors of 1 to 20 % in what is read of the hills passed every quick test.
+    /// Errors of 1 to 20 % in the fields of the hills must change the metrics.
     #[test]
     fn a_made_up_flow_is_measured_as_it_was_made() {
         let (setup, area, record) = measured(0.04, 2.0);
@@ -576,9 +577,9 @@ mod tests {
         assert_eq!(seen(&setup, &*(method.build)(parts).expect("a scene"))[1], 1.0);
     }
 
-    /// The largest error of the slope at a wall y = c x²/2 that is turned by `angle`, of so many disordered
-    /// particles a length with the velocity `u` of distance along the wall and height above it, whose slope
-    /// there is 1 + s.
+    /// The largest error of the slope at a wall y = c x²/2 turned by `angle`, with `n` disordered particles a
+    /// length and the velocity `u` of distance along the wall and height above it, whose slope there is 1 +
+    /// s.
     fn error_of_slope(n: f64, angle: f64, c: f64, u: fn(f64, f64) -> f64) -> f64 {
         let (dx, mut random) = (1.0 / n, Random::new(7));
         let along = Vector2::new(cos(angle), sin(angle));

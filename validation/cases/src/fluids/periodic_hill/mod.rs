@@ -2,7 +2,8 @@
 //! Lengths by the height H = 1 m of the hill, velocities by the bulk velocity over the crest U_b = 1 m/s,
 //! ρ = 1 kg/m³.
 //!
-//! Judged against finite elements (`references/periodic_hill`), for nobody has published these numbers.
+//! Judged against finite elements (`references/periodic_hill`), because no published numbers exist for this
+//! flow.
 
 mod declaration;
 mod measure;

@@ -4,7 +4,7 @@ use super::{CASE, HillSettings, RECOMMENDED, measure::*};
 use touchstone_base::gate::*;
 use touchstone_harness::{case::Tier, table};
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum For {
     /// Order and cost: every variant that stays stable, from rest.
@@ -13,7 +13,7 @@ pub enum For {
     Figures,
     /// The reattachment as a mean over 48 H/U_b, for means over 16 differ by 0.007 H.
     Long,
-    /// What happens without a stabiliser.
+    /// Without a stabiliser.
     Control,
     /// The highest Reynolds number that the setting allows.
     Fast,
@@ -21,12 +21,11 @@ pub enum For {
 
 /// The runs of a tier.
 pub type Table = table::Table<HillSettings, For>;
-/// One of them.
+/// A row of the table.
 pub type Row = table::Row<HillSettings, For>;
 
-/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50, and at 40 they still hold the
-/// reattachment 0.02 H from where it comes to rest. At Re 10 the decay is five times as fast, but leaves
-/// 0.3 % of U_b at 10.
+/// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50, and at 40 they still shift the
+/// reattachment by 0.02 H. At Re 10 the decay is five times as fast, but leaves 0.3 % of U_b at 10.
 pub const END: f64 = 80.0;
 
 /// Reynolds number, spacings along the height of the hill, end \[H/U_b\], start from the reference?
@@ -166,7 +165,7 @@ fn of_reference(run: &str, re: f64, n: usize, rested: bool) -> Vec<Gate> {
     gates
 }
 
-/// What holds whatever the flow is: walls in place, mass, momentum, steadiness.
+/// Gates that hold for any flow: walls in place, mass, momentum, steadiness.
 fn balances(run: &str, n: usize) -> Vec<Gate> {
     let (section, drag) = if n >= 20 { (0.005, 0.01) } else { (0.012, 0.04) };
     let walls = "Rows follow the wall to a hundredth of a spacing, less closely at the kink of the crest. A \

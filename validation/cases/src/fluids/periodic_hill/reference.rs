@@ -29,7 +29,7 @@ pub struct Station {
     pub v: Vec<Vector2<f64>>,
 }
 
-/// What finite elements say of one Reynolds number.
+/// Results of finite elements at one Reynolds number.
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Profiles, in the order of x.
@@ -53,7 +53,7 @@ impl Reference {
         Ok(place.filter(|_| is_known).map(|place| &known[place]))
     }
 
-    /// What the package has of a Reynolds number.
+    /// The content of the package for a Reynolds number.
     fn read(re: f64) -> Result<Self, ReferenceError> {
         let (package, text) = (Package::load("periodic_hill")?, re.to_string());
         let of = [("re", &*text)];
@@ -74,7 +74,7 @@ impl Reference {
         })
     }
 
-    /// What the summary has for a metric.
+    /// The number in the summary for a metric.
     pub fn number(&self, metric: MetricKey) -> Option<f64> {
         Some(summary(self.re, &String::from(metric))[0]).filter(|value| value.is_finite())
     }
@@ -121,8 +121,8 @@ fn stations(rows: &[[f64; 4]]) -> Vec<Station> {
     rows.chunk_by(|a, b| a[0] == b[0]).map(station).collect()
 }
 
-/// What finite elements have at this Reynolds number. A reference that cannot be read makes every run
-/// fail: there is no need to say it once more.
+/// The reference at this Reynolds number. A reference that cannot be read makes every run fail, so its error
+/// is not repeated here.
 pub fn reference(re: f64) -> Option<&'static Reference> {
     Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
 }
@@ -157,7 +157,7 @@ mod tests {
         assert!(counts[0] == 0 && counts[1..].iter().all(|count| *count > 20), "{counts:?}");
     }
 
-    /// rms distance of the start from what these stations hold \[U_b\].
+    /// rms distance between the start and the values at these stations \[U_b\].
     fn distance(reference: &Reference, stations: &[Station]) -> f64 {
         let squares: Vec<f64> = stations
             .iter()
@@ -187,7 +187,7 @@ mod tests {
             assert!(on_them < 1e-15, "{on_them:e} at Re {re}");
             let off = distance(reference, &reference.stations);
             assert!(off < 5e-4, "{off:e} at Re {re}");
-            // The flux does not depend on the place, whatever the gap there.
+            // The flux does not depend on x, whatever the gap there.
             for x in [0.0, 0.3, 1.7, 5.5, 8.7] {
                 let u = (0..200).map(|k| reference.velocity(x, (k as f64 + 0.5) / 200.0, 2.6).x);
                 let flux = u.sum::<f64>() / 200.0 * 2.6;

@@ -16,7 +16,7 @@ use touchstone_solver::Particle;
 const STRETCH: f64 = 10.0;
 /// Time between entries of the history \[H/U_b\].
 const ENTRY: f64 = 0.5;
-/// Samples of the field in the last part of the run, as far as the controller looks that often.
+/// Samples of the field in the last part of the run, at most one for each action of the controller.
 const SAMPLES: f64 = 40.0;
 
 /// Is a look the first in an interval of the length `every`, if looks are a stretch apart?
@@ -33,8 +33,8 @@ fn is_last(time: f64, end: f64, length: f64) -> bool {
 /// The force that holds the flux: f' = \[(u* − u)/T − u'\]/t, u the mean velocity along x over the fluid, u*
 /// the one wanted.
 ///
-/// As u' = f − d with the drag d of the walls, f follows d within t, and u goes to u* within T. At rest
-/// f = d whatever d is.
+/// As u' = f − d with the drag d of the walls, f follows d within t, and u reaches u* within T. In a steady
+/// state f = d for any d.
 ///
 /// With t = T/4 both roots are −2/T: the fastest without overshoot.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]

@@ -24,7 +24,7 @@ pub struct Setup {
     pub flow: UnitFlow,
     /// Depth of the first row of wall particles \[dx\].
     pub first: f64,
-    /// What to compare with, where there is something.
+    /// The reference, if there is one.
     pub reference: Option<&'static Reference>,
 }
 
@@ -92,8 +92,8 @@ impl Setup {
         (0..count).map(|k| (lid - self.floor((f64::from(k) + 0.5) * cell)) * cell).sum()
     }
 
-    /// Fluid in columns dx apart, each with as many particles as come nearest to a spacing of dx between
-    /// floor and lid, and of such a volume that they fill it; behind floor and lid rows along them.
+    /// Fluid in columns dx apart, each with the number of particles nearest to a spacing of dx between floor
+    /// and lid, and with volumes that fill the column; behind floor and lid rows along them.
     fn particles(&self) -> Vec<Particle> {
         let (dx, lid) = (self.flow.medium.dx, self.hill.lid());
         let columns = (self.hill.period() / dx).round() as usize;
@@ -122,7 +122,7 @@ impl Setup {
             for row in curve.rows_behind(dx, self.first, self.flow.support) {
                 particles.extend(row.particles(dx, 1.0, |_| Vector2::zeros()));
             }
-            // Eight in a row share a list, which is shorter where they stand behind the same fluid.
+            // Eight in sequence share a list, which is shorter if they are behind the same fluid.
             particles[first..].sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         }
         particles

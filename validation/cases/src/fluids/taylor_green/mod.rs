@@ -86,20 +86,20 @@ pub static CASE: Composed<VortexSettings> = Composed {
     plan: |tier| table(tier).plan(),
 };
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum For {
     /// Order and cost: variants that keep particles apart, from the disturbed lattice.
     Ladder,
     /// The recommended variant, from the square lattice.
     Lattice,
-    /// What happens without a stabiliser.
+    /// Without a stabiliser.
     Control,
 }
 
 /// The runs of a tier.
 type Table = table::Table<VortexSettings, For>;
-/// One of them.
+/// A row of the table.
 type Row = table::Row<VortexSettings, For>;
 
 /// Displacement of the disturbed lattice \[dx\].
@@ -254,8 +254,7 @@ fn budgets() -> Budgets {
     Budgets { about: about.into(), of: vec![changes] }
 }
 
-/// Error through time, of each variant that keeps particles apart with the same number of particles, and of
-/// `plain`.
+/// Error through time, of each variant that keeps particles apart at one number of particles, and of `plain`.
 fn histories(tier: Tier, table: &Table) -> Curves {
     let caption = "Taylor-Green vortices at Re 100 from the disturbed lattice: relative L2 error of the \
                    velocity over time, of stabilised variants with the same number of particles and of \

@@ -86,8 +86,8 @@ fn relative(squares: impl Iterator<Item = [f64; 2]>) -> f64 {
     (difference / scale).sqrt()
 }
 
-/// Exact speed over that of the start below which no error is relative to it: 1 %, what compressibility at
-/// c0 = 10 U leaves of the flow, (U/c0)^2.
+/// Ratio of exact speed to initial speed below which errors are not relative to it: 1 %, the effect of
+/// compressibility at c0 = 10 U, (U/c0)^2.
 const DECAYED: f64 = 0.01;
 
 /// Samples of the series.

@@ -3,9 +3,9 @@
 //! names the operator.
 //!
 //! A few steps of 1e-6 h/c₀ are made, and an operator is the rate at which velocity or density changes over
-//! them, so that any code can hand it in as the particles at the end. The field is a wave, so that what an
-//! operator makes of it has two parts: its projection on the exact values, of which the gain is a number that
-//! theory knows on a lattice, and the rest, which is noise of disorder.
+//! them, so that any code can submit it as final particles. The field is a wave, so the result of an operator
+//! has two parts: its projection on the exact values, with a gain that theory predicts on a lattice, and the
+//! rest, which is noise of disorder.
 
 mod plan;
 mod run;
@@ -36,7 +36,7 @@ touchstone_base::settings! {
     }
 }
 
-/// What is measured of a variant.
+/// The measured operator of a variant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Operator {
     /// Σ m W.
@@ -125,10 +125,10 @@ const fn subjects_of(
 
 /// The kernel of `modern` variants, whose ladders are in the quick tier too.
 const QUINTIC: &str = "quintic";
-/// That of the paper.
+/// The paper's kernel.
 const CUBIC: &str = "cubic";
 
-/// All variants. h/dx is what variants of the cases of this program have with the kernel.
+/// All variants, with the h/dx that other cases use for the kernel.
 static SUBJECTS: [[Subject; 7]; 3] = [
     subjects_of(
         QUINTIC,

@@ -12,14 +12,14 @@ use super::{
     subjects,
 };
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum For {
     /// A lattice, finer with h: the error of smoothing.
     Lattice,
     /// Disordered particles, finer with h.
     Resolution,
-    /// More neighbours of the same h.
+    /// More neighbours at fixed h.
     Neighbours,
     /// More disorder.
     Disorder,

@@ -36,7 +36,7 @@ touchstone_base::metrics! {
 
 /// Wave number along each axis \[1/m\].
 const K: f64 = TAU;
-/// Amplitude of the pressure \[ρ₀c₀²\]: a linear equation of state, as far as this can be told.
+/// Amplitude of the pressure \[ρ₀c₀²\]: linear in the equation of state, up to round-off.
 const PRESSURE: f64 = 1e-6;
 /// Amplitude of the velocity \[c₀\].
 const SPEED: f64 = 0.1;
@@ -45,7 +45,7 @@ const DENSITY: f64 = 0.5;
 /// η² of (6) \[h²\]: a guard against 0/0 and no more.
 const ETA2: f64 = 1e-6;
 
-/// The fields, and what is made of them, for other codes.
+/// The fields and the operators, for other codes.
 pub(super) fn field() -> Fact {
     let about = "wave number K of the fields; φ = sin Kx cos Ky, ψ = cos Kx sin Ky. The operator o and its \
                  exact value: density: ρ/ρ0 - 1 after the step, φ/2; gradient: (v - v_start)/t, -∇p/ρ of p \
@@ -88,7 +88,7 @@ impl Operator {
         Particle::fluid(x, velocity, density, dx * dx)
     }
 
-    /// What was made of the field within a time \[s\], and the exact value.
+    /// The operator applied to the field within a time \[s\], and the exact value.
     fn values(self, [start, end]: [&Particle; 2], m: &Medium, time: f64) -> [Vector2<f64>; 2] {
         let (x, along) = (start.position, |value| Vector2::new(value, 0.0));
         let accelerated = (end.velocity - start.velocity) / time;
@@ -109,7 +109,7 @@ impl Operator {
 }
 
 impl Subject {
-    /// The gain on a lattice: the symbol of the sum over that of the continuum, for a diagonal wave.
+    /// The gain on a lattice: the symbol of the sum over the symbol of the continuum, for a diagonal wave.
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
         let phase = K * dx;
@@ -142,7 +142,7 @@ impl Subject {
     }
 }
 
-/// The operator summed pair by pair, of which only the values of the kernel are those of the solver.
+/// The operator summed pair by pair; only the values of the kernel come from the solver.
 struct Sums<'a> {
     operator: Operator,
     medium: &'a Medium,
@@ -179,7 +179,7 @@ impl Sums<'_> {
         Some((off / scale).sqrt())
     }
 
-    /// What one particle, its own image included, adds.
+    /// The contribution of one particle, which may be an image of the particle itself.
     fn pair(&self, own: &Particle, other: &Particle) -> Vector2<f64> {
         let Medium { eos, density, nu, h, .. } = self.medium;
         let r = (own.position - other.position).map(|x| x - x.round());

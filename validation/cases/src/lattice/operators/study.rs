@@ -25,11 +25,11 @@ static QUADRATURE: Cause = Cause::new(
     "A smoother kernel, more neighbours, or gradients that are exact for linear fields.",
 );
 
-/// What is refined.
+/// Refined quantities.
 const REFINED: [For; 4] = [For::Lattice, For::Resolution, For::Neighbours, For::Disorder];
 
 impl For {
-    /// Its name in gates, its title, and what is on the axis.
+    /// Name in gates, title, and label of the axis.
     fn texts(self) -> [&'static str; 3] {
         match self {
             For::Lattice => ["bias", "Lattice: gain", "h/L [-]"],
@@ -108,7 +108,7 @@ impl For {
     }
 }
 
-/// What the report shows of the case.
+/// Studies of the case.
 pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
     let table = table(tier);
     let all = REFINED.map(|refined| {

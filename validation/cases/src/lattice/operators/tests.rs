@@ -39,8 +39,8 @@ fn orders_of_noise_are_those_of_theory() {
     }
 }
 
-/// Whatever the disorder and the kernel, an operator is the sum over its pairs; with a constant that is wrong
-/// by 3 % it is not.
+/// For any disorder and kernel, an operator is the sum over its pairs; with a constant that is wrong by 3 %
+/// it is not.
 #[test]
 fn an_operator_is_the_sum_over_its_pairs_on_disordered_particles() {
     use Operator::{Divergence, Gradient, Laplacian};

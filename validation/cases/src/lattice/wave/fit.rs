@@ -9,7 +9,7 @@
 //!
 //! No variant has another integrator; the numbers of one would be NaN, with which every gate fails.
 //!
-//! A transverse velocity v' = -γ v is the same with numbers for matrices.
+//! A transverse velocity v' = -γ v is the scalar case.
 
 use nalgebra::{Complex, Matrix2, Vector2};
 
@@ -135,7 +135,7 @@ mod tests {
         }
     }
 
-    /// A small step is close to continuous time, so the matrix is that of the equations.
+    /// A small step is close to continuous time, so the matrix tends to the matrix of the equations.
     #[test]
     fn a_step_tends_to_the_exact_solution() {
         let mode = DampedMode { omega: 2.0, gamma: 0.7 };

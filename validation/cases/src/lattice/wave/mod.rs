@@ -7,9 +7,9 @@
 //! disturbed only to third order, relative to itself by amplitude² (unless 3k is a whole number of turns from
 //! one particle to the next, where 2k looks like -k).
 //!
-//! Time error is not subtracted but divided out: the amplitudes of one step follow from those of the
-//! last by a matrix that is known in closed form for each integrator, and the inverse of that form
-//! turns the measured matrix into ω and γ of continuous time. See `fit`.
+//! The error in time is not subtracted but divided out: the amplitudes of one step follow from the last by a
+//! matrix known in closed form for each integrator, and the inverse of this form turns the measured matrix
+//! into ω and γ of continuous time. See `fit`.
 
 mod fit;
 mod run;
@@ -64,7 +64,7 @@ touchstone_base::settings! {
     }
 }
 
-/// Which of the two kinds of wave.
+/// Kind of wave.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Polarisation {
     /// Velocity along the gradient symbol.
@@ -123,7 +123,7 @@ touchstone_base::metrics! {
         "|change of sum m v after the first step|/(sum m times the velocity amplitude)";
 }
 
-/// What is measured after every step, and what another code must know.
+/// Measurements after every step, and facts for other codes.
 fn declaration() -> Declaration {
     let posed = Posed::new("There is no wall: x and y are periodic.", &[ALL, run::FACTORS]);
     Declaration { posed, stepwise: STEPWISE, ..Declaration::default() }
@@ -169,7 +169,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Total momentum may change by this much of Σ m |v|: round-off of a thousand sums.
 const MOMENTUM: f64 = 1e-10;
 
-/// What runs are for: the metrics that are judged, and why each is exact.
+/// The judged metrics of runs, and why each is exact.
 type Judged = &'static [(MetricKey, &'static str)];
 
 /// A sound wave on the lattice as it is.
@@ -199,7 +199,7 @@ const SHEAR: Judged = &[
          sound is not excited.",
     ),
 ];
-/// Density diffusion has no inverse of its own in `fit`: the trajectory shows it.
+/// `fit` has no inverse for density diffusion: the trajectory is judged.
 const DIFFUSED: Judged = &[EXACT_STEPS];
 /// The sound speed rises with compression, which no wave at rho0 shows.
 const COMPRESSED: Judged = &[(
@@ -240,7 +240,7 @@ fn plan(case: &'static Composed<WaveSettings>, of: Polarisation, tier: Tier) -> 
     let on_lattice = if of == Polarisation::Sound { SOUND } else { SHEAR };
     let wave = |s: &mut WaveSettings, (n, ratio, [kx, ky]): (usize, f64, [usize; 2])| {
         (s.n, s.h_over_dx, s.kx, s.ky) = (n, ratio, kx, ky);
-        // Strong viscosity: rows slide less before the shear wave is gone, and fewer steps see it go.
+        // Strong viscosity: rows slide less before the shear wave has decayed, within fewer steps.
         s.nu = if of == Polarisation::Shear { 0.01 } else { s.nu };
     };
     for (variant, usual, more) in RATIOS {
@@ -267,7 +267,7 @@ fn plan(case: &'static Composed<WaveSettings>, of: Polarisation, tier: Tier) -> 
     table.plan()
 }
 
-/// What is judged of a run, and why.
+/// Gates of a run, with reasons.
 fn gates(
     case: &Composed<WaveSettings>,
     Row { group: judged, variant, settings: s, .. }: &Row<WaveSettings, Judged>,
@@ -308,7 +308,7 @@ mod tests {
         }
     }
 
-    /// What the gates are worth: a larger amplitude is not linear, and fails them.
+    /// Test of the gates: a larger amplitude is not linear, and fails them.
     #[test]
     fn an_amplitude_that_is_not_linear_is_seen() {
         let spec = ACOUSTIC_WAVE.spec("cubic-leapfrog", |s| s.amplitude = 1e-3);
@@ -348,7 +348,7 @@ mod tests {
         assert!(words.starts_with("with n=4 the scene is impossible: "), "{words}");
     }
 
-    /// Seen with random settings: a viscosity of 1e-300 m²/s decays in 1e300 s, and the run panicked.
+    /// A viscosity of 1e-300 m²/s decays in 1e300 s: the run must be refused, not panic.
     #[test]
     fn a_shear_wave_that_never_decays_is_refused() {
         let spec = SHEAR_WAVE.spec("cubic-pc", |s| s.nu = 1e-300);

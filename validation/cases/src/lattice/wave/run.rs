@@ -29,13 +29,13 @@ use crate::lattice::torus;
 pub(super) struct Wave {
     settings: WaveSettings,
     method: Method,
-    /// Which wave.
+    /// Kind of wave.
     polarisation: Polarisation,
     /// Phase from one particle to the next.
     theta: Vector2<f64>,
-    /// What terms are made from.
+    /// Constants of the terms.
     medium: Medium,
-    /// What theory gives to sound, to shear, and to density by itself.
+    /// Theory of sound, of shear, and of the density alone.
     mode: Mode,
     /// A time step of which a whole number ends the run, the leapfrog's limits of it, sound speed, end.
     pub rules: Rules,
@@ -73,8 +73,8 @@ impl Wave {
         let lattice = method.properties.square([s.h_over_dx, s.eta2_over_h2]);
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
-        // A background pressure takes p to 0 at this density: a displacement then meets a pressure of its own
-        // order, as the theory of the lattice has it.
+        // A background pressure makes p = 0 at this density: a displacement then acts on a pressure of its
+        // own order, as in the theory of the lattice.
         let eos = Tait::new(s.rho, s.c0);
         let eos = Tait { background: -eos.pressure(density), ..eos };
         let medium = Medium {
@@ -87,7 +87,7 @@ impl Wave {
             time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = Mode::new(&lattice, theta, &waves);
         let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
-        // The predictor-corrector amplifies sound at every dt, which is part of what is compared.
+        // The predictor-corrector amplifies sound at every dt, which is part of the comparison.
         let theory = time_step::Integrator::Leapfrog;
         let limits = Limits::of(&modes(&lattice, s.n, &waves), theory);
         let period = std::f64::consts::TAU / mode.omega;
@@ -128,7 +128,7 @@ impl Wave {
         torus((s.length, s.n), self.medium, start)
     }
 
-    /// What theory gives for the amplitudes after each of `steps` steps, exactly.
+    /// Theoretical amplitudes after each of `steps` steps, exact.
     fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
         let (a, dt) = (self.settings.amplitude, self.rules.dt());
         let Mode { omega, longitudinal: gamma, transverse, density, .. } = self.mode;
@@ -299,8 +299,8 @@ mod tests {
         (wave.expect("a wave"), method)
     }
 
-    /// Made-up particles: density −0.003 sin, velocity 0.02 cos along and −0.005 cos across, over a mean
-    /// flow that the projection must not see.
+    /// Artificial particles: density −0.003 sin, velocity 0.02 cos along and −0.005 cos across, and a mean
+    /// flow that the projection must ignore.
     #[test]
     fn amplitudes_are_those_of_made_up_particles() {
         let (wave, method) = wave(Polarisation::Sound);

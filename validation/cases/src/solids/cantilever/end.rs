@@ -1,4 +1,4 @@
-//! What is observed of a bar: the path of its end, its energies, its middle line when the end is lowest.
+//! Observations of a bar: the path of its end, its energies, its middle line when the end is lowest.
 
 use super::*;
 use serde::{Deserialize, Serialize};
@@ -6,22 +6,22 @@ use touchstone_base::absent::Absent;
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
 const SAMPLES: f64 = 1600.0;
-/// Samples between those of the energy.
+/// Samples per sample of the energy.
 const ENERGY_EVERY: usize = 10;
-/// Fewer points of a path, such as that of another code, do not determine what is read from it.
+/// Fewer points of a path, such as another code's, do not determine its metrics.
 pub const LEAST_POINTS: usize = 400;
 
 /// The motion of the end.
 #[derive(Serialize, Deserialize)]
 pub struct End {
-    /// Of the bar.
+    /// Settings of the bar.
     #[serde(with = "touchstone_base::settings::as_json")]
     pub settings: CantileverSettings,
     /// When it is sampled next \[s\].
     pub until: f64,
     /// t \[s\], displacement of the end along x and y \[m\].
     pub path: Vec<[f64; 3]>,
-    /// t \[s\], kinetic energy and all energy, less that of the start \[J/m\].
+    /// t \[s\], kinetic energy and total energy, minus the total at the start \[J/m\].
     pub energies: Vec<[f64; 3]>,
 }
 
@@ -41,7 +41,7 @@ impl End {
         }
     }
 
-    /// A row of the energies. That of the weight is 0 at the start, for the bar lies along y = 0.
+    /// A row of the energies. The energy of the weight is 0 at the start, because the bar is along y = 0.
     fn energy(&self, simulation: &dyn Stepper<Symmetric>) -> [f64; 3] {
         let mut found = Energy::of(simulation, &self.settings.material());
         if simulation.potential().is_none() {

@@ -87,9 +87,9 @@ const COMPARED: [(MetricKey, MetricKey); 10] = [
 ];
 /// The end of short runs, after the first swing \[s\].
 const FIRST_SWING: f64 = 0.75;
-/// What is read from the energies of every step.
+/// Metrics that need the energies of every step.
 const STEPWISE: &[MetricKey] = &[ENERGY_CHANGE];
-/// What compares with the theory of our own method.
+/// Metrics that compare with the theory of our own method.
 const OF_METHODS: &[MetricKey] = &[BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR];
 const FREQUENCY_ERROR: MetricKey = error("frequency_error");
 const AVERAGE_X_ERROR: MetricKey = error("average_x_error");
@@ -118,9 +118,9 @@ fn variants() -> Compositions<CantileverSettings> {
         .all
 }
 
-/// Finite elements of the middle of the end, for the law of a variant; `None` where nothing was computed.
-/// Those of the paper solve (10) to (12), of which there is no table: of the laws it is nearest to that
-/// of Hencky, which has the same pressure. The path is empty under the small load.
+/// Finite elements of the middle of the end, for the law of a variant; `None` where nothing was computed. The
+/// paper's variants solve (10) to (12), for which there is no table: the nearest law is Hencky's, which has
+/// the same pressure. The path is empty under the small load.
 fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     let bar = |s: &CantileverSettings| {
         (s.length, s.thickness, s.solid.young, s.solid.poisson, s.solid.rho)
@@ -145,8 +145,8 @@ impl Body for CantileverSettings {
         self.solid.common()
     }
 
-    /// The speed is that of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to
-    /// either side; at most that of a rigid bar that falls to the vertical.
+    /// The speed of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to either side;
+    /// at most the speed of a rigid bar that falls to the vertical.
     fn scales(&self) -> Scales {
         let Self { length, thickness, gravity, .. } = *self;
         let SolidSettings { young, poisson, rho, .. } = self.solid;
@@ -162,8 +162,8 @@ impl Body for CantileverSettings {
         }
     }
 
-    /// Free particles, row by row from the clamp, then those of the clamp. The columns are as wide as the
-    /// length needs: of 5 layers, 88 columns are 0.6 % narrower than the layers are thick.
+    /// Free particles, row by row from the clamp, then the particles of the clamp. The width of columns
+    /// follows from the length: of 5 layers, 88 columns are 0.6 % narrower than the layers are thick.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (columns, dy) = (self.columns(), self.dx());
         let dx = self.length / columns as f64;

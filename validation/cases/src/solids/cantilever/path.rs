@@ -1,4 +1,4 @@
-//! What is measured of the path of the end of a bar, as finite elements are measured.
+//! Metrics of the path of the end of a bar, as for finite elements.
 
 use touchstone_base::functions::{cos, sin};
 use touchstone_maths::metrics::history::passes;

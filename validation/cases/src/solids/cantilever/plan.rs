@@ -1,17 +1,17 @@
-//! The runs of the bar, their gates, and what the report says of them.
+//! The runs of the bar, their gates, and its part of the report.
 
 use super::*;
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
 pub enum For {
     /// Frequency, mean and amplitude of the end.
     Whole,
-    /// The same under a tenth of the weight.
+    /// Under a tenth of the weight.
     Light,
     /// The first swing.
     First,
-    /// The same by the equations of the paper.
+    /// By the equations of the paper.
     Paper,
 }
 use For::{First, Light, Paper, Whole};
@@ -47,7 +47,7 @@ fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
         let most = most * wider;
         gate(metric, Bound::Within(-most, most), Evidence::Reference, reach)
     };
-    // One uncertainty is that of finite elements, and one is left to the clamp and to large rotations.
+    // One uncertainty is the finite elements', and one is for the clamp and for large rotations.
     let theory = "A bar that bends as finite elements do, with the stiffness of its layers by theory. The \
                   bound is the uncertainty of finite elements, and as much again for the clamp and for large \
                   rotations.";
@@ -99,7 +99,7 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-/// In the full tier which errors of constants the gates detect, and what can be measured of a path alone.
+/// In the full tier the errors of constants that the gates detect, and the metrics of a path alone.
 pub fn declaration(tier: Tier) -> Declaration {
     let constants =
         [Constant::BodyForce, Constant::SoundSpeed, Constant::Density, Constant::ShearModulus];
@@ -134,7 +134,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     }
 }
 
-/// The path of the end: a bar of uniform strain, whose end is there, stands for it.
+/// The path of the end, represented by a bar of uniform strain with this end.
 fn path_of_end() -> Curve {
     let compared = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
     Curve {

@@ -84,10 +84,10 @@ touchstone_base::metrics! {
          many layers has in the method by theory, minus 1";
 }
 
-/// What is read from the path of the tip through all steps.
+/// Metrics that need the path of the tip through all steps.
 const STEPWISE: &[touchstone_base::record::MetricKey] =
     &[PERIOD, PERIOD_EXCESS, AMPLITUDE_RATIO, PERIOD_ERROR, AMPLITUDE_ERROR, PATH_RMS];
-/// What compares with the theory of our own method.
+/// Metrics that compare with the theory of our own method.
 const OF_METHODS: &[touchstone_base::record::MetricKey] = &[BENDING_PERIOD_ERROR];
 
 /// The paper's terms with the leapfrog.
@@ -126,7 +126,7 @@ impl Body for PlateSettings {
         }
     }
 
-    /// Free particles, column by column from the clamp, then those of the clamp.
+    /// Free particles, column by column from the clamp, then the particles of the clamp.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, speed) = (self.dx(), self.speed());
         let held = (2.0 * self.solid.h_over_dx).ceil() as usize;
@@ -224,8 +224,8 @@ impl Watch for Tip {
     }
 }
 
-/// Finite elements of the last column of particles of a plate, for the law that the variant solves: that of
-/// the paper is (10) to (12). `None` where nothing was computed.
+/// Finite elements of the last column of particles of a plate, for the law of the variant: the paper's is
+/// (10) to (12). `None` where nothing was computed.
 fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
     let plate = |s: &PlateSettings| {
         (s.length, s.thickness, s.solid.young, s.solid.poisson, s.solid.rho, s.speed)
@@ -344,7 +344,7 @@ mod tests {
         assert!(matches!(refused("n=1"), Some(RunError::Setting(_))));
         assert!(matches!(refused("dt=1"), Some(RunError::TimeStep { .. })));
         assert!(matches!(refused("thickness=1e-9"), Some(RunError::TooLong { .. })));
-        // It had no free particle, and the run panicked at the first sample.
+        // Without a free particle the run must be refused, not panic.
         assert!(matches!(refused("length=1e-3"), Some(RunError::TooMuch { .. })));
     }
 

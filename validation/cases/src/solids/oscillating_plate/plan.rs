@@ -1,17 +1,17 @@
-//! The runs of the plate, their gates, and what the report says of them.
+//! The runs of the plate, their gates, and its part of the report.
 
 use super::*;
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
 pub enum For {
     /// Period, amplitude and energy of a swing by the equations of the paper.
     Paper,
-    /// The same, for the order alone.
+    /// For the order only.
     Order,
     /// Three swings of the total Lagrangian plate against finite elements.
     Elements,
-    /// What viscosity takes from a plate that hardly changes its volume.
+    /// The effect of viscosity on a plate that hardly changes its volume.
     Damped,
     /// How stiff a total Lagrangian plate is that hardly changes its volume.
     Locked,
@@ -32,7 +32,7 @@ pub fn table(tier: Tier) -> Table<PlateSettings, For> {
     table.over(Damped, &[PLAIN], [&[], &[0.49, 0.499, 0.4999]], |s, poisson| {
         (s.n, s.solid.poisson) = (5, poisson);
     });
-    // An odd number of layers bends, an even one locks. The tip has the same speed at every ratio.
+    // An odd number of layers bends, an even one locks. The tip has one speed at every ratio.
     table.over(
         Locked,
         &[LAGRANGIAN],
@@ -78,7 +78,7 @@ fn gates(row: &Row<PlateSettings, For>) -> Vec<Gate> {
     }
 }
 
-/// Of a swing by the equations of the paper.
+/// Gate on the period of a swing by the equations of the paper.
 fn period(row: &Row<PlateSettings, For>) -> Gate {
     let published = "Published SPH of this plate has periods that are 7 to 12 % too long; shear and rotary \
                      inertia lengthen the period by some per cent.";
@@ -91,7 +91,7 @@ fn period(row: &Row<PlateSettings, For>) -> Gate {
     faces::soft(gate, Bound::Within(0.0, softer))
 }
 
-/// The same, of any Poisson's ratio.
+/// Gate on the amplitude, at any Poisson's ratio.
 fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
     let theory = "A plate whose tip starts at the speed v swings to v T/(2 pi). It may swing 2 % farther, by \
                   which the first mode differs, and 10 % less far, a loss of a fifth of the energy.";
@@ -107,7 +107,7 @@ fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
     gate.with_limitation(Bound::Within(least, 1.02), known, &VISCOSITY).fitted()
 }
 
-/// Of a swing by the equations of the paper.
+/// Gate on the energy of a swing by the equations of the paper.
 fn energy(row: &Row<PlateSettings, For>) -> Gate {
     let stays = "Nothing drives the plate and nothing elastic dissipates, so its energy stays.";
     let gate = gate(row, ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, stays);

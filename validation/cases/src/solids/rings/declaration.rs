@@ -1,12 +1,12 @@
-//! What the studies that every case has are made of: histories over finite elements, errors over spacing and
-//! cost, an error budget, step limits, maps, errors of constants that the gates must detect.
+//! Declaration of the case: histories against finite elements, errors over spacing and cost, an error budget,
+//! step limits, maps, errors of constants that the gates must detect.
 
 use touchstone_report::{Colour, ColourMap, sig};
 
 use super::*;
 
-/// What is read from the phases of contact, which begin and end between two steps; extremes of every step;
-/// and energies that lack the stress.
+/// Metrics that need the phases of contact, which begin and end between two steps; extremes of every step;
+/// and energies, which need the stress.
 const STEPWISE: &[MetricKey] = &[
     RESTITUTION,
     RESTITUTION_ERROR,
@@ -23,7 +23,7 @@ const STEPWISE: &[MetricKey] = &[
 /// The variants whose histories and comparisons are shown.
 const SHOWN: [&str; 2] = [LAGRANGIAN, "seed"];
 
-/// Centre, velocity and extents of the ring on the right: both rings, stretched evenly, stand for them.
+/// Centre, velocity and extents of the ring on the right, represented by both rings with uniform stretch.
 fn path_and_extents() -> Curve {
     let errors = [X_C_WORST, X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS, HISTORIES];
     let extents = [WIDTH_MIN, WIDTH_MIN_ERROR, HEIGHT_MAX, HEIGHT_MAX_ERROR];
@@ -58,9 +58,9 @@ fn path_and_extents() -> Curve {
     }
 }
 
-/// Everything that the harness draws and judges.
-/// Finite elements know no direction of the flight. At 0.059 c0 errors do not fall with order 1: with eight
-/// layers the histories of our own run are 0.83 % away, and 0.78 % lie between the bounds of five and ten.
+/// Drawn and judged settings of sealed problems. The reference does not depend on the direction of flight. At
+/// 0.059 c0 errors do not fall with order 1: with eight layers the histories of our own run are 0.83 % away,
+/// and 0.78 % is between the bounds of five and ten.
 const SEALED: Draws = Draws {
     variants: &["lagrangian"],
     resolution: ("spacing", [0.1, 0.25]),
@@ -94,7 +94,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     }
 }
 
-/// The ring on the right at the paper's speed, over that of finite elements, and one that is torn.
+/// The ring on the right at the paper's speed with the finite elements', and one that is torn.
 fn pictures(tier: Tier) -> Vec<Picture> {
     let whole = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. \
                  Particles of variant `lagrangian`, spacing 0.1 L, are coloured by the largest principal \
@@ -153,7 +153,7 @@ fn comparisons(accuracy: &Accuracy) -> Vec<Comparison> {
     accuracy.ladders.iter().filter(compared).filter_map(of).flatten().collect()
 }
 
-/// What the report says first of the case.
+/// Summary of the case in the report.
 fn card(accuracy: &Accuracy) -> Card {
     Card {
         title: "Colliding rubber rings",
@@ -329,12 +329,12 @@ fn map(tier: Tier) -> Map {
     }
 }
 
-/// What becomes of two rings, from what is hoped for to the worst.
+/// Outcomes for two rings, from the best to the worst.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Fate {
     /// Each is one piece with a hole, at every count.
     Whole,
-    /// One is cut through once, like a C, or pressed flat, and so has no hole; it is one piece all the same.
+    /// A ring is cut once, like a C, or pressed flat, and so has no hole; it is still one piece.
     Torn,
     /// There are more pieces than rings.
     InPieces,
@@ -360,7 +360,7 @@ fn has_broken(record: &Record) -> Option<bool> {
     (is_counted && !is_control).then(|| fate(record) != Fate::Whole)
 }
 
-/// The worst fate of some runs, and a number that tells of it.
+/// The worst outcome of some runs, and a number for it.
 fn outcome(records: &[&Record]) -> (usize, String) {
     let Some(record) = records.iter().max_by_key(|record| fate(record)) else {
         return (Fate::Diverged as usize, String::new());
@@ -418,7 +418,7 @@ mod tests {
     use super::*;
     use touchstone_harness::runs::Runs;
 
-    /// It was left out with its gate, so that a report passed without them.
+    /// A report must not omit the runs and the gate of a refused run.
     #[test]
     fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
         let limits = StepLimits { about: String::new(), of: vec![step_limit("no such variant")] };

@@ -1,4 +1,4 @@
-//! What is measured of the rings, sample by sample and at the end.
+//! Metrics of the rings, by sample and at the end.
 
 use serde::{Deserialize, Serialize};
 use touchstone_maths::geometry::{Bonds, Topology};
@@ -8,8 +8,8 @@ use super::*;
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;
 const COUNTED_EVERY: usize = 8;
-/// Particles that are no farther apart at the start are neighbours \[dx\]: the next in a layer, and the
-/// nearest one or two of the layers beside it.
+/// Particles at most this far apart at the start are neighbours \[dx\]: the next in a layer, and the nearest
+/// one or two of adjacent layers.
 pub const NEIGHBOURS: f64 = 1.2;
 /// Shares of the run at which particles are kept for pictures.
 pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
@@ -102,8 +102,8 @@ impl Series {
         [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
     }
 
-    /// Takes a sample: the ring on the right, whose centre has x > 0. The energies are those of the particles
-    /// unless the simulation knows them.
+    /// Takes a sample of the ring on the right, whose centre has x > 0. The energies are the particles',
+    /// unless the simulation states them.
     pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
         let (c0, dx) = (self.settings.c0(), self.settings.dx());
         let [left, right] = halves(particles);
@@ -143,7 +143,7 @@ impl Series {
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
         let most = |k: usize| column(k).fold(0.0, f64::max);
         record.put(PIECES_MOST, most(5));
-        // A hole that is narrower than a disc is not seen at the start either.
+        // A hole narrower than a disc is not detected at the start either.
         if is_whole([first[5], first[9]]) {
             record.put(HOLES_LEAST, least(9));
             if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[9]])) {
@@ -168,7 +168,7 @@ impl Series {
         reference::compare(&self.settings, &self.phases(), &columns, record);
     }
 
-    /// Metrics of contact; `restitution` is that of rings that have parted.
+    /// Metrics of contact; `restitution` is for rings that have separated.
     fn put_contact(&self, restitution: f64, record: &mut Record) {
         let phases = self.phases();
         record.put(PHASES, phases.len() as f64);
@@ -307,7 +307,7 @@ mod tests {
         (record, series.points(9))
     }
 
-    /// Seen from outside at 0.09 to 0.12 c0: a ring opens at its rear pole into a C. It is one piece still.
+    /// As in rings at 0.09 to 0.12 c0: a ring opens at its rear pole into a C, still one piece.
     #[test]
     fn a_ring_that_is_cut_at_its_rear_pole_is_torn() {
         // From t = 11 on the two halves of the right ring's rear move apart, 0.05 dx each a unit of time.

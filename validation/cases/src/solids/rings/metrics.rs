@@ -1,4 +1,4 @@
-//! What the records of the rings state.
+//! Metrics of the rings.
 
 use super::*;
 

@@ -75,8 +75,8 @@ pub const COMPONENTWISE: &str = "componentwise";
 /// The variant with corrected gradients.
 pub const CORRECTED: &str = "corrected";
 
-/// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error
-/// is that of the spacing: half of the step changes the restitution by 0.15 % of its value.
+/// The Courant number of `leapfrog`: two thirds of the theoretical limit. At the paper's speed the error is
+/// due to the spacing: half of the step changes the restitution by 0.15 % of its value.
 const LONG_STEPS: f64 = 0.8;
 
 fn variants() -> Compositions<RingSettings> {
@@ -124,10 +124,10 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
     plan: |tier| table(tier).plan(),
 };
 
-/// The largest energy at any time over that at the start, less 1: what stress rates in time leave.
+/// The largest energy at any time over the initial one, minus 1: the error of stress rates in time.
 const MOST_ENERGY_GAINED: f64 = 0.01;
 
-/// Nothing drives the rings, so that a run is stable if it ends and its energy never rises.
+/// No force drives the rings, so a run is stable if it completes and its energy never rises.
 fn is_stable(record: &Record) -> bool {
     let gained = record.value(metrics::ENERGY_GAINED);
     record.status == Status::Completed && gained.is_some_and(|gained| gained <= MOST_ENERGY_GAINED)

@@ -1,15 +1,15 @@
-//! The table of the runs, and what a run is judged by.
+//! The table of the runs, and their gates.
 
 use touchstone_harness::table::Table;
 
 use super::*;
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Group {
     /// The collision at the paper's speed.
     Paper,
-    /// The same at another speed.
+    /// At another speed.
     Speed,
     /// The seed without artificial stress: the control of claim M2.
     Unstressed,
@@ -62,8 +62,7 @@ pub fn table(tier: Tier) -> Table<RingSettings, Group> {
     table
 }
 
-/// Gates of a run: what holds whatever the settings, whether the rings stay whole, distances from finite
-/// elements.
+/// Gates of a run: properties for any settings, whether the rings stay whole, distances from finite elements.
 fn gates(row: &Row) -> Vec<Gate> {
     if row.group == Group::Coarse {
         return Vec::new();
@@ -90,7 +89,7 @@ fn gates(row: &Row) -> Vec<Gate> {
     gates
 }
 
-/// What the names of the gates of a run have in the middle.
+/// The middle part of the names of the gates of a run.
 fn id(row: &Row) -> String {
     let RingSettings { spacing, speed, .. } = row.settings;
     let xi = row.settings.stabilisation.xi;
@@ -104,7 +103,7 @@ const GAINED: &str = "Nothing drives the rings, and artificial stress gives less
 const NOTHING_DISSIPATES: &str = "Nothing dissipates. Contacts that open and close within a step leave some \
     tenths of a per cent.";
 
-/// A gate on what finite elements say.
+/// A gate on a result of finite elements.
 fn reference(id: &str, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
     RUBBER_RINGS.gate(id, metric, bound, Evidence::Reference, because)
 }
@@ -143,7 +142,7 @@ struct Distances<'a> {
     row: &'a Row,
     id: &'a str,
     exact: Reference,
-    /// What first order allows, of 1.
+    /// The deviation from 1 that first order allows.
     allowed: f64,
 }
 
@@ -156,7 +155,7 @@ impl Distances<'_> {
         reference(self.id, metric, Bound::Within(-allowed, allowed), FIRST_ORDER)
     }
 
-    /// Period of bending over that of an elastic ring, less 1, as far as it is known.
+    /// Period of bending over the period of an elastic ring, minus 1, as far as it is known.
     fn softer(&self) -> f64 {
         let RingSettings { spacing, h_over_dx, .. } = self.row.settings;
         faces::known_excess((1.0 / spacing).round() as usize, h_over_dx)

@@ -10,7 +10,7 @@ const PACKAGE: &str = "rubber_rings";
 /// The law of (10) to (12), as the tables name it.
 const JAUMANN: &str = "jaumann";
 
-/// What finite elements say of one law and speed.
+/// Results of finite elements for one law and speed.
 #[derive(Clone, Debug)]
 pub struct Reference {
     quantities: Quantities,
@@ -20,7 +20,7 @@ pub struct Reference {
     pub doubt: f64,
     /// The columns of [`Reference::COLUMNS`] over t \[L/c0\].
     pub histories: Histories,
-    /// The uncertainty of [`HISTORIES`], from that of the columns.
+    /// The uncertainty of [`HISTORIES`], from the uncertainties of the columns.
     pub uncertainty: f64,
     /// Least distance of the ring from the plane \[L\] over t \[L/c0\].
     gap: Vec<(f64, f64)>,
@@ -40,14 +40,13 @@ pub fn outlines(speed: f64, time: f64) -> Vec<Vec<(f64, f64)>> {
     ["outer", "inner"].map(face).into_iter().filter(|line| !line.is_empty()).collect()
 }
 
-/// What is compared at every time of the reference.
+/// Metrics of the comparison at every time of the reference.
 const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST];
 
 /// Points of [`Reference::COLUMNS`] over t \[L/c0\].
 type Histories = [Vec<(f64, f64)>; 4];
 
-/// Adds the distances from finite elements to the metrics of a run that has been measured, or says why there
-/// are none.
+/// Adds the distances from finite elements to the metrics of a measured run, or the reason for their absence.
 pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &mut Record) {
     let Some(exact) = Reference::of(&record.run.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
@@ -140,8 +139,8 @@ impl Reference {
         record.put(X_C_WORST, worst.unwrap_or(f64::NAN));
     }
 
-    /// Begin, end and impulse of each phase. Of a run that has not as many phases, only the first begin and
-    /// the last end have a partner.
+    /// Begin, end and impulse of each phase. If a run has another number of phases, only the first begin and
+    /// the last end have a counterpart.
     fn compare_phases(&self, found: &[Phase], record: &mut Record) {
         const UNLIKE: &str = "the rings have another number of phases than finite elements, or still touch \
                               at the end";

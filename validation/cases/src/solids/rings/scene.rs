@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// The most layers that are known to stay whole with corrected gradients at the paper's speed. Those of 20
+/// The largest number of layers that stay whole with corrected gradients at the paper's speed. Rings of 20
 /// tear at the inner face (docs/limits.md).
 const MOST_CORRECTED: f64 = 10.0;
 
@@ -74,9 +74,9 @@ impl Body for RingSettings {
         })
     }
 
-    /// Concentric layers, their numbers multiples of four, so that mass is exact, the edge is smooth, and
-    /// each ring is its own mirror image. The ring on the right is the mirror image of the one on the left,
-    /// in the same order.
+    /// Concentric layers with numbers of particles that are multiples of four, so that mass is exact, the
+    /// edge is smooth, and each ring is its own mirror image. The ring on the right is the mirror image of
+    /// the one on the left, in the same order.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, v) = (self.dx(), self.speed());
         let rotation = self.to_flight().inverse();

@@ -19,8 +19,8 @@ fn settings() -> RingSettings {
     RingSettings { spacing: 0.25, speed: 0.06, ..RingSettings::default() }
 }
 
-/// What is measured of rings whose centre, its velocity, width and height \[L, c0\] are given at each time
-/// \[L/c0\], four times in a unit of time.
+/// The metrics of rings with this centre, its velocity, width and height \[L, c0\] at each time \[L/c0\],
+/// four times in a unit of time.
 fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record {
     let (start, dx) = (settings.particles(), settings.dx());
     let [_, _, extent] = measure::side(&start[start.len() / 2..], dx);
@@ -167,7 +167,7 @@ fn a_run_that_is_finite_elements_has_no_distance_from_them() {
     }
 }
 
-/// Contact was 10 to 20 L/c0 too long and the centre up to 0.95 L off, and no metric said so.
+/// A contact of 10 to 20 L/c0 too long and a centre 0.95 L off must appear in metrics.
 #[test]
 fn a_run_that_is_late_has_errors_with_their_sign() {
     let settings = RingSettings { speed: 0.059, ..settings() };
@@ -223,7 +223,7 @@ fn rings_that_nothing_acts_on_keep_their_shape() {
     }
 }
 
-/// Only K has a unit of stress, so that motion in units of L and c0 is the same but for round-off.
+/// Only K has a unit of stress, so motion in units of L and c0 is equal up to round-off.
 #[test]
 fn rings_that_are_a_hundred_times_as_stiff_move_alike() {
     let soft = run("leapfrog", |s| (s.spacing, s.end) = (0.33, 80.0));
@@ -234,7 +234,7 @@ fn rings_that_are_a_hundred_times_as_stiff_move_alike() {
     }
 }
 
-/// Half the speed of sound is far beyond what rubber and (12) are for.
+/// Half the speed of sound is far beyond the range of rubber and (12).
 #[test]
 fn rings_at_half_the_speed_of_sound_keep_their_momentum_or_diverge() {
     let record = run("seed", |s| (s.spacing, s.speed, s.end) = (0.2, 0.5, 30.0));

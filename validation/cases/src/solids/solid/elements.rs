@@ -1,4 +1,4 @@
-//! What finite elements say of a place of a body: its path, and quantities by name.
+//! Finite elements of a point of a body: its path, and quantities by name.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ type Texts<'a> = &'a [(&'a str, &'a str)];
 /// Quantities by name, each with its uncertainty.
 pub type Quantities = BTreeMap<String, [f64; 2]>;
 
-/// Those of the rows of the summary of a package that have these texts.
+/// The quantities in the rows of the summary of a package with these texts.
 pub fn quantities(package: &str, of: Texts) -> Option<Quantities> {
     let summary = Reference::load(package).ok()?.table("summary").ok()?;
     let (names, rows) = (summary.texts("quantity").ok()?, summary.rows_of(of).ok()?);
@@ -30,7 +30,8 @@ pub struct Elements {
 }
 
 impl Elements {
-    /// Those of the rows of the summary and of the series of a package; the path has the columns x and y.
+    /// The quantities of the summary and the path of the series in the rows of a package with these texts;
+    /// the path has the columns x and y.
     pub fn of(package: &str, [summary, series]: [Texts; 2], [x, y]: [&str; 2]) -> Option<Self> {
         let table = Reference::load(package).ok()?.table("series").ok()?;
         let path = Path(table.select(series, ["t", x, y]).ok()?);
@@ -43,8 +44,8 @@ impl Elements {
     }
 }
 
-/// Puts quantities over those of finite elements, less 1, and the distance of the path of a whole run from
-/// theirs over one of their quantities; or why they are absent.
+/// Puts quantities over the finite elements' values, minus 1, and the distance of the path of a whole run
+/// from theirs over one of their quantities; or the reason for their absence.
 pub fn compare(
     exact: Option<&Elements>,
     quantities: &[(MetricKey, MetricKey)],

@@ -18,8 +18,8 @@ pub struct Energy {
 }
 
 impl Energy {
-    /// Of all fluid particles of a simulation. If its forces derive from energies, these are taken: what
-    /// loads store counts as compression, and what resists modes that deform no particle as shear.
+    /// The energy of all fluid particles of a simulation. If its forces have potentials, these are used:
+    /// energy of loads counts as compression, and energy of the hourglass resistance as shear.
     pub fn of(simulation: &dyn Stepper<Symmetric>, of: &Material) -> Self {
         if let Some(known) = Self::known(simulation) {
             return known;
@@ -27,7 +27,7 @@ impl Energy {
         simulation.data().fluid().fold(Self::default(), |sum, (mass, p)| sum.with(mass, p, of))
     }
 
-    /// Of a simulation whose forces derive from energies.
+    /// The energy of a simulation whose forces have potentials.
     pub fn known(simulation: &dyn Stepper<Symmetric>) -> Option<Self> {
         let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
         let half = |(mass, p): (f64, &State<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
@@ -35,7 +35,7 @@ impl Energy {
         Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
     }
 
-    /// Of all of these particles.
+    /// The energy of these particles.
     pub fn of_all(particles: &[Particle<Symmetric>], of: &Material) -> Self {
         particles.iter().fold(Self::default(), |sum, p| {
             let Particle { position, velocity, density, extra, .. } = *p;
@@ -43,7 +43,7 @@ impl Energy {
         })
     }
 
-    /// With those of one more particle of this mass \[kg/m\].
+    /// The sum with one more particle of this mass \[kg/m\].
     fn with(self, mass: f64, particle: &State<Symmetric>, material: &Material) -> Self {
         let ratio = particle.density / material.density;
         let c2 = material.bulk / material.density;
@@ -62,7 +62,7 @@ impl Energy {
         }
     }
 
-    /// All of it.
+    /// Total energy.
     pub fn total(&self) -> f64 {
         self.kinetic + (self.compression + self.shear)
     }

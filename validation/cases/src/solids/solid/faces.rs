@@ -1,11 +1,11 @@
-//! What free faces take from the stiffness of an elastic body in bending.
+//! The effect of free faces on the stiffness of an elastic body in bending.
 
 use touchstone_base::gate::{Bound, Gate};
 use touchstone_solver::{CubicSpline, kernel::Smoothing};
 
 use crate::solids::causes::FREE_FACES;
 
-/// Period of bending of a body of so many layers over that of one whose gradients are exact, less 1 \[-\].
+/// Period of bending of a body of these layers over the period with exact gradients, minus 1 \[-\].
 ///
 /// Gradients (11) and forces (9) are sums over neighbours that are not corrected. Where neighbours are
 /// missing, both are too small along the face, by the factor f = Σ V F x² over the layers that there are. A
@@ -26,8 +26,8 @@ pub fn period_excess(layers: usize, h_over_dx: f64) -> f64 {
     ((layers as f64).powi(3) / (12.0 * stiffness)).sqrt() - 1.0
 }
 
-/// How much longer periods of bending are known to be than those of an elastic body: by what faces take, and
-/// by 7 % more, as published SPH of a plate with many layers has it.
+/// The known excess of periods of bending over an elastic body's: the effect of faces, and 7 % more, as in
+/// published SPH of a plate with many layers.
 pub fn known_excess(layers: usize, h_over_dx: f64) -> f64 {
     1.07 * (1.0 + period_excess(layers, h_over_dx)) - 1.0
 }

@@ -1,4 +1,4 @@
-//! What the total Lagrangian solid is used with.
+//! Settings of the total Lagrangian solid.
 
 use touchstone_base::settings::{self, Values};
 use touchstone_schemes::total::H_OVER_DX;
@@ -8,7 +8,7 @@ use super::leave_out;
 
 /// The variant.
 pub const LAGRANGIAN: &str = "lagrangian";
-/// What it is.
+/// Its description.
 pub const TOTAL: &str = "total Lagrangian: neighbours of the reference configuration, forces from the stored \
     energy of Hencky, contact where there are several bodies, velocity Verlet: what is left where \
     nothing dissipates?";
@@ -20,7 +20,7 @@ const COURANT: f64 = 0.8;
 /// stable in matter of 2.5 times the density.
 pub const COURANT_OF_FOLDS: f64 = 0.4;
 
-/// Sets what the method is used with, and the strengths of terms that it lacks to 0.
+/// Sets the support of the method, and the strengths of terms that it lacks to 0.
 pub fn choose(settings: &mut dyn Values) {
     leave_out(settings, &["alpha", "beta", "xi", "xsph"]);
     for (name, value) in [("h_over_dx", H_OVER_DX), ("courant", COURANT)] {

@@ -62,8 +62,8 @@ const LIMIT_BOX: usize = 24;
 /// The limits of the step of a method on a stress-free lattice of this material, with artificial viscosity
 /// on every pair: together with α = 1 about 1.1 h/c_p for the leapfrog.
 ///
-/// Its fastest waves run at c_p. The c of the artificial viscosity is that of the equation of state, c₀, so
-/// its α counts as α c₀/c_p of c_p. Bodies may meet at the speed `approach` \[m/s\]; where none do it is 0.
+/// The fastest waves have the speed c_p. The c of the artificial viscosity is the equation of state's, c₀, so
+/// its α counts as α c₀/c_p of c_p. Bodies may meet at the speed `approach` \[m/s\], 0 without contact.
 pub fn limits(
     method: &Properties,
     material: &Material,
@@ -89,7 +89,7 @@ pub fn limits(
     let alpha = medium.alpha * material.sound_speed() / wave;
     let waves = time_step::Medium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };
     let limits = method.limits([h_over_dx, 0.01], LIMIT_BOX, &waves);
-    // Both kinds of waves have the rates of the same gradient.
+    // Both kinds of waves have the rates of one gradient.
     let shear = limits.alone(Mechanism::Waves) * wave / material.shear_wave_speed();
     limits.with(Mechanism::ShearWaves, shear).with(Mechanism::Contact, meeting)
 }
@@ -103,7 +103,7 @@ mod tests {
     use touchstone_schemes::solid::{bare, corrected};
     use touchstone_solver::{Domain, Outcome, Particle};
 
-    /// Rings took α c0/c_p and bars α itself. The viscosity is α h c0, whatever c_p is.
+    /// The viscosity is α h c0, not α h c_p: both rings and bars must use this.
     #[test]
     fn the_step_limit_has_the_viscosity_of_the_bulk_sound_speed() {
         let method = touchstone_schemes::solid::clamped_plain();
@@ -141,8 +141,8 @@ mod tests {
     const SIDE: usize = 24;
     const RUBBER: Material = Material { density: 1.0, bulk: 1.0, shear: 0.22 };
 
-    /// The largest speed of a lattice at rest after 60 steps of so many limits, over that of the noise at the
-    /// start.
+    /// The largest speed of a lattice at rest after 60 steps of `of_limit` times the limit, over the noise at
+    /// the start.
     fn growth(of_limit: f64) -> f64 {
         let method = corrected();
         let medium = RUBBER.medium(&method.properties, [1.0, 1.5]);

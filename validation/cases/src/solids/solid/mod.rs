@@ -1,5 +1,5 @@
-//! What cases of the elastic solid have in common: material, methods, settings, energies, and the
-//! variants of a problem.
+//! Common parts of the cases of the elastic solid: material, methods, settings, energies, and the variants of
+//! a problem.
 
 mod elements;
 mod energy;

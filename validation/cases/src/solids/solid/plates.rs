@@ -1,4 +1,4 @@
-//! What clamped plates have in common.
+//! Common parts of clamped plates.
 
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
@@ -20,7 +20,7 @@ pub fn thin_plate_period(
     TAU / (k * k * (stiffness / density).sqrt())
 }
 
-/// Scales of a plate of so many layers, of this length and thickness \[m\].
+/// Scales of a plate of `n` layers, of this length and thickness \[m\].
 pub fn of_layers(n: usize, [length, thickness]: [f64; 2]) -> Scales {
     let (dx, decisive) = (thickness / n as f64, "end, dt, n, length or thickness");
     Scales { dx, length, count: length / dx * n as f64, decisive, ..Scales::default() }

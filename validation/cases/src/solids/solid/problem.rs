@@ -1,4 +1,4 @@
-//! A problem of elasticity: its variants, what every record states, and how it is stepped.
+//! A problem of elasticity: its variants, the common part of its records, and its stepping.
 
 use nalgebra::Vector2;
 use serde::{Serialize, de::DeserializeOwned};
@@ -32,7 +32,7 @@ pub struct Common {
     pub courant: Option<f64>,
 }
 
-/// What follows from the settings of a problem before its particles are made.
+/// Quantities of a problem that follow from its settings without particles.
 #[derive(Clone, Debug, Default)]
 pub struct Scales {
     /// Spacing \[m\].
@@ -60,7 +60,7 @@ pub struct Scales {
     pub bounds: touchstone_solver::Limits,
 }
 
-/// Elastic bodies, stated by the settings of a case: what differs between cases of solids.
+/// Elastic bodies, stated by the settings of a case: the differences between cases of solids.
 pub trait Body: Values {
     /// What measures a run.
     type Watch: Watch;
@@ -88,16 +88,15 @@ pub trait Body: Values {
     fn end(&self) -> f64 {
         self.scales().end
     }
-    /// The particles at the start. Those that are held stand behind the plane x = 0, by which methods that
-    /// have no held particles hold the body.
+    /// The particles at the start. Clamped particles are behind the plane x = 0, by which methods without
+    /// clamped particles hold the body.
     fn particles(&self) -> Vec<Particle<Symmetric>>;
-    /// What measures a run with these particles at the start, which have these energies if the method knows
-    /// them.
+    /// The observer of a run with these initial particles, and their energies if the method states them.
     fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
     /// Refuses settings that are in their ranges and make no body together.
     ///
     /// # Errors
-    /// What is too large, and which settings it depends on.
+    /// The quantity that is too large, and its settings.
     fn check(&self) -> Result<(), RunError> {
         Ok(())
     }
@@ -112,11 +111,11 @@ pub trait Body: Values {
     }
 }
 
-/// Sees every step of a run and measures it.
+/// Observes every step of a run and measures it.
 pub trait Watch: Serialize + DeserializeOwned {
     /// Called after every step.
     fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>);
-    /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
+    /// Keeps the particles at a stop, if the run keeps particles; velocities may be half a step old.
     fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &mut Record) {}
     /// Puts metrics and profiles; `simulation` is at its end.
     fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
@@ -130,7 +129,7 @@ pub fn no_variants<B: Body + Settings + Clone>() -> Alike<B> {
     Variants::of(|m, s: &B| Solid::new(m, s.clone()))
 }
 
-/// The variants that every problem has; the methods: that of the paper, and its equations alone.
+/// The variants of every problem; the methods: the paper's, and its equations alone.
 pub fn variants<B: Body + Settings + Clone>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<B> {
     let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
                   principal axes, XSPH";
@@ -149,7 +148,7 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
     }
 }
 
-/// What terms are made from.
+/// Constants of the terms.
 pub fn medium(settings: &impl Body, method: &Properties) -> Medium {
     let Scales { dx, gravity, .. } = settings.scales();
     let Common { material, h_over_dx, .. } = settings.common();

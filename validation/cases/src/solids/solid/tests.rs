@@ -1,4 +1,4 @@
-//! What the tests of several cases need.
+//! Common parts of the tests of several cases.
 
 use touchstone_harness::{
     case::{self, Case, RunError},

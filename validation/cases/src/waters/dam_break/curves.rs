@@ -1,4 +1,4 @@
-//! Histories of both experiments over what was measured and over the same model by volume of fluid.
+//! Histories of both experiments with measurements and with the same model by volume of fluid.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 use touchstone_report::{Axis, sig};
@@ -9,7 +9,7 @@ use super::{
 };
 
 /// A panel over time until an end, of the judged runs of the recommended variant and of the paper's: names of
-/// the axes, curves of runs, those measured and (without a name) by volume of fluid.
+/// the axes, curves of runs, of measurements and (without a name) of volume of fluid.
 fn panel(
     (tier, group): (Tier, Group),
     title: &str,

@@ -1,6 +1,5 @@
-//! What the studies that every case has are made of: the front of the column of Martin & Moyce over
-//! resolutions, what its error is made of, the longest stable time steps, and the errors of constants that
-//! the gates must detect.
+//! Declaration of the case: the front of the column of Martin & Moyce over resolutions, its error budget, the
+//! longest stable time steps, and the errors of constants that the gates must detect.
 
 use serde_json::Value;
 use touchstone_base::reference::Reference;
@@ -14,7 +13,8 @@ pub fn is_stable(record: &Record) -> bool {
     record.status == Status::Completed && is_below(ENERGY_GAP, 0.02) && is_below(MACH, 0.5)
 }
 
-/// The experiment is the same at any spacing, and its distance from the model does not fall with it.
+/// The experiment does not depend on the spacing, and the distance between it and the model does not fall
+/// with the spacing.
 const SEALED: Draws = Draws {
     variants: &["modern"],
     resolution: ("n", [14.0, 40.0]),
@@ -25,7 +25,7 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-/// All of it.
+/// The declaration.
 pub fn declaration(tier: Tier) -> Declaration {
     let accuracy = accuracy(tier);
     let comparisons = comparisons(tier);
@@ -52,7 +52,7 @@ pub fn declaration(tier: Tier) -> Declaration {
     }
 }
 
-/// What the report says first of the case: the front against volume of fluid, and both distances from the
+/// Summary of the case in the report: the front against volume of fluid, and both distances from the
 /// experiment.
 fn card(accuracy: &Accuracy) -> Card {
     Card {
@@ -93,7 +93,7 @@ fn scene(settings: &Value) -> Option<Scene> {
     touchstone_base::settings::of_json::<DamSettings>(settings).ok()?.scene()
 }
 
-/// The distance of the front from that of the experiment whose tank the settings are.
+/// The distance of the front from the experiment with the tank of the settings.
 fn against_the_experiment(record: &Record) -> Option<String> {
     let (experiment, spread, unit) = match scene(&record.run.settings)? {
         Scene::MartinMoyce => ("Martin & Moyce", FRONT_SPREAD, "a"),
@@ -128,7 +128,7 @@ fn picture(tier: Tier) -> Picture {
     Picture { range: Some([0.0, 1.0]), ..picture }
 }
 
-/// The front over time: the column, moved with it, stands for it.
+/// The front over time, represented by the column moved with it.
 fn front() -> Curve {
     Curve {
         columns: &[("front", "m")],
@@ -150,7 +150,7 @@ fn front() -> Curve {
 /// `modern` as a method, against volume of fluid, and its model, against both experiments. The tank has a
 /// ladder in the full tier alone.
 fn comparisons(tier: Tier) -> Vec<Comparison> {
-    // What is compared, its metric, and u_D as a method.
+    // Compared quantity, its metric, and u_D as a method.
     let column = [
         ("front at T = 2 [a]", FRONT_AWAY.at(2), 2.0 * vof("martin_moyce", "front_at_1")[1]),
         ("residual height, rms [H]", HEIGHT_AWAY.into(), vof("martin_moyce", "height_at_1.65")[1]),
@@ -193,8 +193,8 @@ fn vof(scene: &str, name: &str) -> [f64; 2] {
     Reference::summarised("dam_break_vof", &[("scene", scene), ("quantity", name)])
 }
 
-/// Comparisons of the ladder of a group with volume of fluid and with an experiment, each with what is
-/// compared, its metric and u_D; `digit` is half of the last digit of a height over that height.
+/// Comparisons of the ladder of a group with volume of fluid and with an experiment, each with the compared
+/// quantity, its metric and u_D; `digit` is half of the last digit of a height over this height.
 fn compared(
     tier: Tier,
     group: Group,
@@ -265,7 +265,7 @@ fn in_the_tank(tier: Tier) -> Accuracy {
 /// A change of the settings.
 type Set = fn(&mut DamSettings);
 
-/// What is changed, the part of the error that this changes, how, and the only variant that has it.
+/// The change, the affected part of the error, the function that sets it, and the only variant with it.
 const CHANGES: [(&str, &str, Set, Option<&str>); 9] = [
     ("none", "all", |_| (), None),
     ("dt/2", "time", |s| s.water.courant *= 0.5, None),
@@ -307,7 +307,7 @@ fn limits(tier: Tier) -> StepLimits {
 }
 
 fn limit(variant: &'static str) -> StepLimit {
-    // Stable is what keeps its energy.
+    // A run is stable if it keeps its energy.
     let spec = DAM_BREAK.spec(variant, |s| s.n = 15).measure_all();
     let rules = DAM_BREAK.rules(&spec).unwrap_or(Rules::REFUSED);
     let because = "Theory is the limit of a lattice at rest. Moving, disordered water is expected at 0.7 \

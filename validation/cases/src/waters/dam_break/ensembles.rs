@@ -1,12 +1,12 @@
-//! The column in the tank from twenty starts that differ by a millionth of a spacing: until when levels and
-//! impulses agree, and how what comes after the jet has fallen back is distributed.
+//! The column in the tank from twenty starts that differ by a millionth of a spacing: the time until which
+//! levels and impulses agree, and the distribution after the jet has fallen back.
 
 use super::*;
 
-/// When the levels of what comes after the jet has closed are taken \[(H/g)^(1/2)\].
+/// Times of the levels after the jet has closed \[(H/g)^(1/2)\].
 const LATE: [f64; 2] = [6.0, plan::UNTIL];
 
-/// All of them, of `modern` and `seed` at two spacings; none in the quick tier.
+/// All ensembles, of `modern` and `seed` at two spacings; none in the quick tier.
 pub fn ensembles(tier: Tier) -> Option<Ensembles> {
     let table = plan::table(tier);
     let ensemble = |(n, variant): (usize, &'static str)| {
@@ -36,7 +36,7 @@ pub fn ensembles(tier: Tier) -> Option<Ensembles> {
     (tier != Tier::Quick).then(|| Ensembles { about: about.into(), time, of: of() })
 }
 
-/// Levels and impulses. Until the end of what single runs are compared by, all must agree.
+/// Levels and impulses. All members must agree until the end of the comparison of single runs.
 fn histories(id: &str, variant: &str) -> Vec<History> {
     let agree = |name: &str, until: f64| {
         let because = "Single runs are judged by this history until that time: a gate on it would judge a \
@@ -116,11 +116,11 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
     ]
 }
 
-/// What is known of a median of `modern`: that of forty other starts, seeds 21 to 60, and their scatter, and
-/// the medians of twenty with 3 % more and less gravity.
+/// Known values of a median of `modern`: of forty other starts, seeds 21 to 60, with their scatter, and of
+/// twenty with 3 % more and less gravity.
 type Known = [[f64; 2]; 2];
 
-/// H/dx, and what is known of the level at H3 and of the impulse on P3.
+/// H/dx, and the known values of the level at H3 and of the impulse on P3.
 const MEDIANS: [(usize, Known, Known); 2] = [
     (20, [[0.5150, 0.0108], [0.549, 0.476]], [[0.1284, 0.0046], [0.174, 0.099]]),
     (30, [[0.5629, 0.0100], [0.526, 0.521]], [[0.1218, 0.0039], [0.153, 0.083]]),

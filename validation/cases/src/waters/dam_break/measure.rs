@@ -1,4 +1,4 @@
-//! What is measured of the water: front, heights, levels, potential energy, and pressure on the far wall.
+//! Metrics of the water: front, heights, levels, potential energy, and pressure on the far wall.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -14,20 +14,19 @@ pub const PROBES: [f64; 4] = [0.300, 0.865, 1.114, 1.3625];
 /// Where the residual height is read, and half of the width that it is read over, from the back wall
 /// \[width of the column\]; at least ± 2 dx, or less where that would reach behind the wall.
 ///
-/// Not at the wall itself: the particles next to it slide down it more slowly than the water does, in a
-/// layer of a few spacings, so a probe within so many spacings of it would read the layer, at a place
-/// that moves with the spacing.
+/// Not at the wall itself: the particles next to it slide down more slowly than the water, in a layer of a
+/// few spacings, so a probe within it would measure the layer, at a place that depends on the spacing.
 const HEIGHT_AT: f64 = 0.2;
 const HEIGHT_OVER: f64 = 0.05;
 
-/// A particle this far behind the surface of a wall is lost \[dx\]. A splash may dent a wall of
-/// particles, whose surface lies half a spacing before the first of them.
+/// A particle this far behind the surface of a wall is lost \[dx\]. A splash may dent a wall of particles,
+/// whose surface is half a spacing before the first of them.
 const LOST: f64 = 0.5;
 
 /// Depth of water at x: Σ V hat((x_i − x)/w)/w with the hat function 1 − |ξ| of half-width w.
 ///
-/// A gauge that adds up what is wet, not one that finds the topmost drop. Exact for columns of a
-/// lattice, wherever they stand, if w is a whole number of spacings.
+/// The gauge sums the wet part and does not search for the topmost drop. Exact for columns of a lattice at
+/// any position, if w is a whole number of spacings.
 fn depth<'a>(particles: impl Iterator<Item = (f64, &'a State<()>)>, x: f64, w: f64) -> f64 {
     particles.fold(0.0, |sum, (mass, p)| {
         let hat = (1.0 - ((p.position.x - x) / w).abs()).max(0.0);
@@ -35,8 +34,8 @@ fn depth<'a>(particles: impl Iterator<Item = (f64, &'a State<()>)>, x: f64, w: f
     })
 }
 
-/// Where a probe at x reads, and half of the width that it reads over, so many spacings if a wall is not
-/// nearer: the water behind it would be missing from the depth \[m\].
+/// The position of a probe at x, and half of its width: this number of spacings, or up to a nearer wall,
+/// behind which there is no water \[m\].
 fn probe(x: f64, spacings: f64, dx: f64, width: f64) -> (f64, f64) {
     let place = x.max(dx);
     // A rounding error must not take away a spacing.
@@ -73,7 +72,7 @@ pub struct Samples {
     rows: Vec<[f64; 8]>,
     /// Height of the centre of mass at the start/(H/2) - 1.
     released: f64,
-    /// Particles outside: the most at any time, and those at the last.
+    /// Particles outside: the most at any time, and at the last.
     outside: [f64; 2],
     /// The largest speed \[m/s\].
     fastest: f64,
@@ -99,7 +98,7 @@ impl Samples {
     pub fn sample(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) {
         let (s, dx) = (&dam.settings, dam.medium.dx);
         let foremost = foremost(simulation.data().fluid(), s.height);
-        // In the order of the scene: that of storage changes, and with it the last bits of a sum.
+        // In the order of the scene: the order of storage changes, and with it the last bits of a sum.
         let mut water = simulation.particles();
         water.retain(|p| p.role == Role::Fluid);
         let centre = centre(&water);
@@ -124,9 +123,9 @@ impl Samples {
         self.look_at_walls(dam, simulation);
     }
 
-    /// Counts the particles that are lost, without those that have left over the rim: the walls are several
-    /// spacings thick, so such a particle is seen above them first, or as a dent in their upper end. The
-    /// speed of the water that has not left counts.
+    /// Counts lost particles, without particles that have left over the rim: the walls are several spacings
+    /// thick, so such a particle is first above them, or a dent in their upper end. Measures the speed of the
+    /// water that has not left.
     fn look_at_walls(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) {
         let Dam { tank, medium, rim, .. } = dam;
         let reach = LOST * medium.dx;
@@ -188,7 +187,7 @@ impl Samples {
     }
 }
 
-/// A point of a sensor: place, share of the sensor, and the part of the kernel that lies in the tank.
+/// A point of a sensor: place, part of the sensor, and the part of the kernel inside the tank.
 #[derive(Serialize, Deserialize)]
 struct Spot {
     place: Vector2<f64>,
@@ -216,7 +215,7 @@ pub struct Gauge {
 type Weight<'a> = &'a dyn Fn(f64) -> f64;
 
 impl Gauge {
-    /// Sensors on the far wall of a tank; none where the wall is not that of the experiment.
+    /// Sensors on the far wall of a tank; none where the wall is not the experiment's.
     pub fn new(dam: &Dam, support: f64, weight: Weight) -> Self {
         let wall = dam.tank.width();
         let sensors = if dam.is_lobovsky() { &SENSORS[..] } else { &[] };
@@ -317,7 +316,7 @@ mod tests {
         }
     }
 
-    /// A simulation of these particles in place of those of a dam break, without walls.
+    /// A simulation of these particles in place of the particles of a dam break, without walls.
     fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
         let parts = Parts { particles, ..dam.parts() };
         let mut simulation = (dam.method.build)(parts).expect("a scene");
@@ -325,7 +324,7 @@ mod tests {
         simulation
     }
 
-    /// Water of the density at rest from one column to another, so many rows high, with this velocity.
+    /// Water of the density at rest from one column to another, `rows` rows high, with this velocity.
     fn water(dam: &Dam, from: usize, to: usize, rows: usize, v: Vector2<f64>) -> Vec<Particle> {
         let dx = dam.medium.dx;
         let first = Vector2::new(from as f64 + 0.5, 0.5) * dx;
@@ -378,7 +377,7 @@ mod tests {
                 assert!((level - expected * dx).abs() < 1e-6 * dx, "{level}: {expected} dx");
             }
         }
-        // Water that ends at 45 spacings fills a part of what H4 reads, from 43.42 to 47.42.
+        // Water that ends at 45 spacings fills a part of the range of H4, from 43.42 to 47.42.
         let mut samples = Samples::new();
         samples.sample(&tank, &*simulation(&tank, water(&tank, 30, 45, 3, Vector2::zeros())));
         let hat = |k: f64| (1.0 - (k + 0.5 - 1.3625 / dx).abs() / 2.0) / 2.0;
@@ -498,7 +497,7 @@ mod tests {
             assert!(error < 2e-3, "{height} m: {error}");
         }
         // Only the highest sensor has no floor in its reach: a half of its kernel is in the tank, and a
-        // quarter of that is wet, half of what counts as all.
+        // quarter of this is wet, half of the full value.
         let dry = gauge.read(&tank, &*wall(0.25))[3] / read[3];
         assert!((dry - 0.5).abs() < 5e-3, "{dry}");
     }

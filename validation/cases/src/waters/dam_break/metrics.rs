@@ -2,13 +2,13 @@
 
 use super::*;
 
-/// Distance of curves from those of an experiment.
+/// Distance of curves from an experiment's.
 pub struct Distance {
     /// As released.
     pub rms: MetricKey,
     /// After the best shift of the clock.
     pub rms_shifted: MetricKey,
-    /// That shift.
+    /// The shift.
     pub shift: MetricKey,
 }
 
@@ -25,17 +25,17 @@ const fn distance(
     }
 }
 
-/// Of the front.
+/// Metrics of the front.
 pub const FRONT: Distance = distance(
     ["front_rms", "front_rms_shifted", "front_shift"],
     "the same with the clock of the computation put forward by front_shift",
 );
-/// Of the residual height.
+/// Metrics of the residual height.
 pub const HEIGHT: Distance = distance(
     ["height_rms", "height_rms_shifted", "height_shift"],
     "the same with the clock of the computation put forward by height_shift",
 );
-/// Of the levels.
+/// Metrics of the levels.
 pub const LEVELS: Distance = distance(
     ["levels_rms", "levels_rms_shifted", "levels_shift"],
     "the same with the clock of the computation put forward by levels_shift",
@@ -85,12 +85,12 @@ const fn four(formula: &'static str, [a, b, c, d]: [&'static str; 4]) -> [Metric
     ]
 }
 
-/// Distance of each level from that of the reference that shares the model.
+/// Distance of each level from the reference with the same model.
 pub const LEVEL_AWAY: [MetricKey; 4] = four(
     "rms distance of the level/H from that of the same model by volume of fluid, until t (g/H)^(1/2) = 5.5",
     ["H1_away", "H2_away", "H3_away", "H4_away"],
 );
-/// Impulse on each sensor over that of the reference that shares the model.
+/// Impulse on each sensor over the impulse in the reference with the same model.
 pub const IMPULSE_AWAY: [MetricKey; 4] = four(
     "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over that of the same model by volume of \
      fluid, minus 1",
@@ -102,7 +102,7 @@ pub const IMPULSE: [MetricKey; 4] = four(
     ["impulse_P1", "impulse_P2", "impulse_P3", "impulse_P4"],
 );
 
-/// Every metric of the case, with what formulas leave open.
+/// Every metric of the case, with the open parts of formulas.
 pub fn every() -> Vec<MetricName> {
     let column = "M g H/2, the potential energy of the column";
     let mut all: Vec<MetricName> = ALL.iter().copied().map(MetricName::from).collect();

@@ -3,7 +3,7 @@
 //!
 //! Judged against the measured fronts, heights, levels and impulses, against the same model by volume of
 //! fluid, and against conservation: mass is exact, momentum follows gravity and the force of the walls, and
-//! every term accounts for its energy.
+//! the energy budget closes over all terms.
 
 mod curves;
 mod declared;
@@ -99,8 +99,8 @@ pub enum Scene {
     Lobovsky,
 }
 
-/// Makes the settings those of Lobovsky et al.: a reservoir of 600 mm by 300 mm in a tank of 1610 mm, whose
-/// walls are 600 mm high.
+/// Sets the settings of Lobovsky et al.: a reservoir of 600 mm by 300 mm in a tank of 1610 mm, with walls 600
+/// mm high.
 pub fn lobovsky(s: &mut DamSettings) {
     (s.width, s.height, s.tank, s.rim, s.end) = (0.6, 0.3, 1.61, 2.0, 6.0);
 }

@@ -1,11 +1,11 @@
 //! The runs: both experiments over resolutions and variants, the ladder of resolutions, and the ensembles,
-//! with the gates of each and what is known to lie outside of them.
+//! with their gates and known limitations.
 
 use std::ops::RangeInclusive;
 
 use super::*;
 
-/// What a run is for.
+/// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Group {
     /// The column of Martin & Moyce, judged.
@@ -28,8 +28,9 @@ const SEEDS: RangeInclusive<u32> = 1..=20;
 /// Their end \[(H/g)^(1/2)\]: the splash of the jet has run over all probes but the first.
 pub const UNTIL: f64 = 8.0;
 
-/// All runs of a tier. Spacings are along the width of the column of Martin & Moyce, and along the height of
-/// that of Lobovsky et al.; successive ones of a ladder differ by √2 or nearly so, and each fills the column.
+/// All runs of a tier. Spacings are fractions of the width of the column of Martin & Moyce, and of the height
+/// of the column of Lobovsky et al.; successive ones of a ladder differ by about √2, and each fills the
+/// column.
 pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
     use Group::{Ensemble, Free, Ladder, Tank};
     let mut table = table::Table::new(&DAM_BREAK, tier);
@@ -78,7 +79,7 @@ fn gates(row: &Row) -> Vec<Gate> {
                     vec![potential(&run, FREE_POTENTIAL)],
                 ]
                 .concat(),
-                // Which of its jets hit a wall between two samples of the force is left to chance.
+                // Which of its jets hit a wall between two samples of the force is chance.
                 "ghosts" => {
                     let momentum = String::from(MOMENTUM_GAP);
                     invariants(&run, dx)
@@ -124,8 +125,8 @@ fn against(run: &str, metric: impl Into<MetricName>, bound: Bound, because: &str
     DAM_BREAK.gate(run, metric, bound, Evidence::Reference, because)
 }
 
-/// What holds whatever the water does. Walls that only images of other velocities make are judged by it
-/// alone: neither is the wall of the experiment.
+/// Gates that hold for any motion of the water. Walls made only of images with other velocities have no other
+/// gates: neither is the wall of the experiment.
 fn invariants(run: &str, dx: f64) -> Vec<Gate> {
     let tight = "No particle may pass a wall, whose surface lies half a spacing before its first particles.";
     let kept = "Particles keep their masses, and none is added or removed.";
@@ -153,7 +154,7 @@ fn invariants(run: &str, dx: f64) -> Vec<Gate> {
     ]
     .map(|(metric, bound, evidence, because)| {
         let gate = DAM_BREAK.gate(run, metric, bound, evidence, because);
-        // That water is nearly incompressible is no theory of a method.
+        // The small compressibility of water is not a theory of a method.
         if evidence == Evidence::Theory { gate.of_others(bound, because) } else { gate }
     })
     .into()
@@ -191,7 +192,7 @@ fn runs_out(run: &str) -> Gate {
 /// Bound of the potential energy of the column of Martin & Moyce \[M g H/2\].
 const FREE_POTENTIAL: f64 = 0.003;
 
-/// The gate on the potential energy, by which heights and gravity are seen.
+/// The gate on the potential energy, which depends on heights and gravity.
 fn potential(run: &str, most: f64) -> Gate {
     let because = "By the slope of the curve by volume of fluid, which is known to 0.003 M g H/2, in the \
                    tank to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The \
@@ -200,7 +201,7 @@ fn potential(run: &str, most: f64) -> Gate {
     against(run, POTENTIAL_AWAY, Bound::Below(most), because)
 }
 
-/// Gates of the method on such a column: the same model by volume of fluid.
+/// Gates of the method on the column of Martin & Moyce: the same model by volume of fluid.
 fn free_model(run: &str, n: usize) -> Vec<Gate> {
     let front =
         "By volume of fluid the front is known to 0.008 a, a being the width of the column.";
@@ -240,7 +241,7 @@ fn tank_references(run: &str) -> Vec<Gate> {
     [front, levels, runs_out(run)].into_iter().chain(impulses).collect()
 }
 
-/// Gates of the method on such a column: the same model by volume of fluid.
+/// Gates of the method on the column of Lobovsky et al.: the same model by volume of fluid.
 fn tank_model(run: &str) -> Vec<Gate> {
     let level = "The bound is 1 % of the column. By volume of fluid these levels differ by 0.003 to 0.006 \
                  H, rms, between cells of 5 and 2.5 mm.";
@@ -266,7 +267,7 @@ fn tank_model(run: &str) -> Vec<Gate> {
 /// Why a gate has a wider bound, and where that comes from.
 type Why = (&'static Cause, &'static str);
 
-/// The metrics of a run that are known to lie outside of their gates, how far, and why.
+/// The metrics of a run with known limitations of their gates, their size, and the reason.
 fn known(row: &Row) -> Vec<(MetricName, f64, Why)> {
     let [z2, z3] = PEERS.map(|(t, ..)| Z.at(t));
     match (row.group, row.variant) {
@@ -359,7 +360,8 @@ mod tests {
         }
     }
 
-    /// The need of a run follows from its gates, and a gate on what was not asked for fails.
+    /// The measured metrics of a run follow from its gates, and a gate on a metric that was not measured
+    /// fails.
     #[test]
     fn what_gates_read_is_measured_and_nothing_else_that_is_costly() {
         let planned = plan::of_case(&DAM_BREAK, Tier::Quick);

@@ -1,5 +1,5 @@
-//! The two experiments, the same two-dimensional model computed by volume of fluid, and the distance from
-//! them: from the model it is an error of the method.
+//! The two experiments, the same two-dimensional model computed by volume of fluid, and the distances: the
+//! distance from the model is an error of the method.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 use touchstone_base::reference::Reference as Package;
@@ -9,14 +9,14 @@ use super::*;
 /// Spread of digitised curves of the front of Martin & Moyce \[a\].
 pub const FRONT_SPREAD: f64 = 0.1;
 /// Standard uncertainty of the front of Lobovsky et al. \[H\]: two series arrive 0.038 (H/g)^(1/2) apart, √2
-/// times that of one, at a speed of 1.515 (g H)^(1/2).
+/// times the uncertainty of one, at a speed of 1.515 (g H)^(1/2).
 pub const TANK_FRONT_SPREAD: f64 = 0.041;
 /// Standard uncertainty of levels: the rms distance of two series at H4 \[H\].
 pub const LEVEL_SPREAD: f64 = 0.024;
-/// Standard uncertainty of impulses, as a share: those on P2L and P2 for one (H/g)^(1/2) from the arrival at
-/// P1 differ by 0.06, √2 times that of one sensor.
+/// Relative standard uncertainty of impulses: the impulses on P2L and P2 for one (H/g)^(1/2) from the arrival
+/// at P1 differ by 0.06, √2 times the uncertainty of one sensor.
 pub const IMPULSE_SPREAD: f64 = 0.06 / SQRT_2;
-/// What three other codes of particles gave for Z at T = 2 and 3, as the founders measured it in 2025-26:
+/// Results of three other particle codes for Z at T = 2 and 3, as the founders measured them in 2025-26:
 /// SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
 pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
 
@@ -100,7 +100,7 @@ pub fn aside() -> Points {
 
 const COMPUTED: &str = "dam_break_vof";
 
-/// The same by volume of fluid.
+/// The tank by volume of fluid.
 pub static MODEL: LazyLock<OfTank> = LazyLock::new(|| {
     let levels: [&[&str]; 4] = [&["H1"], &["H2"], &["H3"], &["H4"]];
     OfTank::read(COMPUTED, of_model("lobovsky", "front"), levels)
@@ -169,7 +169,7 @@ pub fn pressure(record: &Record, sensor: usize) -> Points {
 
 /// T = t (2g/a)^(1/2) at which the fronts of the column of Martin & Moyce are compared.
 const FREE_TIMES: [f64; 2] = [1.0, 2.0];
-/// t (g/H)^(1/2) at which those in the tank are, before any arrives.
+/// t (g/H)^(1/2) at which positions in the tank are compared, before any arrives.
 const TANK_TIME: f64 = 2.0;
 /// t (g/H)^(1/2) until when levels are compared: later the overturning jet is above the last probe.
 pub const LEVELS_UNTIL: f64 = 5.5;
@@ -259,8 +259,8 @@ pub fn until(curve: &[(f64, f64)], end: f64) -> Points {
     curve.iter().filter(|(t, _)| *t <= end).copied().collect()
 }
 
-/// Adds to a record, which has the series and the pressures, the distance from the experiment that the
-/// settings are those of, if they are, and from the same model by volume of fluid.
+/// Adds to a record with series and pressures the distance from the experiment of its settings, if they are
+/// an experiment's, and from the same model by volume of fluid.
 pub fn compare(dam: &Dam, record: &mut Record) {
     if dam.is_martin_moyce() {
         with_martin_moyce(&dam.settings, record);
@@ -270,7 +270,7 @@ pub fn compare(dam: &Dam, record: &mut Record) {
     }
 }
 
-/// The distance of the potential energy from that of a scene by volume of fluid until a time.
+/// The distance of the potential energy from a scene by volume of fluid until a time.
 fn with_potential(model: &[(f64, f64)], end: f64, s: &DamSettings, record: &mut Record) {
     let computed = history(record, "series", "potential", [s.unit_time(), 1.0]);
     record.put(POTENTIAL_AWAY, rms(&computed, &until(model, end.min(s.end)), 0.0));
@@ -342,7 +342,8 @@ mod tests {
         measure::{Gauge, Samples},
     };
 
-    /// They had the value of the last sample, or of a part of a window, and NaN.
+    /// Metrics beyond the end of a run must not have the value of the last sample, of a part of a window, or
+    /// NaN.
     #[test]
     fn what_a_short_run_does_not_reach_is_absent() {
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);

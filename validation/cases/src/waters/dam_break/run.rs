@@ -15,15 +15,15 @@ pub const PICTURE: f64 = 0.6;
 /// The profile of the particles then, with their pressure.
 pub const PICTURED: &str = "particles@0.6";
 
-/// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are summed over them,
-/// and those of an impact last as long as sound takes across a few smoothing lengths. With 0.015
-/// (H/g)^(1/2) at any spacing the impact alone left 1e-3 of the energy unaccounted for, whatever the step.
+/// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are integrated over them,
+/// and an impact lasts for the time of sound across a few smoothing lengths. With 0.015 (H/g)^(1/2) at any
+/// spacing the impact alone left 1e-3 of the energy unaccounted for, at any step.
 ///
-/// Of the column of Martin & Moyce, `modern` at n = 20, these samples leave 3.5e-5 of the energy and 1.1e-3
-/// of the momentum unaccounted for; samples after every step, which are four times as many, leave 1.7e-5
-/// and 1.5e-5; half as many samples 1.2e-4 and 4.6e-3, half of what the gate on momentum allows.
+/// For the column of Martin & Moyce, `modern` at n = 20, these samples leave 3.5e-5 of the energy and 1.1e-3
+/// of the momentum unaccounted for; samples after every step, which are four times as many, leave 1.7e-5 and
+/// 1.5e-5; half as many samples 1.2e-4 and 4.6e-3, half of the bound of the gate on momentum.
 const SAMPLE: f64 = 4.0;
-/// At most so many samples.
+/// Largest number of samples.
 const MOST_SAMPLES: f64 = 2e4;
 
 /// The metrics that take pair sweeps of their own.
@@ -40,7 +40,7 @@ pub struct Watch {
     ledger: Ledger,
     /// Mass of the water at the start \[kg/m\].
     filled: f64,
-    /// Which of the times is that of the picture.
+    /// Index of the time of the picture.
     pictured: usize,
 }
 
@@ -128,14 +128,14 @@ impl Problem for Dam {
     }
 }
 
-/// Mass of the water \[kg/m\], added in the order of the scene: in that of storage, which changes, its
-/// last bits would.
+/// Mass of the water \[kg/m\], added in the order of the scene: the order of storage changes, and with it the
+/// last bits.
 fn water_mass(particles: &[Particle]) -> f64 {
     particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum()
 }
 
-/// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and which of
-/// them is that of the picture.
+/// Times of samples \[s\], ascending, a whole number of steps apart, so that no step is shortened; and the
+/// index of the time of the picture.
 fn stops(dam: &Dam) -> (Vec<f64>, usize) {
     let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt());
     let (h, eos) = (dam.medium.h, dam.medium.eos);
@@ -157,7 +157,7 @@ mod tests {
     };
     use touchstone_harness::{case::Case, context::Context};
 
-    /// Two fifths of a run were an energy ledger that nobody had asked for.
+    /// The energy ledger takes two fifths of a run, so it is kept only if requested.
     #[test]
     fn a_plain_run_leaves_the_balances_out_and_has_the_same_bits() {
         let spec = DAM_BREAK.spec("modern", |s| (s.n, s.end) = (6, 0.5));
@@ -170,7 +170,7 @@ mod tests {
             assert!(all.metrics.contains_key(&metric), "{metric}");
         }
         assert!(!plain.profiles.contains_key("energy") && all.profiles.contains_key("energy"));
-        // All else is the same.
+        // Everything else is equal.
         let others = |record: &Record| -> Vec<_> {
             let is_other = |name: &&String| COSTLY.iter().all(|m| String::from(*m) != **name);
             record.metrics.keys().filter(is_other).cloned().collect()
@@ -179,8 +179,7 @@ mod tests {
         assert!(others(&plain).iter().all(|name| plain.metrics[name] == all.metrics[name]));
     }
 
-    /// Water that had left over the rim fell for 1.5 s, and the run was said to diverge at the speed of
-    /// sound.
+    /// Water that has left over the rim may fall for 1.5 s without a divergence by its speed.
     #[test]
     fn water_that_falls_beside_the_tank_is_no_divergence() {
         let run = |end: f64| {
@@ -190,7 +189,7 @@ mod tests {
         let record = run(20.0);
         assert_eq!(record.status, Status::Completed);
         assert!(record.value(metrics::SPILLED).is_some_and(|share| share > 0.0));
-        // Its speed alone is beyond that of sound: the rest of the water is slower.
+        // Only its speed exceeds the limit: the rest of the water is slower.
         assert!(record.value(metrics::MACH).is_some_and(|mach| mach < 0.3));
     }
 

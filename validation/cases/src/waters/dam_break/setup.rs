@@ -22,7 +22,7 @@ pub struct Dam {
     pub medium: Medium,
     /// The tank.
     pub tank: Tank,
-    /// Height of the walls, over which water may leave the tank \[m\]; that of mirrors is infinite.
+    /// Height of the walls, over which water may leave the tank \[m\]; infinite for mirrors.
     pub rim: f64,
     /// Particles of the column along x and y.
     pub counts: [usize; 2],
@@ -55,7 +55,7 @@ impl Dam {
         Ok(Self { settings, method, medium, tank, rim, counts, speed, rules })
     }
 
-    /// What is known before the particles are made.
+    /// Data that need no particles.
     pub fn brief(&self) -> Brief {
         let Self { counts: [columns, rows], tank, medium, .. } = self;
         let all = (columns * rows + 8 * (tank.columns + 2 * tank.rows)) as f64;
@@ -79,12 +79,12 @@ impl Dam {
         self.settings.water.rho * self.settings.gravity * self.settings.height
     }
 
-    /// Whether the scene is that of Martin & Moyce.
+    /// Whether the scene is the experiment of Martin & Moyce.
     pub fn is_martin_moyce(&self) -> bool {
         self.settings.scene() == Some(Scene::MartinMoyce)
     }
 
-    /// Whether the scene is that of Lobovsky et al.
+    /// Whether the scene is the experiment of Lobovsky et al.
     pub fn is_lobovsky(&self) -> bool {
         self.settings.scene() == Some(Scene::Lobovsky)
     }
@@ -151,7 +151,7 @@ mod tests {
         }
     }
 
-    /// Particles that sank through the floor were lost, which only the metric `outside` told.
+    /// Particles that sink through the floor are lost, which only the metric `outside` shows.
     #[test]
     fn mirrors_to_which_water_sticks_are_refused_unless_asked_for() {
         let refused = |variant, spec: RunSpec| {

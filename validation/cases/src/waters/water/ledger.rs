@@ -1,5 +1,5 @@
-//! The balances of a run of water: its energy through time against what each term has done to it, and its
-//! momentum against the impulse of walls and gravity.
+//! The balances of a run of water: its energy through time against the work of each term, and its momentum
+//! against the impulse of walls and gravity.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ touchstone_base::metrics! {
 /// The works of the terms of [`Powers`], which are columns of the series too.
 const WORKS: [MetricKey; 5] = [WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
-/// What a ledger measures: it takes pair sweeps of its own.
+/// Metrics of a ledger, which needs pair sweeps of its own.
 pub const METRICS: [MetricKey; 6] =
     [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
@@ -57,8 +57,8 @@ impl Ledger {
         self.powers = powers;
     }
 
-    /// Works from the first sample to a time, by the trapezoidal rule over the powers of each sample: below 0
-    /// what a term took from the particles.
+    /// Works from the first sample to a time, by the trapezoidal rule over the powers of each sample;
+    /// negative for a term that takes energy from the particles.
     fn works(&self, time: f64, powers: &Powers) -> [f64; 5] {
         let Some(last) = self.rows.last() else { return [0.0; 5] };
         let half = 0.5 * (time - last[0]);
@@ -93,7 +93,7 @@ impl Ledger {
         if self.rows.is_empty() { f64::NAN } else { self.unexplained }
     }
 
-    /// Was no sample taken, because nobody asked for the balances?
+    /// Whether no sample was taken, because the balances were not requested.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -132,7 +132,7 @@ mod tests {
     use touchstone_schemes::water::modern;
     use touchstone_solver::{Domain, Particle, Tait};
 
-    /// Water of three particles that do not see each other, raised and moving.
+    /// Water of three particles without neighbours, raised and moving.
     fn particles(medium: &Medium, height: f64, v: Vector2<f64>) -> Box<dyn Metered<()>> {
         let place = |k: usize| Vector2::new(k as f64, height);
         let particle = |k| Particle::fluid(place(k), v, 1000.0, 0.001 * (k + 1) as f64);
@@ -147,7 +147,7 @@ mod tests {
     fn momentum_that_no_force_explains_is_the_gap() {
         let medium = modern().properties.medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
-        // A free fall: gravity gives what the water has.
+        // A free fall: gravity supplies the momentum of the water.
         let mut falling = particles(&medium, 0.0, Vector2::zeros());
         let mut ledger = Ledger::default();
         for k in 0..4 {
@@ -179,7 +179,7 @@ mod tests {
         ledger.measure(50.0, "it", &mut record);
         let gap = record.value(ENERGY_GAP).expect("a metric");
         assert!((gap - 27.0 / 50.0).abs() < 1e-12);
-        // Each term at a power that rises at a rate of its own for 3 s.
+        // Each term with a power that rises at its own rate for 3 s.
         ledger.rows.clear();
         for time in [0.0, 1.0, 3.0] {
             let powers = std::array::from_fn(|k| (k + 1) as f64 * time);
@@ -192,7 +192,7 @@ mod tests {
             let work = record.value(metric).expect("a metric");
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
         }
-        // What terms gave is no gap; what they say that they gave and the water does not have is one.
+        // Work of terms is no gap; work of terms that is missing in the energy is one.
         ledger.rows = vec![[0.0; 9], [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 1.5, 0.5]];
         assert!(ledger.gap() < 1e-12, "{}", ledger.gap());
         ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 5.0, 0.0, -4.0]);

@@ -1,4 +1,4 @@
-//! What cases of water with a free surface have in common: settings, the rule of the time step, and the
+//! Common parts of the cases of water with a free surface: settings, the rule of the time step, and the
 //! particles of a tank's walls.
 
 pub mod ledger;
@@ -31,12 +31,12 @@ pub fn at_rest(medium: &Medium) -> exact::Hydrostatic {
     exact::Hydrostatic { eos: medium.eos, gravity: -medium.acceleration.y }
 }
 
-/// Refuses a scene whose wall particles, which have the density of water at their height, have none far above
-/// the surface: (γ − 1) g y/c₀² must be less than 1 at each height y above it. `setting` states the setting
-/// to change, its value and what is allowed, from the largest of these heights \[m\].
+/// Refuses a scene whose wall particles, which have the density of water at their height, have no density far
+/// above the surface: (γ − 1) g y/c₀² must be less than 1 at each height y above it. `setting` returns the
+/// setting to change, its value and the allowed values, from the largest of these heights \[m\].
 ///
 /// # Errors
-/// What `setting` states.
+/// The error from `setting`.
 pub fn check_above(
     particles: &[Particle],
     surface: f64,
