@@ -24,7 +24,7 @@ pub type Ended = Result<Status, RunError>;
 /// the bracket as its metrics, which are missing if there is no limit within a factor of 16 of the guess.
 ///
 /// # Errors
-/// Those of the first run, if no run can be made at all.
+/// Errors of the first run, if no run can be made at all.
 pub fn run(
     case: &dyn Case,
     spec: &RunSpec,
@@ -48,7 +48,7 @@ pub fn run(
     Ok(record)
 }
 
-/// One simulation of a search, whose cost is added to that of all.
+/// One simulation of a search; its cost is added to the total.
 ///
 /// # Errors
 /// If the search is to end.
@@ -76,7 +76,7 @@ fn at(spec: &RunSpec, bisect: &Bisect, x: f64) -> RunSpec {
     }
 }
 
-/// Adds what one more run took; sizes are those of the largest.
+/// Adds the cost of one more run; sizes are maxima.
 fn add(sum: &mut Cost, run: &Cost) {
     sum.wall_s += run.wall_s;
     sum.cpu_s += run.cpu_s;
@@ -95,9 +95,9 @@ const FIRST_WIDTH: f64 = 0.04;
 /// The farthest that a limit may be from the guess, as a factor.
 const FARTHEST: f64 = 16.0;
 
-/// The longest step seen to be stable and the shortest one seen not to be, at most `resolution` times `guess`
-/// apart. The guess decides on how many runs it takes, not on the answer: the bracket grows until it holds
-/// the limit. `None` if there is no limit within a factor of 16 of the guess.
+/// The longest stable step and the shortest unstable one that were tried, at most `resolution` times `guess`
+/// apart. The guess affects the number of runs, not the result: the bracket grows until it contains the
+/// limit. `None` if there is no limit within a factor of 16 of the guess.
 ///
 /// # Errors
 /// The first of the runs.
@@ -191,7 +191,7 @@ mod tests {
         declare::Declaration,
     };
 
-    /// The bisection of what cannot fail.
+    /// The bisection of a condition that cannot fail.
     fn limit_of(
         guess: f64,
         resolution: f64,
@@ -209,7 +209,7 @@ mod tests {
         }
     }
 
-    /// What is tried of a limit up to which all is stable.
+    /// The values that a search tries if everything up to this limit is stable.
     fn tried(limit: f64) -> Vec<f64> {
         let mut tried = Vec::new();
         let is_stable = |x: f64| {
@@ -238,7 +238,7 @@ mod tests {
         );
         let down = [0.96, 0.96 * 0.96, 0.96 * 0.96 * 0.94, 0.96 * 0.96 * 0.94 * 0.91];
         is(&tried(0.8), &down);
-        // Nothing farther than 16 times the guess is tried.
+        // Values are at most 16 times the guess.
         let up = tried(f64::MAX);
         let [last, before] = [1, 2].map(|back| up[up.len() - back]);
         assert!(last <= 16.0 && last * last / before > 16.0, "{before} and {last} were the last");
@@ -248,7 +248,7 @@ mod tests {
         GREW = "grew" ["-"] "1 of a run that was not stable";
     }
 
-    /// Stable up to a step of 3 ms; what a run was asked for is kept as (dt, end).
+    /// Stable up to a step of 3 ms; requested runs are kept as (dt, end).
     #[derive(Default)]
     struct Spring(std::sync::Mutex<Vec<(f64, f64)>>);
 
@@ -381,7 +381,7 @@ mod tests {
     }
 
     /// Of eight steps the second quarter is the third and the fourth, the last the seventh and the eighth;
-    /// what the others have does not count. By half more is growth, by less it is not.
+    /// the other steps do not count. An increase by more than half is growth, a smaller one is not.
     #[test]
     fn growth_compares_the_last_quarter_with_the_second() {
         let grew = |energies: [f64; 8]| {

@@ -29,9 +29,9 @@ pub struct Variant {
 /// case and every metric.
 #[derive(Clone, Copy, Debug)]
 pub struct Recommended {
-    /// Its name.
+    /// Name.
     pub variant: &'static str,
-    /// The reason, with numbers: each stands before the comment that names its source, as in the documents,
+    /// The reason, with numbers: each is followed by a comment that names its source, as in the documents,
     /// and a test compares the two.
     pub because: &'static str,
     /// The variant that is the paper's, or comes closest to it.
@@ -90,7 +90,7 @@ pub trait Case: Sync {
     fn declaration(&self, _tier: Tier) -> Declaration {
         Declaration::default()
     }
-    /// The runs of a tier and their gates, beside those of the declaration.
+    /// The runs of a tier and their gates, in addition to the declaration's.
     fn plan(&self, tier: Tier) -> Vec<Planned>;
 }
 

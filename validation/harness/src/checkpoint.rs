@@ -1,9 +1,9 @@
-//! Checkpoints: all that a run has come to, as bytes from which it goes on with the same bits.
+//! Checkpoints: the complete state of a run, as bytes from which it continues with equal bits.
 //!
-//! A run is one or several simulations, one after another. A checkpoint holds each that has ended, with what
-//! was observed of it, and the one that is under way. Going on, a case begins as always: it makes its scene
-//! and its observers, and each simulation then takes over its state and theirs, so that no case knows whether
-//! it goes on.
+//! A run is one or several simulations in sequence. A checkpoint holds each completed simulation with its
+//! observations, and the one under way. To continue, a case starts as always: it makes its scene and its
+//! observers, and each simulation then takes its state and the observers' from the checkpoint, so that no
+//! case knows whether it continues.
 
 use std::collections::VecDeque;
 use std::sync::Mutex;
@@ -32,12 +32,12 @@ struct Stored {
     seen: Vec<u8>,
 }
 
-/// How far a simulation is, apart from its particles and from what is observed of it.
+/// The progress of a simulation, without particles and observations.
 #[derive(Default, Serialize, Deserialize)]
 pub(crate) struct Stage {
     /// How many of its times were reached.
     pub reached: usize,
-    /// What it took so far.
+    /// Cost so far.
     #[serde(with = "as_json")]
     pub cost: Cost,
     /// The frames of it by time \[s\], and how many were tried.
@@ -258,9 +258,9 @@ pub struct Checkpoints<'a> {
 }
 
 struct Simulations {
-    /// Of the checkpoint that the run goes on from, as far as it has not come to them.
+    /// Simulations of the checkpoint that the run has not reached yet.
     earlier: VecDeque<Vec<u8>>,
-    /// Those that have ended, in their order.
+    /// Completed simulations, in order.
     ended: Vec<Vec<u8>>,
     /// Was the last checkpoint written?
     is_over: bool,
@@ -275,18 +275,18 @@ impl<'a> Checkpoints<'a> {
         Self { every, write, simulations: Mutex::new(simulations) }
     }
 
-    /// What the simulation that begins now goes on from, if it does.
+    /// The state from which the next simulation continues; `None` if it starts.
     pub(crate) fn next(&self) -> Option<Vec<u8>> {
         lock(&self.simulations).earlier.pop_front()
     }
 
-    /// Keeps a simulation that has ended for the checkpoints of those that follow it.
+    /// Keeps a completed simulation for later checkpoints.
     pub(crate) fn keep(&self, ended: Vec<u8>) {
         lock(&self.simulations).ended.push(ended);
     }
 
-    /// Writes a checkpoint: the simulations that have ended, and the one that is under way. After the last
-    /// one, that of an interrupt, none is written.
+    /// Writes a checkpoint: the completed simulations, and the one under way. After the last one, at an
+    /// interrupt, none is written.
     pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), RunError> {
         let mut simulations = lock(&self.simulations);
         if simulations.is_over {

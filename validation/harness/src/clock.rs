@@ -1,4 +1,4 @@
-//! The clocks of a run. A test can say what time it is: see [`crate::context::Context::clock`].
+//! The clocks of a run. A test can set the time: see [`crate::context::Context::clock`].
 
 use std::ops::{AddAssign, Sub};
 use std::sync::OnceLock;

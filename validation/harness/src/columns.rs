@@ -1,10 +1,10 @@
-//! Tables with one row per item. The name of a column and what it shows are stated in one place.
+//! Tables with one row per item. The name of a column and its content are stated in one place.
 
 use std::borrow::Borrow;
 
 use touchstone_report::{Cell, Column, Table, code};
 
-/// What a column shows of an item.
+/// The content of a column for an item.
 type Shown<'a, T> = dyn Fn(&T) -> Cell + 'a;
 
 /// Columns of a table with a row an item.

@@ -1,5 +1,5 @@
-//! A case that consists of a table of compositions (variants with their methods), a declaration, a plan, and
-//! studies of its own.
+//! A case made of a table of compositions (variants with their methods), a declaration, a plan, and studies
+//! of its own.
 
 use std::{fmt::Display, marker::PhantomData, rc::Rc};
 
@@ -21,7 +21,7 @@ use crate::{
     rules::state_steps,
 };
 
-/// A method with settings, whatever their types.
+/// A method with settings, without their types.
 trait Setup {
     fn settings(&mut self) -> &mut dyn Values;
     fn pose(&self) -> Result<Box<dyn Posed>, RunError>;
@@ -33,7 +33,7 @@ pub struct Composition {
     setup: Box<dyn Setup>,
     /// Settings that none of its terms and walls reads: the variant refuses them.
     lacks: Vec<&'static str>,
-    /// Settings of a run that are not those of the variant, as `key=value`.
+    /// Settings of a run that differ from the variant's, as `key=value`.
     changed: String,
 }
 
@@ -49,11 +49,11 @@ type PoseBy<M, T> = dyn Fn(&M, &T) -> Result<Box<dyn Posed>, RunError>;
 /// Variants that are run alike, one after another.
 pub struct Variants<T, M> {
     pose: Rc<PoseBy<M, T>>,
-    /// Those so far.
+    /// The compositions so far.
     pub all: Compositions<T>,
 }
 
-/// One of them.
+/// A variant of compositions of one type.
 struct Alike<T, M> {
     method: M,
     settings: T,
@@ -79,8 +79,8 @@ impl<T: Settings, M: 'static> Variants<T, M> {
         Self { pose: Rc::new(move |m, s| Ok(Box::new(pose(m, s)?))), all }
     }
 
-    /// Adds a variant that refuses settings: name and description, method, the names of those that it
-    /// refuses, and a function that changes the default settings.
+    /// Adds a variant that refuses settings: name and description, method, the names of the refused settings,
+    /// and a function that changes the default settings.
     #[must_use]
     pub fn lacking(
         mut self,
@@ -119,7 +119,7 @@ impl Composition {
         all.iter().map(|of| of.variant).collect()
     }
 
-    /// That of a name among those of a case.
+    /// The variant with this name.
     fn named(case: &'static str, mut all: Vec<Self>, variant: &str) -> Result<Self, RunError> {
         let known: Vec<_> = all.iter().map(|of| of.variant.name).collect();
         let (what, name) = (format!("variant of {case}"), variant.into());
@@ -129,7 +129,7 @@ impl Composition {
         }
     }
 
-    /// That of a run of a case, with the settings of the run.
+    /// The variant of a run, with the settings of the run.
     fn of_run(case: &'static str, all: Vec<Self>, spec: &RunSpec) -> Result<Self, RunError> {
         let mut chosen = Self::named(case, all, &spec.variant)?;
         let settings = chosen.setup.settings();
@@ -156,7 +156,7 @@ impl Composition {
         RunError::Unused { key: key.into(), variant: self.variant.name.into() }
     }
 
-    /// Its settings with `key=value` texts applied.
+    /// The settings with `key=value` texts applied.
     fn set(mut self, texts: &[String]) -> Result<serde_json::Value, RunError> {
         let settings = self.setup.settings();
         settings::apply(settings, texts)?;
@@ -170,7 +170,7 @@ impl Composition {
 
     /// Runs it.
     fn run(mut self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-        // All settings in their usual form, those that the spec leaves out included.
+        // All settings in canonical form, including those that the spec leaves out.
         let settings = settings::to_json(self.setup.settings());
         let spec = RunSpec { settings, ..spec.clone() };
         let made = self.setup.pose()?.simulate(&Context { spec, ..context.clone() });
@@ -204,7 +204,7 @@ pub struct Composed<T> {
     pub variants: fn() -> Compositions<T>,
     /// The declaration from which the studies common to all cases are made.
     pub declaration: fn(Tier) -> Declaration,
-    /// The judged runs beside those of the declaration.
+    /// The judged runs in addition to the declaration's.
     pub plan: fn(Tier) -> Vec<Planned>,
 }
 

@@ -15,7 +15,7 @@ use crate::{
     size::Size,
 };
 
-/// What a progress bar shows.
+/// Content of a progress bar.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress {
     /// Simulated time \[s\].
@@ -28,10 +28,10 @@ pub struct Progress {
     pub particle_steps: u64,
 }
 
-/// How a run is executed, apart from what it computes.
+/// How a run is executed, apart from its physics.
 #[derive(Clone, Default)]
 pub struct Context<'a> {
-    /// The run: what may be wrong with its time step and its scene, and what is measured of it and kept.
+    /// The run: deliberate errors of its time step and its scene, metrics to measure, data to keep.
     pub spec: RunSpec,
     /// Run even if it is estimated to take more time or memory than a run may.
     pub allow_long: bool,
@@ -41,26 +41,27 @@ pub struct Context<'a> {
     pub frames: Option<(PathBuf, usize)>,
     /// Where all fields of the particles at the end are put.
     pub at_the_end: Option<&'a Mutex<Option<Profile>>>,
-    /// Told what the run is estimated to take, before its first step.
+    /// Receives the estimated cost of the run before its first step.
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Called with the progress of the run.
     pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
     /// Find out where the time goes.
     pub profile: bool,
-    /// Told of a frame or a checkpoint that could not be written; the run goes on.
+    /// Called for a frame or a checkpoint that could not be written; the run continues.
     pub lost: Option<&'a (dyn Fn(&RunError) + Sync)>,
-    /// Tells the time of a run with so many threads, by default [`clock::system`].
+    /// Returns the time of a run on this number of threads, by default [`clock::system`].
     pub clock: Option<&'a (dyn Fn(usize) -> Reading + Sync)>,
-    /// Told of the particles at each time at which the run is measured, when every quantity is at that time.
+    /// Receives the particles at each time of measurement, synchronised to this time.
     pub at_times: Option<&'a (dyn Fn(f64, Profile) + Sync)>,
-    /// Where checkpoints go, and what the run goes on from; the last one is made at an interrupt.
+    /// Destination of checkpoints, and the one from which the run continues; the last one is made at an
+    /// interrupt.
     pub checkpoints: Option<&'a Checkpoints<'a>>,
     /// Set by another thread to stop the run.
     pub interrupt: Option<&'a AtomicBool>,
 }
 
 impl Context<'_> {
-    /// What time it is by the clocks of the run.
+    /// The time by the clocks of the run.
     pub fn now(&self) -> Reading {
         self.clock.unwrap_or(&clock::system)(self.threads)
     }

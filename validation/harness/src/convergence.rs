@@ -4,9 +4,10 @@
 //! to fine, and p̂ the slope of the least-squares line through all levels, the label is
 //!
 //! - [`Label::OrdersAgree`] if p̂ > 0 and every p_k is within 15 % of p̂: one power law describes all levels,
-//!   of whatever order;
-//! - [`Label::Asymptotic`] if moreover p̂ is the formal order of the method: this is declared, lies in the
-//!   confidence interval of p̂, and p̂ is within 15 % of it, since the interval of three levels is wide;
+//!   of any order;
+//! - [`Label::Asymptotic`] if moreover p̂ is the formal order of the method: the order is declared, is inside
+//!   the confidence interval of p̂, and p̂ is within 15 % of it, because the interval of three levels is
+//!   wide;
 //! - [`Label::FloorReached`] if the p_k begin with one or more that are at least half of the
 //!   largest and at least 0.5, and all later ones (at least the last one) are below half of the
 //!   largest: the error first decreased with a clear order and then stopped decreasing;
@@ -14,7 +15,7 @@
 
 use touchstone_base::functions::ln;
 
-/// Local orders within this fraction of the fitted one count as the same order.
+/// Local orders within this fraction of the fitted one count as equal.
 pub const SAME_ORDER: f64 = 0.15;
 /// A local order below this fraction of the largest one has left the power law.
 pub const LEFT_THE_LAW: f64 = 0.5;
@@ -32,7 +33,7 @@ pub struct Level {
     pub value: f64,
 }
 
-/// What the levels show; the rule is in the module's documentation.
+/// Result for the levels; the rule is in the module's documentation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Label {
     /// One order describes all levels, and it is the formal one.
@@ -147,8 +148,8 @@ fn label(order: f64, [low, high]: [f64; 2], local: &[f64], formal: Option<f64>) 
     if falling >= 1 && falling < local.len() && flat { Label::FloorReached } else { Label::NotYet }
 }
 
-/// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees; beyond ten that of ten, which is wider by
-/// at most 14 %, for no ladder has so many levels.
+/// The 97.5 % quantile of Student's t with `freedom` ≥ 1 degrees; beyond ten, the quantile of ten, which is
+/// wider by at most 14 %: no ladder has so many levels.
 fn student_t(freedom: usize) -> f64 {
     const TABLE: [f64; 10] =
         [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.3060, 2.2622, 2.2281];
@@ -188,7 +189,7 @@ mod tests {
             convergence(&errors.map(|(n, value)| Level { spacing: 1.0 / n, value }), Some(2.0))
                 .unwrap();
         assert!((found.order - 2.015).abs() < 1e-3);
-        // 2 lies outside of the narrow interval 2.005 … 2.025.
+        // 2 is outside the narrow interval 2.005 … 2.025.
         assert_eq!(found.label, Label::OrdersAgree);
         let width = found.interval[1] - found.interval[0];
         assert_relative_eq!(width, 2.0 * 12.7062 * found.standard_error, epsilon = 1e-12);
@@ -304,7 +305,7 @@ mod tests {
             let found = label(order, interval, &[order, order], formal);
             assert_eq!(found, expected, "{order} ± {half_width}, formal {formal:?}");
         }
-        // Through the fit: errors of order 1.3 are not those of a method of second order.
+        // Through the fit: errors of order 1.3 do not fit a method of second order.
         let levels = levels(SPACINGS, |h| powf(h, 1.3));
         let of = |formal| convergence(&levels, formal).expect("usable").label;
         assert_eq!([of(Some(2.0)), of(Some(1.3))], [Label::OrdersAgree, Label::Asymptotic]);

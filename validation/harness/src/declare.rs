@@ -24,7 +24,7 @@ use crate::{
 /// The declaration of one case for one tier.
 #[derive(Default)]
 pub struct Declaration {
-    /// What the report says first of the case.
+    /// Summary of the case at the top of the report.
     pub card: Option<Card>,
     /// Profiles or histories over their reference.
     pub curves: Vec<Curves>,
@@ -46,20 +46,21 @@ pub struct Declaration {
     pub maps: Vec<Map>,
     /// Errors of constants that the gates must detect.
     pub sensitivity: Option<Sensitivity>,
-    /// The metrics that take pair sweeps of their own, and which a run leaves out unless a gate reads one of
-    /// them or all is asked for.
+    /// The metrics with pair sweeps of their own, which a run measures only if a gate reads one of them or
+    /// all metrics are requested.
     pub costly: &'static [MetricKey],
     /// The metrics that need the state after every step, which results of other codes do not have.
     pub stepwise: &'static [MetricKey],
-    /// The metrics that compare with the theory of our own methods, which says nothing of other codes.
+    /// The metrics that compare with the theory of our own methods, which does not apply to other codes.
     pub of_methods: &'static [MetricKey],
     /// The metrics that are rates over a very short time, which results with few digits do not determine.
     pub of_all_digits: &'static [MetricKey],
-    /// What another code must know beside the scene.
+    /// Facts for another code in addition to the scene.
     pub posed: Posed,
-    /// What can be measured of a profile or a series of another code that hands in no particles.
+    /// Metrics of a profile or a series from another code without particles.
     pub curve: Option<Curve>,
-    /// What sealed problems draw, and by what they are judged; none if no reference holds at drawn settings.
+    /// Drawn settings of sealed problems, and their judgement; `None` if no reference holds at drawn
+    /// settings.
     pub sealed: Option<Draws>,
     /// Studies of this case alone.
     pub studies: Option<OwnStudies>,
@@ -68,12 +69,12 @@ pub struct Declaration {
 /// Studies of a case, a pure function of the records of its plan.
 pub type OwnStudies = Box<dyn Fn(&Runs) -> Vec<Study> + Send + Sync>;
 
-/// What another code must know of a problem beside its scene.
+/// Facts of a problem for another code in addition to its scene.
 #[derive(Clone, Default)]
 pub struct Posed {
     /// The conditions at walls, clamps and surfaces in words.
     pub boundary: &'static str,
-    /// What a run of these settings is driven or moved by, beside its acceleration.
+    /// Drives or motions of a run with these settings, in addition to its acceleration.
     pub further: Option<fn(&Value) -> Vec<Fact>>,
     /// Every metric of the case.
     pub metrics: Vec<MetricName>,
@@ -95,7 +96,7 @@ pub struct Fact {
     pub value: f64,
     /// SI unit.
     pub unit: &'static str,
-    /// What it is and in which equation.
+    /// Description with the equation.
     pub about: &'static str,
 }
 
@@ -109,13 +110,13 @@ pub struct Curve {
     pub columns: &'static [(&'static str, &'static str)],
     /// The columns in words.
     pub about: &'static str,
-    /// Times that it takes at least, equally far apart; 0 if those of the problem are enough.
+    /// Least number of equidistant times; 0 if the times of the problem suffice.
     pub least: usize,
-    /// Its rows at each time, of a run of these settings; the first column ascends in them.
+    /// Rows at each time, for a run with these settings; the first column is ascending.
     pub rows: fn(&Value) -> usize,
-    /// Positions and velocities by which particles stand for the rows at a time.
+    /// Positions and velocities of particles that represent the rows at a time.
     pub place: Place,
-    /// The metrics that follow from it, at whatever time; no other is measured of it.
+    /// The metrics that follow from the curve, at any time; no other metric is measured.
     pub metrics: Vec<MetricKey>,
     /// Makes the scene coarse in which it is measured, if neither its rows nor its times depend on the
     /// resolution. Then `export --solve` writes it in place of particles.
@@ -124,7 +125,7 @@ pub struct Curve {
     pub shown: (&'static str, &'static [&'static str]),
 }
 
-/// What the sealed problems of a case draw, and by what they are judged.
+/// Drawn settings of the sealed problems of a case, and their judgement.
 #[derive(Clone, Copy)]
 pub struct Draws {
     /// The variants whose errors change with the order below; all if none is named.
@@ -134,7 +135,7 @@ pub struct Draws {
     pub resolution: (&'static str, [f64; 2]),
     /// The formal order of the errors in the spacing.
     pub order: f64,
-    /// The errors that may be judged; those that the plans judge of the variant are.
+    /// The errors that may be judged; the judged ones are in the plans of the variant.
     pub metrics: &'static [&'static str],
     /// `key=value` of settings that all have.
     pub set: &'static [&'static str],
@@ -151,16 +152,16 @@ pub enum Drawn {
     Between(f64, f64),
     /// One of the values of judged runs.
     Judged,
-    /// Evenly between these ends: the reference and the error are the same for all.
+    /// Uniform between these ends: reference and error do not depend on the value.
     Any(f64, f64),
 }
 
-/// What the report says first of a case: its error with the recommended variant and with the paper's.
+/// Summary of a case at the top of the report: its error with the recommended variant and with the paper's.
 pub struct Card {
     /// Name of the problem.
     pub title: &'static str,
-    /// The figure from which the picture is taken: its first panel that shows the first of the runs, at
-    /// whatever resolution ([`Declaration::pictured`]).
+    /// The figure with the picture: its first panel that shows the first of the runs, at any resolution
+    /// ([`Declaration::pictured`]).
     pub picture: &'static str,
     /// The error.
     pub metric: MetricName,
@@ -170,7 +171,7 @@ pub struct Card {
     pub stated: fn(&Value) -> Stated,
     /// Further numbers of a run in a sentence, if it has them.
     pub beside: Option<fn(&Record) -> Option<String>>,
-    /// The run of the recommended variant and that of the paper's.
+    /// The run of the recommended variant and the run of the paper's.
     pub runs: Vec<RunSpec>,
     /// Where runs of these variants break.
     pub breaks: Breaks,
@@ -194,7 +195,7 @@ impl Card {
 
 /// The words for an error, which depend on the settings of the run.
 pub struct Stated {
-    /// Its name, with the conditions of the run.
+    /// Name, with the conditions of the run.
     pub name: String,
     /// The reference.
     pub against: &'static str,
@@ -241,13 +242,13 @@ pub struct Breaks {
 /// A comparison with a reference: exact, or with an uncertainty by ASME V&V 20.
 #[derive(Clone)]
 pub struct Comparison {
-    /// What is compared, with its unit if that is a length or a velocity.
+    /// The compared quantity, with its unit if it is a length or a velocity.
     pub what: String,
-    /// What it is compared with.
+    /// The reference.
     pub against: &'static str,
     /// E = S − D, result less data; of a norm its magnitude.
     pub metric: MetricName,
-    /// The runs, coarse to fine: E is that of the finest.
+    /// The runs, coarse to fine: E is the error of the finest.
     pub levels: Vec<Level>,
     /// Pairs of runs: as it is, and with one input changed by its own uncertainty.
     pub inputs: Vec<[RunSpec; 2]>,
@@ -258,7 +259,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// A comparison of a ladder whose inputs are those of the reference, so that u_input is 0.
+    /// A comparison of a ladder with the inputs of the reference, so that u_input is 0.
     pub fn new(
         what: &str,
         against: &'static str,
@@ -271,16 +272,16 @@ impl Comparison {
         Self { what, against, metric, levels, inputs, reference, because }
     }
 
-    /// Whether neither the reference nor what is put in has an uncertainty.
+    /// Whether neither the reference nor the input has an uncertainty.
     pub fn is_exact(&self) -> bool {
         self.reference == 0.0 && self.inputs.is_empty()
     }
 }
 
-/// The ensembles of a case: runs that differ by a small disorder of their start alone. Until their horizon
-/// any of them says what all say, and later each is one draw of a distribution.
+/// The ensembles of a case: runs that differ only by a small disorder of their start. Before their horizon
+/// all members agree; after it each is one sample of a distribution.
 pub struct Ensembles {
-    /// What was run, one or two sentences.
+    /// The runs, in one or two sentences.
     pub about: String,
     /// Name of the time, and its unit.
     pub time: [&'static str; 2],
@@ -298,7 +299,7 @@ pub struct Ensemble {
     pub label: String,
     /// Its runs.
     pub members: Vec<RunSpec>,
-    /// What is followed over time.
+    /// Quantities over time.
     pub histories: Vec<History>,
     /// The numbers whose distribution is shown.
     pub numbers: Vec<Number>,
@@ -310,11 +311,11 @@ pub struct Ensemble {
 pub struct History {
     /// Name with its unit, as for an axis.
     pub name: String,
-    /// Its points.
+    /// Points of a record.
     pub points: PointsOf,
     /// Members part where they differ by more than this, the standard uncertainty of the experiment.
     pub tolerance: f64,
-    /// The same of each experiment.
+    /// Points of each experiment.
     pub measured: Vec<Vec<(f64, f64)>>,
     /// Is it drawn?
     pub is_drawn: bool,
@@ -329,9 +330,9 @@ pub type NumberOf = Box<dyn Fn(&Record) -> Option<f64> + Send + Sync>;
 pub struct Number {
     /// Name, and unit.
     pub name: [&'static str; 2],
-    /// Of a record, if it was measured.
+    /// Value of a record, if measured.
     pub value: NumberOf,
-    /// The same of each experiment.
+    /// Value of each experiment.
     pub measured: Vec<f64>,
     /// A gate on the median.
     pub gate: Option<Gate>,
@@ -342,12 +343,12 @@ pub struct Accuracy {
     /// Anchor of its studies in the report: the case in letters, digits and hyphens, and a suffix if the case
     /// has several.
     pub id: String,
-    /// What an error is: the distance from an exact solution or a reference. Of a metric with a sign the
-    /// magnitude counts.
+    /// The error: the distance from an exact solution or a reference. For a metric with a sign, its
+    /// magnitude.
     pub error: MetricName,
     /// Name of the error with its unit, for axes.
     pub label: String,
-    /// What was run and compared, one or two sentences.
+    /// Runs and comparison, in one or two sentences.
     pub about: String,
     /// Name of the spacing with its unit, for axes.
     pub spacing: &'static str,
@@ -359,7 +360,7 @@ pub struct Accuracy {
 }
 
 impl Declaration {
-    /// The error of the case: that of its card, or else of its first ladder.
+    /// The error of the case: of its card, or else of its first ladder.
     pub fn error(&self) -> Option<&MetricName> {
         let ladder = self.accuracy.first().map(|accuracy| &accuracy.error);
         self.card.as_ref().map(|card| &card.metric).or(ladder)
@@ -383,7 +384,7 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// Adds a run before those that are finer; its spacing, and its resolution in words.
+    /// Adds a run before the finer ones; its spacing, and its resolution in words.
     pub fn add(&mut self, run: &Planned, (spacing, resolution): (f64, Resolution)) {
         let place = self.levels.partition_point(|level| level.spacing >= spacing);
         self.levels.insert(place, Level { run: run.clone(), spacing, resolution });
@@ -410,12 +411,12 @@ pub struct Resolution {
 }
 
 impl Resolution {
-    /// So many, with words in which `{}` stands for the number.
+    /// A resolution of `count`, with words in which `{}` is replaced by the number.
     pub fn new(count: usize, words: &'static str) -> Self {
         Self { count, words }
     }
 
-    /// As many times finer, to the nearest whole number.
+    /// The resolution refined by a factor, rounded to a whole number.
     pub fn finer(self, times: f64) -> Self {
         Self { count: (self.count as f64 * times).round() as usize, ..self }
     }
@@ -427,10 +428,10 @@ impl fmt::Display for Resolution {
     }
 }
 
-/// Error budgets: the same run with one thing changed at a time.
+/// Error budgets: one run with one thing changed at a time.
 #[derive(Default)]
 pub struct Budgets {
-    /// What was run, one or two sentences.
+    /// The runs, in one or two sentences.
     pub about: String,
     /// The changes of each variant; the first one is none.
     pub of: Vec<Vec<Change>>,
@@ -438,7 +439,7 @@ pub struct Budgets {
 
 /// A run with one thing changed.
 pub struct Change {
-    /// What is changed, such as `dt/2`.
+    /// The change, such as `dt/2`.
     pub what: String,
     /// The part of the error that this changes; `time` is the time step.
     pub part: &'static str,
@@ -449,8 +450,8 @@ pub struct Change {
 }
 
 impl Accuracy {
-    /// No ladders yet. The arguments are the id of the studies, what an error is, and the name of the error
-    /// with its unit. Spacings are in units of a length of the problem; the expected order is 2.
+    /// No ladders yet. Arguments: id of the studies, the error metric, and the name of the error with its
+    /// unit. Spacings are in units of a length of the problem; the expected order is 2.
     pub fn new(id: &str, error: impl Into<MetricName>, label: &str) -> Self {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
         let error = error.into();
@@ -467,9 +468,9 @@ impl Accuracy {
 }
 
 impl StepLimit {
-    /// The bisection of a setting that is the time step over its theoretical limit, or in proportion to it:
-    /// the setting has the value `unit` at the limit. `rules` are those of the run with its default step. The
-    /// gate judges the largest stable step over the limit.
+    /// The bisection of a setting that is the time step over its theoretical limit, or proportional to it:
+    /// the setting has the value `unit` at the limit. `rules` are the step rules of the run with its default
+    /// step. The gate judges the largest stable step over the limit.
     pub fn proportional(
         scene: &str,
         spec: RunSpec,
@@ -500,7 +501,7 @@ impl Change {
 /// Largest stable time steps against theory.
 #[derive(Default)]
 pub struct StepLimits {
-    /// What was run and what counts as stable, one or two sentences.
+    /// The runs and the criterion of stability, in one or two sentences.
     pub about: String,
     /// One per variant and scene.
     pub of: Vec<StepLimit>,
@@ -522,7 +523,7 @@ pub struct StepLimit {
     pub gate: Option<Gate>,
 }
 
-/// Which errors of the constants of a case the gates of some of its runs must detect.
+/// Errors of the constants of a case that the gates of some of its runs must detect.
 pub struct Sensitivity {
     /// The runs, each judged by the gates that the plans have for it.
     pub runs: Vec<RunSpec>,
@@ -536,7 +537,7 @@ pub struct Sensitivity {
 pub struct Watched {
     /// The constant.
     pub constant: Constant,
-    /// Where the gates do not detect the largest error that is allowed: what they do detect, and why.
+    /// Where the gates do not detect the largest allowed error: the errors that they detect, and the reason.
     pub blind: Option<Blind>,
     /// Is the allowed error tried in the quick tier too?
     pub is_quick: bool,
@@ -560,12 +561,12 @@ impl Watched {
         Self { constant, blind: None, is_quick: false, faults: Vec::new() }
     }
 
-    /// The same, whose allowed error is tried in the quick tier too.
+    /// Tries the allowed error in the quick tier as well.
     pub fn quick(self) -> Self {
         Self { is_quick: true, ..self }
     }
 
-    /// The same with gross faults, each of which some gate must detect: factors of the constant.
+    /// Adds gross faults, each of which some gate must detect: factors of the constant.
     pub fn faults(self, factors: &[f64]) -> Self {
         Self { faults: factors.to_vec(), ..self }
     }
@@ -671,11 +672,11 @@ pub struct Curves {
     pub title: String,
     /// Caption of the figure.
     pub caption: String,
-    /// The panels, as many a row as there are rows.
+    /// The panels, row by row.
     pub panels: Vec<CurvePanel>,
 }
 
-/// Particles of some runs, coloured by what each keeps beside its place.
+/// Particles of some runs, coloured by a stored value.
 pub struct Picture {
     /// Anchor of the study and of its figure, title of the section, caption.
     pub texts: [&'static str; 3],
@@ -685,11 +686,11 @@ pub struct Picture {
     pub size: [f64; 2],
     /// The panels.
     pub panels: Vec<PicturePanel>,
-    /// How many of them stand side by side.
+    /// Number of panels in a row.
     pub columns: usize,
-    /// What is shown of the value of a particle, such as its logarithm.
+    /// The shown function of the value of a particle, such as its logarithm.
     pub shown: fn(f64) -> f64,
-    /// The ends of the colours, for all panels; each panel has those of its own values without.
+    /// Ends of the colour range for all panels; `None`: each panel has the range of its values.
     pub range: Option<[f64; 2]>,
 }
 
@@ -703,7 +704,7 @@ pub struct PicturePanel {
     pub profile: String,
     /// Their spacing, in the unit of their places.
     pub spacing: f64,
-    /// Lines over them, in the same unit.
+    /// Lines over the particles, in the same unit.
     pub lines: Vec<Vec<(f64, f64)>>,
 }
 
@@ -717,7 +718,7 @@ pub struct CurvePanel {
     pub y: Axis,
     /// Curves of runs.
     pub lines: Vec<CurveOf>,
-    /// Curves of references: name and points. What has no name is drawn as a guide.
+    /// Curves of references: name and points. A curve without name is drawn as a guide.
     pub references: Vec<(String, Vec<(f64, f64)>)>,
     /// Are curves of runs drawn as symbols?
     pub symbols: bool,
@@ -729,7 +730,7 @@ pub struct CurveOf {
     pub name: String,
     /// The run.
     pub spec: RunSpec,
-    /// Its points.
+    /// Points of a record.
     pub points: PointsOf,
 }
 
@@ -779,8 +780,8 @@ impl Declaration {
         }
     }
 
-    /// The panel of the figure on the card: the first that shows the first run of the card, at whatever
-    /// resolution the ladders of the case have.
+    /// The panel of the figure on the card: the first that shows the first run of the card, at any resolution
+    /// of the ladders of the case.
     pub fn pictured(&self, card: &Card) -> Option<usize> {
         let wanted = card.runs.first()?;
         let levels = self.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);

@@ -1,6 +1,6 @@
-//! The deep tier: what the full tier declares, with ladders that go two levels further, maps of 20 starts a
-//! cell, and tables of what gates detect over every judged run. It is made for clusters: its runs are
-//! independent of each other, and some may take more than a run may unless that is asked for.
+//! The deep tier: the declaration of the full tier, with ladders of two more levels, maps of 20 starts a
+//! cell, and tables of the errors detected by gates over every judged run. It is made for clusters: its runs
+//! are independent of each other, and some exceed the usual limit of a run, which must be allowed explicitly.
 
 use serde_json::Value;
 use touchstone_base::functions::powf;
@@ -17,11 +17,11 @@ use crate::{
 pub const FINER: i32 = 2;
 /// Starts of each cell of a map.
 pub const STARTS: usize = 20;
-/// The disorder by which starts of a cell differ that are one in the full tier \[spacings\]: more than
-/// round-off, and far less than what a map resolves.
+/// The disorder between the starts of a cell \[spacings\], which is one start in the full tier: more than
+/// round-off, and far less than the resolution of a map.
 const DISORDER: f64 = 0.01;
 
-/// The declaration of the deep tier from that of the full one.
+/// Extends the declaration of the full tier to the deep tier.
 pub fn deepened(mut declared: Declaration, case: &dyn Case) -> Declaration {
     watch_all(&mut declared, case);
     declared.accuracy.iter_mut().for_each(|accuracy| refine(accuracy, case));

@@ -24,13 +24,13 @@ touchstone_base::metrics! {
         "largest smaller error with a sign of which the run passes every gate";
 }
 
-/// Among what a run chose: the gates that it fails with the smallest detected error.
+/// Key in the numerics of a run: the gates that fail with the smallest detected error.
 pub const GATES: &str = "gates";
 
 /// The gates of a run that can detect an error of a constant, from the plans of its case. A regression gate
-/// compares the program with itself and cannot. An invariant counts for a constant of the discretisation
-/// alone: it holds whatever a physical constant or the strength of a term is, unless the measuring, as an
-/// energy ledger does, has that from the settings.
+/// compares the program with itself and cannot. An invariant counts only for a constant of the
+/// discretisation: it holds for any value of a physical constant or of the strength of a term, unless the
+/// measurement takes this value from the settings, as an energy ledger does.
 pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
     let counts = |gate: &Gate| match gate.evidence {
         Evidence::Analytic | Evidence::Theory | Evidence::Reference => true,
@@ -45,7 +45,7 @@ pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
 /// error.
 ///
 /// # Errors
-/// Those of a run that cannot be made for another reason than its settings.
+/// Errors of a run that cannot be made for reasons other than its settings.
 pub fn run(
     case: &dyn Case,
     spec: &RunSpec,
@@ -139,7 +139,7 @@ mod tests {
         FORCE = "force" ["-"] "1 of a healthy run";
     }
 
-    /// Its one metric is the factor of the body force.
+    /// Its only metric is the factor of the body force.
     struct Balance;
 
     impl Case for Balance {
@@ -205,7 +205,7 @@ mod tests {
         run(&Balance, &spec, &detect, &Context::default()).unwrap()
     }
 
-    /// 2 % is beyond 1.5 %; the gates of 0.3 and 0.4 % see one sign, or are invariant, or regression.
+    /// 2 % exceeds 1.5 %; the gates of 0.3 and 0.4 % detect one sign only, or are invariant, or regression.
     #[test]
     fn the_smallest_error_is_the_one_that_a_gate_outside_the_program_sees_with_both_signs() {
         let record = found(Constant::BodyForce, false);

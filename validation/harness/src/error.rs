@@ -24,7 +24,7 @@ pub enum RunError {
         short(.name), hint(.known, .name), .known.join(", ")
     )]
     Unknown {
-        /// What is sought.
+        /// Kind of the missing item.
         what: String,
         /// As given.
         name: String,
@@ -45,12 +45,12 @@ pub enum RunError {
         /// The variant.
         variant: String,
     },
-    /// The settings in a JSON document do not match those of the case.
+    /// The settings in a JSON document do not match the case's.
     #[error("the settings of {case} cannot be read: {reason}")]
     Settings {
         /// The case.
         case: String,
-        /// What is wrong with them.
+        /// The fault.
         reason: String,
     },
     /// A setting whose value is in its range and has no meaning with the other settings.
@@ -84,7 +84,7 @@ pub enum RunError {
     /// Something that a case does not allow to be so large.
     #[error("{what} would be {}, but must be at most {}; change {setting}", sig(*value, 4), sig(*most, 2))]
     TooMuch {
-        /// What it is.
+        /// Its kind.
         what: &'static str,
         /// How many.
         value: f64,
@@ -113,7 +113,7 @@ pub enum RunError {
         touchstone_report::seconds(MOST_SECONDS), touchstone_report::sig(1e-6 * MOST_BYTES, 2)
     )]
     TooLong {
-        /// What it would take.
+        /// Its cost.
         size: Size,
         /// The settings on which this depends.
         settings: &'static str,
@@ -121,21 +121,21 @@ pub enum RunError {
     /// The solver refuses the scene.
     #[error("the scene is impossible: {0}")]
     Scene(#[from] touchstone_solver::SceneError),
-    /// The same, with the settings that are not those of the variant, as `key=value`.
+    /// An invalid scene of a run, with the settings that differ from the variant's, as `key=value`.
     #[error("with {set} the scene is impossible: {scene}")]
     SceneOf {
         /// The settings.
         set: String,
-        /// What is wrong with the scene.
+        /// The fault of the scene.
         scene: touchstone_solver::SceneError,
     },
     /// A reference that the case needs could not be loaded.
     #[error("a reference that the case needs cannot be loaded: {0}")]
     Reference(String),
-    /// A panic, of which the hook of panics has told.
+    /// A panic, which the hook of panics has reported.
     #[error("it ended by the bug of which was told")]
     Bug,
-    /// The bytes of a checkpoint are not those of the run.
+    /// The bytes of a checkpoint do not belong to the run.
     #[error("the checkpoint is not one of this run: {0}")]
     OtherBytes(#[from] postcard::Error),
     /// No checkpoint can be made of these particles, or no simulation can have its state.

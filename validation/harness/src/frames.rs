@@ -20,7 +20,7 @@ pub struct Frames<'a> {
     count: usize,
     /// Names by time \[s\].
     written: Vec<(f64, String)>,
-    /// Those whose time has come, whether or not they could be written.
+    /// Frames that are due, whether or not they could be written.
     come: usize,
 }
 
@@ -50,7 +50,7 @@ impl<'a> Frames<'a> {
         (self.written, self.come) = (written, come);
     }
 
-    /// Has the time of the next frame come? That of the last one is the end.
+    /// Whether the next frame is due. The last one is due at the end.
     pub fn is_due(&self, time: f64) -> bool {
         let next = self.come + 1;
         next < self.count && time >= self.end * next as f64 / self.count as f64
@@ -59,7 +59,7 @@ impl<'a> Frames<'a> {
     /// Writes a frame: between steps one whose time has come, at the end the last one.
     ///
     /// # Errors
-    /// If it cannot be written; the frames after it can be all the same.
+    /// If the frame cannot be written; later frames still can.
     pub fn write<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) -> Result<(), FileError> {
         let name = format!("particles_{:04}.vtu", self.come);
         self.come += 1;

@@ -6,7 +6,7 @@ use crate::quantiles::{CONFIDENCE, between};
 
 /// Members without which there is no interval, nor a horizon: fewer bound no median.
 pub const FEWEST: usize = 6;
-/// Draws of the bootstrap, and its seed: the same numbers on every machine.
+/// Draws of the bootstrap, and its seed: equal numbers on every machine.
 const DRAWS: usize = 1000;
 const SEED: u64 = 1;
 
@@ -26,10 +26,10 @@ pub struct Horizon {
 pub type Curve = Vec<(f64, f64)>;
 
 impl Horizon {
-    /// Of histories at the same times, one a member.
+    /// From histories at common times, one for each member.
     ///
     /// # Errors
-    /// Why nothing can be said.
+    /// The reason for a missing result.
     pub fn of(members: &[Curve], tolerance: f64) -> Result<Self, String> {
         let times = |curve: &Curve| curve.iter().map(|(t, _)| t.to_bits()).collect::<Vec<_>>();
         let count = members.len();
@@ -62,7 +62,7 @@ impl Horizon {
     }
 }
 
-/// What leaves out the same share of numbers at either end.
+/// The interval that excludes an equal fraction of numbers at each end.
 fn interval(mut of: Vec<f64>) -> [f64; 2] {
     of.sort_by(f64::total_cmp);
     let tail = 0.5 * (1.0 - CONFIDENCE);
@@ -163,7 +163,7 @@ mod tests {
         }
     }
 
-    /// Of 0, 1, …, 1000 in any order 95 % lie from 25 to 975.
+    /// 95 % of 0, 1, …, 1000 in any order are between 25 and 975.
     #[test]
     fn an_interval_leaves_out_a_fortieth_at_either_end() {
         let medians = (0..=1000).map(|k| f64::from(k * 387 % 1001)).collect();
@@ -189,7 +189,7 @@ mod tests {
         assert!(median(&parted, &[1, 1, 1]).is_nan(), "no pair");
     }
 
-    /// They part when they differ by more than the tolerance, not by as much.
+    /// They diverge when they differ by more than the tolerance, not by the tolerance itself.
     #[test]
     fn a_difference_of_the_tolerance_is_none() {
         let [one, other] = [0.25, -0.25].map(|by| vec![(0.0, 0.0), (1.0, by), (2.0, 2.0 * by)]);

@@ -1,15 +1,14 @@
-//! What limits the time step of a run: the limit of each mechanism of its scene alone, and of all waves of
-//! the lattice together.
+//! The limits of the time step of a run: of each mechanism of its scene alone, and of all waves of the
+//! lattice together.
 
 use touchstone_maths::theory::time_step::{self, Integrator, Mode};
 
-/// The share of the theoretical limit up to which a step is advised. The limit is that of a lattice at rest,
-/// and particles that move come nearer to each other and faster: over all variants with the coarsest settings
-/// of their plans, steps of 0.85 of it went through, and the first divergence was at 0.9, of the flow over
-/// hills.
+/// The advised fraction of the theoretical limit. The limit is for a lattice at rest; moving particles
+/// approach each other and have higher rates. Over all variants with the coarsest settings of their plans,
+/// steps of 0.85 of the limit were stable, and the first divergence was at 0.9, in the flow over hills.
 pub const ADVISED_SHARE: f64 = 0.8;
 
-/// What limits a time step.
+/// A mechanism that limits the time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mechanism {
     /// Sound in a fluid; in a solid longitudinal waves, whose speed is c_p.
@@ -31,7 +30,7 @@ pub enum Mechanism {
 }
 
 impl Mechanism {
-    /// All of them, in the order of tables.
+    /// All mechanisms, in the order of tables.
     pub const ALL: [Self; 8] = [
         Self::Waves,
         Self::ShearWaves,
@@ -43,7 +42,7 @@ impl Mechanism {
         Self::Contact,
     ];
 
-    /// Its name in tables.
+    /// Name in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Waves => "sound or elastic waves",
@@ -63,13 +62,13 @@ impl Mechanism {
     }
 }
 
-/// The limits of a time step \[s\]. Those of waves, viscosity and diffusion are 2 over the largest rate on
-/// the lattice at rest, from the same waves as the limit of all together. Those of motion, force and contact
-/// are the times that the rules of the cases multiply.
+/// The limits of a time step \[s\]. The limits of waves, viscosity and diffusion are 2 over the largest rate
+/// on the lattice at rest, from the waves of the combined limit. The limits of motion, force and contact are
+/// times to which the rules of cases apply factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
-    /// Of all waves of the lattice at rest together: a step beyond it is refused, and at most
-    /// [`ADVISED_SHARE`] of it is advised.
+    /// The limit of all waves of the lattice at rest together: a longer step is refused, and at most
+    /// [`ADVISED_SHARE`] of the limit is advised.
     pub together: f64,
     alone: [f64; Mechanism::ALL.len()],
     explicit: f64,
@@ -77,7 +76,7 @@ pub struct Limits {
 }
 
 impl Limits {
-    /// Those of a run that is refused.
+    /// The limits of a refused run.
     pub const REFUSED: Self = Self {
         together: 1.0,
         alone: [f64::INFINITY; Mechanism::ALL.len()],
@@ -85,7 +84,7 @@ impl Limits {
         integrator: Integrator::Leapfrog,
     };
 
-    /// Those of the waves of a lattice.
+    /// The limits of the waves of a lattice.
     pub fn of(modes: &[Mode], integrator: Integrator) -> Self {
         let alone = |rate: fn(&Mode) -> f64| time_step::limit_alone(modes, rate);
         let together = time_step::time_step_limit(modes, integrator);
@@ -97,32 +96,33 @@ impl Limits {
             .with(Mechanism::Diffusion, alone(|mode| mode.density))
     }
 
-    /// Those of a leapfrog whose elastic waves have this limit \[s\], and which damps nothing.
+    /// The limits of a leapfrog without damping, with this limit of elastic waves \[s\].
     pub fn of_waves(limit: f64) -> Self {
         Self { together: limit, ..Self::REFUSED }.with(Mechanism::Waves, limit)
     }
 
-    /// The same with another limit of a mechanism alone \[s\].
+    /// Replaces the limit of a mechanism alone \[s\].
     #[must_use]
     pub fn with(mut self, mechanism: Mechanism, limit: f64) -> Self {
         self.alone[mechanism as usize] = limit;
         self
     }
 
-    /// The same of a scene with this smoothing length \[m\], largest speed \[m/s\] and body force \[m/s²\].
+    /// Adds the limits of motion and force for this smoothing length \[m\], largest speed \[m/s\] and body
+    /// force \[m/s²\].
     #[must_use]
     pub fn moving(self, h: f64, speed: f64, force: f64) -> Self {
         self.with(Mechanism::Motion, h / speed).with(Mechanism::Force, (h / force).sqrt())
     }
 
-    /// The same in another unit of time.
+    /// The limits in another unit of time.
     #[must_use]
     pub fn times(self, unit: f64) -> Self {
         let (together, explicit) = (self.together * unit, self.explicit * unit);
         Self { together, explicit, alone: self.alone.map(|limit| limit * unit), ..self }
     }
 
-    /// Of a mechanism alone \[s\]; infinite if the scene lacks it.
+    /// The limit of a mechanism alone \[s\]; infinite if the scene lacks it.
     pub fn alone(&self, mechanism: Mechanism) -> f64 {
         self.alone[mechanism as usize]
     }

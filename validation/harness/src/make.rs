@@ -1,7 +1,7 @@
-//! Makes the runs of a plan whose records the store lacks: first the runs that are not timed, in parallel and
-//! the longest first; then the timed runs, one at a time while this program does nothing else, in rounds over
-//! all of them, so that a change of the machine's speed affects every variant alike. If somebody waits for
-//! the first complete case, one case is made in this way before all others.
+//! Makes the runs of a plan without stored records: first the runs that are not timed, in parallel and the
+//! longest first; then the timed runs, one at a time while this program does nothing else, in rounds over all
+//! of them, so that a change of the machine's speed affects every variant alike. If a caller waits for the
+//! first complete case, one case is made in this way before all others.
 
 use std::collections::BTreeMap;
 use std::ops::AddAssign;
@@ -44,7 +44,7 @@ pub struct Job {
 pub struct Done<'a> {
     /// Runs that are done.
     pub runs: usize,
-    /// All of them.
+    /// Number of all runs.
     pub all: usize,
     /// Share of the work that is done, of the run that is under way included: by the time that each run is
     /// expected to take.
@@ -55,10 +55,10 @@ pub struct Done<'a> {
     pub last: &'a str,
 }
 
-/// Told before the first run, a few times a second while runs are made, and after each.
+/// Called before the first run, a few times a second during the runs, and after each run.
 pub type Progress<'a> = dyn Fn(Done) + Sync + 'a;
 
-/// Told each time that all runs of a case have ended, with what is made so far.
+/// Called each time that all runs of a case have ended, with the results so far.
 pub type Finished<'a> = dyn Fn(Made) + Sync + 'a;
 
 /// How runs are made.
@@ -68,17 +68,17 @@ pub struct Making<'a> {
     pub tier: Tier,
     /// Records that exist, and where new ones are kept; without one they are kept in memory alone.
     pub store: Option<&'a Store>,
-    /// Digest of the sources that decide what a case computes.
+    /// Digest of the sources that determine the results of a case.
     pub sources: &'a (dyn Fn(&str) -> String + Sync),
     /// May records made by other sources be reused?
     pub reuse_other: bool,
     /// Is every run made again? The record of before stays until the new one is whole.
     pub fresh: bool,
-    /// May runs be long? Those that were refused are tried again then.
+    /// Whether runs may be long; refused runs are then tried again.
     pub allow_long: bool,
-    /// Told how far the runs are.
+    /// Progress callback.
     pub progress: Option<&'a Progress<'a>>,
-    /// Told when a case is complete, the first one early.
+    /// Called when a case is complete, the first one early.
     pub finished: Option<&'a Finished<'a>>,
     /// Set by another thread to stop.
     pub interrupt: Option<&'a AtomicBool>,
@@ -113,10 +113,10 @@ pub struct Made {
     pub records: BTreeMap<RunKey, Record>,
     /// Runs whose record the store had.
     pub reused: usize,
-    /// Those of them that other sources made.
+    /// Of these, records made from other sources.
     pub of_other_sources: usize,
-    /// Why the store could not keep some of the records, which are among `records` all the same: what was
-    /// computed is not lost with a disk that is full.
+    /// Errors of the store for records that it could not keep. They are still among `records`: a full disk
+    /// loses no result.
     pub not_kept: Sorted<RunKey, FileError>,
     /// Why records that the store had could not be read; these runs were made again.
     pub unsound: Sorted<RunKey, FileError>,
@@ -143,21 +143,21 @@ fn timed_again_below(tier: Tier) -> f64 {
     }
 }
 
-/// What a store has of the runs of a plan, and what it lacks.
+/// The stored runs of a plan, and the missing ones.
 #[derive(Default)]
 pub struct Stored {
-    /// What it has.
+    /// Records found.
     pub made: Made,
     /// The runs that it lacks.
     pub missing: Vec<Job>,
-    /// Those of them of which it has a record that other sources made.
+    /// Runs of which only a record from other sources exists.
     pub other: usize,
 }
 
-/// Looks for the records of the jobs. A record does not serve if other sources made it, unless that is
-/// allowed, nor one of a run that was refused, if longer runs are allowed now: to try again takes no time.
-/// That of a timed run must have been made while no other run was. If it is interrupted, see
-/// [`Made::interrupted`], what it has is not told of all runs.
+/// Looks up the records of the jobs. A record made from other sources does not serve unless allowed, nor does
+/// the record of a refused run if longer runs are allowed now: trying again takes no time. The record of a
+/// timed run must have been made while no other run was. After an interrupt, see [`Made::interrupted`], the
+/// result may be incomplete.
 pub fn stored(jobs: &[Job], making: &Making) -> Stored {
     let mut stored = Stored::default();
     for job in jobs {
@@ -205,8 +205,8 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
     stored
 }
 
-/// Whole simulations that a bisection takes as long as, or a search for the smallest error that is detected,
-/// about: most of the ten or so that it makes diverge early or are of a short time.
+/// Approximate cost of a bisection, or of a search for the smallest detected error, in whole simulations:
+/// most of its ten or so runs diverge early or cover a short time.
 const SIMULATIONS: f64 = 3.0;
 
 /// Gives each job the time that its run states before its first step. A run that is refused takes none.
@@ -226,13 +226,13 @@ pub fn time(spec: &RunSpec, size: &Size) -> f64 {
 /// The size of the simulation of a job, unless it is refused.
 pub fn size(job: &Job, allow_long: bool) -> Option<Size> {
     let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
-    // What fails here fails again when it is made, and is told then.
+    // An error here occurs again when the run is made, and is reported then.
     let size = || job.case.pose(&spec)?.size(&spec, Steps::All, allow_long);
     catch_unwind(AssertUnwindSafe(size)).ok()?.ok()
 }
 
-/// Makes the runs that the store lacks. A run that is refused or diverges has a record; one that fails
-/// otherwise has none, see [`Made::failed`]. For what the store cannot keep see [`Made::not_kept`].
+/// Makes the runs that the store lacks. A refused or diverged run has a record; a run that fails otherwise
+/// has none, see [`Made::failed`]. For records that the store cannot keep see [`Made::not_kept`].
 pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
     let mut tally = Tally::default();
     for job in &missing {
@@ -256,7 +256,7 @@ pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
     made
 }
 
-/// Of the main cases, which have a card, the one whose runs take the least time.
+/// The main case (a case with a card) with the least total time of its runs.
 fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
     let mut cases = Vec::new();
     for job in missing {
@@ -267,8 +267,8 @@ fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
     least.map(|(name, _)| *name)
 }
 
-/// What a run that lasts so long takes of the wall time of the batch \[s\]: all of it if it has the machine
-/// for itself, with its repetitions, and otherwise its part of the time of all threads.
+/// The part of a run in the wall time of the batch \[s\]: its whole time with repetitions if it runs alone,
+/// otherwise its part of the time of all threads.
 fn of_batch(job: &Job, making: &Making, seconds: f64) -> f64 {
     match job.planned.timed {
         true if seconds < timed_again_below(making.tier) => REPETITIONS as f64 * seconds,
@@ -277,12 +277,13 @@ fn of_batch(job: &Job, making: &Making, seconds: f64) -> f64 {
     }
 }
 
-/// Part of the work that must be done before it is said how long the rest will take.
+/// Fraction of the work to be done before the remaining time is shown.
 const FIRST_ESTIMATE: f64 = 0.1;
 /// Part of the work whose times weigh as much in the estimate of a case as the times of all cases.
 const OF_ALL_CASES: f64 = 0.02;
 
-/// Wall times \[s\]: of all that is to be done as expected, of what is done as expected, and as it was.
+/// Wall times \[s\]: expected for all work, expected for the completed work, and actual for the completed
+/// work.
 #[derive(Clone, Copy, Debug, Default)]
 struct Times {
     expected: f64,
@@ -327,7 +328,7 @@ impl Tally {
         self.runs.iter_mut().find(|(other, _)| other == key).map(|(_, run)| run)
     }
 
-    /// The times of all runs, and by case: what is expected is wrong by another factor for each.
+    /// The times of all runs, and by case: the error of the expected times differs between cases.
     fn times(&self) -> (Times, Sorted<&'static str, Times>) {
         let (mut all, mut cases) = (Times::default(), Vec::new());
         for (_, run) in &self.runs {
@@ -342,8 +343,8 @@ impl Tally {
         if expected > 0.0 { done / expected } else { 1.0 }
     }
 
-    /// What is left of each case is expected to take longer or shorter than was planned, as what is done of
-    /// it did; with little of it done, as what is done of all cases did.
+    /// The remaining work of each case is scaled by the ratio of actual to expected time of its completed
+    /// work; with little of it completed, by the ratio over all cases.
     fn left(&self) -> Option<f64> {
         let (all, cases) = self.times();
         let weight = OF_ALL_CASES * all.expected;
@@ -354,7 +355,7 @@ impl Tally {
         (self.share() >= FIRST_ESTIMATE).then(|| cases.iter().map(of_case).sum())
     }
 
-    /// So much of a run is done, after so long; that a run is made again counts no more.
+    /// Sets the completed part of a run and its time so far; repetitions of a run count no further.
     fn reach(&mut self, run: &RunKey, part: f64, took: f64) {
         if let Some(Run { times, has_ended: false, .. }) = self.run(run) {
             *times = Times { done: part.clamp(0.0, 1.0) * times.expected, took, ..*times };
@@ -377,7 +378,7 @@ impl Tally {
     }
 }
 
-/// The runs that are being made, and who is told of each.
+/// The runs in progress, and the callbacks.
 struct Batch<'a> {
     making: &'a Making<'a>,
     tally: Mutex<Tally>,
@@ -385,7 +386,7 @@ struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// Tells how far it is after a change.
+    /// Changes the tally and reports the progress.
     fn tell(&self, change: impl FnOnce(&mut Tally)) {
         let mut tally = lock(&self.tally);
         change(&mut tally);
@@ -406,8 +407,8 @@ impl Batch<'_> {
         made.records.insert(record.run.key(), record);
     }
 
-    /// Makes a run unless it is to stop, keeps its record, and tells that it is there, and if it was the last
-    /// one of its case. Of a timed run it is found out where its time goes.
+    /// Makes a run unless stopped, keeps its record, and reports the record, and the case if it was the last
+    /// run of its case. Timed runs are profiled.
     fn make(&self, job: &Job) {
         if self.making.is_interrupted() {
             return;
@@ -625,8 +626,8 @@ mod tests {
     static CHEAP: Named = Named("cheap", true);
     static SIDE: Named = Named("side", false);
 
-    /// Who waits for a page sees the cheapest of the main cases first, that of the least sum of times, and
-    /// not one without a card, whatever it takes.
+    /// The first case of a page is the main case with the least total time, and not a case without a card,
+    /// however cheap.
     #[test]
     fn the_cheapest_of_the_main_cases_is_made_first() {
         let of = |case: &'static Named, k: &str, seconds: f64| {
@@ -663,7 +664,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
         let jobs = [job("1"), job("2")];
-        // Reused, those of other sources, and whose the first record is then, by a build of these sources.
+        // Reused records, records of other sources, and the sources of the first record, for a build of these
+        // sources.
         let build = |sources: &'static str, reuse_other: bool| {
             let of = move |_: &str| sources.to_string();
             let making =
@@ -759,7 +761,7 @@ mod tests {
         assert_eq!(shares.into_inner().unwrap(), [0.0, 0.7, 0.9, 1.0]);
     }
 
-    /// What was refused for its length is made when longer runs are allowed.
+    /// A run refused for its length is made when longer runs are allowed.
     #[test]
     fn a_run_that_was_too_long_is_made_when_it_may_be_long() {
         let folder = tempfile::tempdir().unwrap();
@@ -775,7 +777,7 @@ mod tests {
         assert_eq!(completed(&Making { allow_long: true, ..making }), (0, true));
     }
 
-    /// `judge` failed the gates of the records that it had not come to, and ended with 1.
+    /// An interrupted lookup must not fail the gates of records that it has not read.
     #[test]
     fn a_look_into_a_store_that_is_cut_short_says_so() {
         let sources = |_: &str| "one".to_string();
@@ -788,7 +790,8 @@ mod tests {
         assert_eq!([false, true].map(looked), [(false, 1), (true, 0)]);
     }
 
-    /// A run that was made beside others served as timed, and the quiet phase took wall time.
+    /// A record of a run made along with others does not serve as timed, and the quiet phase measures
+    /// processor time.
     #[test]
     fn a_timed_run_is_made_alone_and_its_time_is_that_of_the_processor() {
         let folder = tempfile::tempdir().unwrap();
@@ -839,7 +842,7 @@ mod tests {
         }
     }
 
-    /// A full disk, a folder that is read-only: here a file stands in place of the folder.
+    /// A full disk or a read-only folder: here a file in place of the folder.
     #[test]
     fn records_that_cannot_be_kept_are_judged_and_told() {
         let folder = tempfile::tempdir().unwrap();
@@ -865,8 +868,8 @@ mod tests {
         assert_eq!(shown.lock().unwrap()[0], (0, 3), "shown before the first run ends");
     }
 
-    /// Runs of three cases, the longest first: planned and actual seconds differ by a factor of the case and
-    /// by 30 % more. The time that is left was told as 34.8 min after 20 s, for runs that took two minutes.
+    /// Runs of three cases, the longest first: actual seconds differ from the plan by a factor for each case
+    /// and by 30 % more. The remaining time must not be 34.8 min after 20 s, for runs of two minutes in all.
     #[test]
     fn the_time_left_is_right_within_a_factor_of_two_after_a_tenth_of_the_work() {
         let factors = [("right", 1.0), ("too long", 0.1), ("too short", 6.0)];
@@ -900,8 +903,8 @@ mod tests {
         assert!(shares.windows(2).all(|pair| pair[0] <= pair[1]), "it goes forward");
     }
 
-    /// What was planned to be a twentieth of the work is nearly all of it: as soon as one such run is done,
-    /// the time that is left is that of its case. By the times of all cases alone it is 8 times too short.
+    /// A twentieth of the planned work is nearly all of the actual work: as soon as one such run has ended,
+    /// the remaining time follows from its case. The times of all cases together would give an eighth of it.
     #[test]
     fn a_case_that_takes_far_longer_than_planned_is_seen_by_its_own_times() {
         let mut tally = Tally::default();

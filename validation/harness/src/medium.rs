@@ -10,7 +10,7 @@ use touchstone_solver::Tait;
 pub struct Medium {
     /// Equation of state, with density at rest and sound speed; a solid takes these two of it.
     pub eos: Tait,
-    /// Density of the start \[kg/m³\], that of the equation of state unless it is compressed.
+    /// Initial density \[kg/m³\], equal to the density of the equation of state unless compressed.
     pub density: f64,
     /// Sound speed at that density \[m/s\].
     pub sound_speed: f64,
@@ -110,7 +110,7 @@ pub enum Knob {
 type Set = fn(&mut Medium, f64);
 
 impl Knob {
-    /// All of them with their names among the settings, and where a medium has the numbers.
+    /// All settings with their names, and the setters of a medium.
     const ALL: [(Self, &'static str, Set); 10] = [
         (Self::Eta2, "eta2_over_h2", |medium, value| medium.eta2_over_h2 = value),
         (Self::Alpha, "alpha", |medium, value| medium.alpha = value),
@@ -124,7 +124,7 @@ impl Knob {
         (Self::WallGravity, "wall_gravity", |_, _| {}),
     ];
 
-    /// The names of all these settings that a case has, but those that are used.
+    /// The names of the settings of this kind in a case, except the used ones.
     pub fn others(uses: &[Self], fields: &[Field]) -> Vec<&'static str> {
         let others = Self::ALL.into_iter().filter(|(knob, ..)| !uses.contains(knob));
         let names = others.map(|(_, name, _)| name);

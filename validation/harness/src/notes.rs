@@ -1,4 +1,4 @@
-//! Numbered notes below a table: the same text is one note, wherever it is referred to.
+//! Numbered notes below a table: equal texts are one note.
 
 /// The texts, in the order in which they were first referred to.
 #[derive(Debug, Default)]

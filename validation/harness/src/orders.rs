@@ -1,5 +1,5 @@
-//! The order at which an error falls as something is refined: columns of a table and a panel of a figure for
-//! any study, and a whole study for those of one case alone.
+//! The order at which an error falls under refinement: columns of a table and a panel of a figure for any
+//! study, and a whole study for orders of one case alone.
 
 use std::cmp::Ordering;
 
@@ -19,7 +19,7 @@ pub type Found = Result<Convergence, String>;
 pub struct Refinement {
     /// Title of its panel.
     pub title: &'static str,
-    /// What is refined and the error, with their units.
+    /// The refined quantity and the error, with their units.
     pub axes: [&'static str; 2],
     /// Orders that are drawn as grey lines.
     pub slopes: &'static [f64],
@@ -72,8 +72,8 @@ pub fn study(
     })
 }
 
-/// Errors over what is refined, by the name of each line, and orders as grey lines from the largest error of
-/// the coarsest level.
+/// Errors over the refined quantity, by the name of each line, and orders as grey lines from the largest
+/// error of the coarsest level.
 pub fn plot<'a>(
     title: &str,
     [x, y]: [&str; 2],
@@ -103,7 +103,7 @@ pub fn plot<'a>(
     })
 }
 
-/// Numbers with so many digits, one after the other.
+/// Numbers with this number of digits, separated by commas.
 fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {
     let text = |number: f64| if number.is_nan() { "–".into() } else { sig(number, digits) };
     numbers.map(text).collect::<Vec<_>>().join(", ")
@@ -154,7 +154,7 @@ mod tests {
         assert_relative_eq!(end, 0.8 / 16.0, max_relative = 1e-14);
     }
 
-    /// The label of each line compares its order with that of its own theory.
+    /// The label of each line compares its order with the order of its own theory.
     #[test]
     fn the_order_of_a_line_is_held_against_that_of_its_theory() {
         let gate = |name| {

@@ -22,13 +22,13 @@ pub struct Outline {
     pub times: Vec<f64>,
     /// Time step that our method takes \[s\].
     pub dt: f64,
-    /// How all of it is seen.
+    /// The frame of the outline.
     pub view: View,
     /// The method of our run.
     pub method: Properties,
 }
 
-/// The number that stands for a role in files.
+/// The role of a number in files.
 pub fn role(number: f64) -> Option<Role> {
     [Role::Fluid, Role::Wall, Role::Interface].into_iter().find(|r| f64::from(*r as u8) == number)
 }

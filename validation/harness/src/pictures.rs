@@ -1,4 +1,4 @@
-//! Pictures of particles, from what a record keeps of them.
+//! Pictures of particles, from stored particles of records.
 
 use nalgebra::Vector2;
 use touchstone_base::record::{Profile, Record};

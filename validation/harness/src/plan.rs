@@ -11,8 +11,8 @@ use crate::{
     runs::{self, Planned, Tier},
 };
 
-/// The runs of a case in a tier: those of its own plan, then those of its declaration. Runs that occur
-/// several times are merged into one, with the gates of all. Of each run is measured what its gates read.
+/// The runs of a case in a tier: its own plan, then its declaration. Runs that occur several times are merged
+/// into one, with the gates of all. The measured metrics of each run include the metrics of its gates.
 pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
     let (mut all, declared) = (case.plan(tier), case.declaration(tier));
     all.extend(declared.runs());
@@ -39,9 +39,8 @@ pub fn gates_of(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
     gates
 }
 
-/// The judged simulation whose settings are the nearest to these, and the gate there that `judges` chooses: of
-/// the same variant if there is one, then with the fewest other settings, then with the least ratios of
-/// these.
+/// The judged simulation with the nearest settings, and its gate selected by `judges`: of the same variant if
+/// there is one, then with the fewest other settings, then with the least ratios of these.
 pub fn nearest_judged(
     case: &dyn Case,
     spec: &RunSpec,
@@ -81,7 +80,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
             merged.push(planned);
             continue;
         };
-        // A run of a table is in the plan and in a ladder, with the same gates.
+        // A run of a table occurs in the plan and in a ladder, with equal gates.
         let others = planned.gates.into_iter().filter(|gate| !first.gates.contains(gate));
         let others: Vec<Gate> = others.collect();
         first.gates.extend(others);
@@ -124,7 +123,7 @@ mod tests {
         assert_eq!([0, 1].map(|k| merged[k].spec.measure), [Measure::Headline, Measure::All]);
     }
 
-    /// One run, and the same from a start that is a little disordered, with a gate each.
+    /// One run, and one with a slightly disordered start, with a gate each.
     struct Starts;
 
     impl Case for Starts {

@@ -46,7 +46,7 @@ impl Frame {
 /// A particle that another code chose itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Own {
-    /// Its role in the scene.
+    /// Role in the scene.
     pub role: Role,
     /// Mass per unit depth \[kg/m\].
     pub mass: f64,
@@ -59,39 +59,39 @@ pub struct Own {
 pub struct Playback<'a> {
     /// The frames.
     pub frames: &'a [Frame],
-    /// The particles in place of those of the problem; none of a code that took these over.
+    /// The code's own particles in place of the problem's; empty for a code that used the problem's.
     pub own: Vec<Own>,
     /// Where particles are put inside the period before anything is measured.
     pub domain: Domain,
     /// A coordinate beyond this is of a particle that the code has lost \[m\].
     pub reach: f64,
-    /// Densities and speeds beyond these are of a run that diverged, whatever its case looks at.
+    /// Densities and speeds beyond these belong to a diverged run, whatever its case measures.
     pub limits: touchstone_solver::Limits,
-    /// What stands in place of numbers that were not handed in.
+    /// Placeholders of numbers that were not submitted.
     pub fill: Fill,
 }
 
-/// What stands in place of numbers that were not handed in. No choice of it is a result, so whatever differs
-/// between two of them is not measured: see [`leave_out`].
+/// Placeholders of numbers that were not submitted. A result must not depend on them, so values that differ
+/// between two fills are not measured: see [`leave_out`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Fill {
     /// Density \[kg/m³\].
     pub density: f64,
     /// The share of it by which a density is higher at most; each particle has some of it.
     pub spread: f64,
-    /// What a method integrates beside position, velocity and density, such as stress.
+    /// Extra fields that a method integrates in addition to position, velocity and density, such as stress.
     pub extra: f64,
 }
 
 impl Fill {
-    /// The density of a particle that has none.
+    /// The density of a particle without a submitted one.
     fn density(&self, id: u32) -> f64 {
         self.density * (1.0 + self.spread * f64::from(1 + id % 7) / 7.0)
     }
 }
 
-/// Leaves out of a record what rests on a column that was not handed in: what differs from `other`, the same
-/// measured with another [`Fill`] in place of this column.
+/// Removes from a record the values that depend on a missing column: values that differ from `other`,
+/// measured with another [`Fill`] of this column.
 pub fn leave_out(record: &mut Record, column: &str, other: &Record) {
     let bits = |value: f64| value.to_bits();
     let names: BTreeSet<&String> = record.metrics.keys().chain(other.metrics.keys()).collect();
@@ -152,8 +152,8 @@ impl Playback<'_> {
 const SQUARE: f64 = 2.5;
 const MOST_CROWDED: f64 = 2.0;
 
-/// The particle of a frame in place of the median by what is in its square, if that is more than any density:
-/// particles of whatever densities that lie on a line or in a corner.
+/// The particle of a frame with the most mass in its square compared with the median, if this exceeds any
+/// density: particles of any densities on one line or in one corner.
 fn crowded<X: Numbers>(
     playback: &Playback,
     frame: &Frame,
@@ -256,8 +256,8 @@ pub(crate) fn diverged(Divergence { step, time, fault }: Divergence) -> Status {
     }
 }
 
-/// Derives all that pair sweeps read. What another code integrates beside position, velocity and density is
-/// not a number unless the positions determine it: the rest is derived without it.
+/// Derives the columns of pair sweeps. Extra fields of another code are NaN unless the positions determine
+/// them: the other data is derived without them.
 fn advanced<X: Numbers>(
     frame: &Frame,
     time: f64,
@@ -281,7 +281,7 @@ fn advanced<X: Numbers>(
     outcome
 }
 
-/// Puts a number in place of what the particles of a frame integrate beside position, velocity and density.
+/// Puts a number in place of the extra fields of the particles of a frame.
 fn without_extra<X: Numbers>(frame: &Frame, number: f64, state: &mut Checkpoint<X>) {
     let of_frame: BTreeSet<u32> = frame.particles.iter().map(|placed| placed.id).collect();
     for (_, particle) in state.particles.iter_mut().filter(|(id, _)| of_frame.contains(id)) {

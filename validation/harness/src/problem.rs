@@ -1,6 +1,6 @@
-//! A run in verbs. A case states the scene of a run, what is measured at its times, and its metrics; from
-//! these the functions here simulate a run, estimate it, export it, show it to another observer, and measure
-//! particles of another code.
+//! A run in verbs. A case states the scene of a run, the measurements at its times, and its metrics; from
+//! these the functions here simulate a run, estimate its cost, export it, transform it to another observer's
+//! frame, and measure particles of another code.
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
@@ -26,7 +26,7 @@ use crate::{
     size::Size,
 };
 
-/// Name of the kernel among what a run chose.
+/// Name of the kernel in the numerics of a record.
 pub const KERNEL: &str = "kernel";
 /// Name of the integrator.
 pub const INTEGRATOR: &str = "integrator";
@@ -36,7 +36,7 @@ pub const WALLS: &str = "walls";
 /// Optional output of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Asked {
-    /// Every metric, whatever it costs.
+    /// Every metric, at any cost.
     pub all: bool,
     /// Particles for pictures.
     pub particles: bool,
@@ -59,7 +59,7 @@ pub struct Brief {
     pub rules: Rules,
     /// Has the time step a limit in theory? If not, no step is refused.
     pub is_limited: bool,
-    /// The integrator whose limit it is, if not that of the method.
+    /// The integrator of the limit, if it differs from the method's.
     pub limit_of: Option<&'static str>,
     /// Why only a run that may be unstable is made, if so.
     pub unstable: Option<RunError>,
@@ -78,7 +78,8 @@ pub struct Brief {
 }
 
 impl Brief {
-    /// A run by these rules, with about so many particles, whose size depends on the settings `decisive`.
+    /// A run with these rules and about this number of particles, whose cost depends on the settings
+    /// `decisive`.
     pub fn new(medium: Medium, rules: Rules, particles: f64, decisive: &'static str) -> Self {
         Self {
             medium,
@@ -103,11 +104,11 @@ impl Brief {
     }
 }
 
-/// A run of a case: the scene, what is measured, and the metrics.
+/// A run of a case: scene, measurements, and metrics.
 pub trait Problem: Sized {
-    /// Fields of a particle beside position, velocity and density.
+    /// Fields of a particle in addition to position, velocity and density.
     type Extra: Numbers;
-    /// A simulation as the case sees it.
+    /// The simulation as input of the case.
     type Simulation: Stepper<Self::Extra> + ?Sized;
     /// All that accumulates over a run.
     type Watch: Serialize + DeserializeOwned;
@@ -134,7 +135,7 @@ pub trait Problem: Sized {
     /// If the settings make no scene.
     fn scene(&self) -> Result<Parts<Self::Extra>, RunError>;
 
-    /// Changes a simulation that was just built by what no scene states, as an observer sees it.
+    /// Changes a new simulation by data that no scene states, in the frame of an observer.
     fn prepare(&self, _simulation: &mut Self::Simulation, _view: &View) {}
 
     /// The watch before the first step. `start` are the particles of the scene before any deliberate error,
@@ -209,7 +210,7 @@ impl<P: Problem> Calls<P> {
         self
     }
 
-    /// Adds these functions only if they are asked for.
+    /// Adds these functions only on a condition.
     #[must_use]
     pub fn when(self, is: bool, add: impl FnOnce(Self) -> Self) -> Self {
         if is { add(self) } else { self }
@@ -253,11 +254,11 @@ impl Steps {
 /// Called with the particles at a time \[s\].
 pub type AtTime<'a> = &'a mut dyn FnMut(f64, Profile);
 
-/// A run of a case, whatever its types: what a command does with it.
+/// A run of a case without its types, with the operations of commands.
 pub trait Posed {
     /// Facts that are known before its particles are made.
     fn brief(&self) -> Brief;
-    /// The size of as many steps, of a run that is not refused.
+    /// The cost of these steps, for a run that is not refused.
     ///
     /// # Errors
     /// If it is refused, or takes more time or memory than a run may, unless that is allowed.
@@ -267,7 +268,7 @@ pub trait Posed {
     /// # Errors
     /// If it is refused, or the folder of its frames cannot be made.
     fn simulate(&self, context: &Context) -> Result<Record, RunError>;
-    /// Its scene, at its times, or at the few early times of an observer if there is a relation.
+    /// Its scene, at its times, or at a few early times for a relation.
     ///
     /// # Errors
     /// If it is refused, has no scene that a file can state, or the relation is no symmetry of it.
@@ -277,7 +278,7 @@ pub trait Posed {
         relation: Option<Relation>,
         allow_long: bool,
     ) -> Result<Outline, RunError>;
-    /// Its scene as an observer sees it, and the particles at a few early times until it diverges.
+    /// Its scene in the frame of an observer, and the particles at a few early times before a divergence.
     ///
     /// # Errors
     /// As [`Posed::outline`].
@@ -372,13 +373,13 @@ trait Parted: Problem {
         Ok((brief, size))
     }
 
-    /// The scene with what a spec changes of it.
+    /// The scene with the changes of a spec.
     fn parts(&self, spec: &RunSpec, threads: usize) -> Result<Parts<Self::Extra>, RunError> {
         let RunSpec { mutation, disorder, .. } = *spec;
         Ok(Parts { threads, mutation, disorder, ..self.scene()? })
     }
 
-    /// The simulation of a scene as an observer sees it.
+    /// The simulation of a scene in the frame of an observer.
     fn built(
         &self,
         parts: Parts<Self::Extra>,
@@ -389,7 +390,7 @@ trait Parted: Problem {
         Ok(simulation)
     }
 
-    /// Makes the parts those that an observer sees.
+    /// Transforms the parts to the frame of an observer.
     fn view(
         &self,
         parts: &mut Parts<Self::Extra>,
@@ -406,7 +407,7 @@ trait Parted: Problem {
         Ok(view)
     }
 
-    /// The simulation as an observer sees it, and its outline.
+    /// The simulation in the frame of an observer, and its outline.
     fn stated(
         &self,
         spec: &RunSpec,
@@ -444,7 +445,7 @@ trait Parted: Problem {
         Ok((simulation, outline))
     }
 
-    /// A record with what the run chose.
+    /// A record with the numerics of the run.
     fn begun(&self, spec: &RunSpec, threads: usize, brief: &Brief) -> Record {
         let mut record = Record::of(spec, threads.max(1));
         let method = &self.method().properties;
@@ -531,8 +532,9 @@ pub struct Simple<X: Numbers = ()> {
 }
 
 impl<X: Numbers> Simple<X> {
-    /// A run by these rules, with about so many particles, whose size depends on the settings `decisive`. Its
-    /// record states h/dx and `numbers`. `measure` is called of a run that has reached its end.
+    /// A run with these rules and about this number of particles, whose cost depends on the settings
+    /// `decisive`. Its record states h/dx and `numbers`. `measure` is called at the end of a run that reaches
+    /// it.
     pub fn new(
         method: &Method<X>,
         (medium, rules): (Medium, Rules),

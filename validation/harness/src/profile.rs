@@ -1,5 +1,5 @@
-//! Where the time of a run goes: a clock that is read when a phase of a step or an observer begins, and
-//! samples of the neighbour lists. A run that is not profiled has none of it.
+//! Profile of a run: a clock read at the start of each phase of a step or observer, and samples of the
+//! neighbour lists. A run that is not profiled has no part of this.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
@@ -22,7 +22,7 @@ pub const REFRESH: &str = "refresh of columns and images";
 pub const SEARCH: &str = "neighbour search";
 /// Particles in their order of storage.
 pub const SORTING: &str = "sorting";
-/// What is left of a step.
+/// The remainder of a step.
 pub const REST: &str = "rest of the integrator";
 
 /// The names of the phases of a step, by their numbers.
@@ -69,12 +69,12 @@ struct Lists {
     state_bytes: f64,
 }
 
-/// Profiles a run: phases by number, then observers, and last what is neither.
+/// Profiles a run: phases by number, then observers, and last the rest.
 pub(crate) struct Profiler {
     clock: Arc<Clock>,
-    /// Of all parts but the last.
+    /// Names of all parts but the last.
     names: Vec<&'static str>,
-    /// Of a run that this one goes on with.
+    /// Profile of the part of the run before a checkpoint.
     earlier: Breakdown,
     lists: Lists,
     sampled: u64,
@@ -101,12 +101,12 @@ impl Profiler {
         Self { clock, names, earlier, lists: Lists::default(), sampled: 0, before }
     }
 
-    /// Stepping begins. What comes between an observer and the next phase of a step counts as observing.
+    /// Stepping begins. The time between an observer and the next phase of a step counts as observing.
     pub fn step(&self) {
         self.clock.enter(Phase::Rest as usize);
     }
 
-    /// One of the observers begins.
+    /// An observer begins.
     pub fn observe(&self, observer: &str) {
         let place = self.names.iter().position(|name| *name == observer);
         self.clock.enter(place.unwrap_or(self.names.len()));
@@ -143,7 +143,7 @@ impl Profiler {
         lists.state_bytes += (particles * size_of::<State<X>>()) as f64;
     }
 
-    /// What was found so far.
+    /// The profile so far.
     pub fn breakdown<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Breakdown {
         let mut all = self.earlier.clone();
         for (k, (name, part)) in self.names.iter().zip(&self.clock.parts).enumerate() {
@@ -168,7 +168,7 @@ impl Profiler {
     }
 }
 
-/// Adds to the part of this name, which is begun by its first time.
+/// Adds to the part with this name, which its first time creates.
 fn add(parts: &mut Vec<Part>, name: &str, seconds: f64, times: u64) {
     match parts.iter_mut().find(|part| part.name == name) {
         Some(part) => (part.seconds, part.times) = (part.seconds + seconds, part.times + times),

@@ -1,5 +1,5 @@
-//! Quantiles of a distribution from a sample, with intervals between order statistics: these hold whatever
-//! the distribution is. A sample that is too small for an interval has none.
+//! Quantiles of a distribution from a sample, with intervals between order statistics, which hold for any
+//! distribution. A sample too small for an interval has none.
 
 /// The least probability with which an interval contains its quantile.
 pub const CONFIDENCE: f64 = 0.95;
@@ -7,15 +7,14 @@ pub const CONFIDENCE: f64 = 0.95;
 /// A quantile of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quantile {
-    /// That of the sample, linear between its numbers.
+    /// The quantile of the sample, linear between its numbers.
     pub value: f64,
-    /// What contains that of the distribution.
+    /// Interval of the quantile of the distribution.
     pub within: Option<[f64; 2]>,
 }
 
 impl Quantile {
-    /// The number below which this share of a distribution lies, from a sample in any order, without what is
-    /// not finite.
+    /// The quantile of a distribution for this share, from the finite numbers of a sample in any order.
     pub fn of_sample(sample: &[f64], share: f64) -> Self {
         let mut sorted: Vec<f64> = sample.iter().copied().filter(|x| x.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
@@ -39,11 +38,11 @@ pub fn between(sorted: &[f64], share: f64) -> f64 {
     }
 }
 
-/// The ranks, from 1, of the order statistics of a sample of n between which a quantile lies: the number of
-/// those below it has the binomial distribution of n and its share. A rank that does not exist is 0 or n + 1.
+/// The ranks, from 1, of the order statistics of a sample of n that bound a quantile: the number of values
+/// below it has the binomial distribution of n and its share. A rank that does not exist is 0 or n + 1.
 fn ranks(n: usize, share: f64) -> [usize; 2] {
     let tail = 0.5 * (1.0 - CONFIDENCE);
-    // P(B = k), by multiplication alone: the same bits on every machine.
+    // P(B = k), by multiplication only: equal bits on every machine.
     let mut all = vec![(0..n).fold(1.0, |p, _| p * (1.0 - share))];
     for k in 0..n {
         let odds = (n - k) as f64 / (k + 1) as f64 * share / (1.0 - share);
@@ -63,7 +62,7 @@ mod tests {
     use super::*;
     use touchstone_base::random::Random;
 
-    /// Ranks of tables, such as those of Conover, Practical Nonparametric Statistics.
+    /// Ranks of published tables, such as Conover, Practical Nonparametric Statistics.
     #[test]
     fn ranks_are_those_of_the_binomial_distribution() {
         assert_eq!(ranks(20, 0.5), [6, 15]);

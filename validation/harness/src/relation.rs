@@ -1,4 +1,5 @@
-//! Exact symmetries of the equations: the same problem as another observer sees it, and back.
+//! Exact symmetries of the equations: transformations of a problem to the frame of another observer, and
+//! back.
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_base::{
@@ -10,14 +11,14 @@ use touchstone_solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
 
 use crate::medium::Medium;
 
-/// How another observer differs. A solver of the equations must tell both the same.
+/// The frame of another observer. A solver of the equations must give equal results in both frames.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Relation {
     /// In nothing.
     Same,
     /// Turned by 37°, an angle of no lattice.
     Turned,
-    /// Sees a mirror image: x → −x.
+    /// A mirror image: x → −x.
     Mirrored,
     /// Moves with a constant velocity of half the sound speed (Galilei).
     Boosted,
@@ -27,14 +28,14 @@ pub enum Relation {
     OtherUnits,
     /// Numbers the particles otherwise.
     Renumbered,
-    /// Stands elsewhere; a periodic box stays where it is, so that its border cuts elsewhere.
+    /// A shifted origin; a periodic box stays in place, so that its border cuts the fluid elsewhere.
     Shifted,
 }
 
 use Relation::*;
 
 impl Relation {
-    /// All of them; all but the first are compared with the first.
+    /// All relations; the first is the reference of the others.
     pub const ALL: [Self; 8] =
         [Same, Turned, Mirrored, Boosted, BinaryUnits, OtherUnits, Renumbered, Shifted];
 
@@ -62,8 +63,8 @@ impl Relation {
         found.ok_or_else(|| format!("{:?} is none of {}", short(name), known()))
     }
 
-    /// Does it round no number of our solver? This sums over particles in the order of their places, but over
-    /// those of walls in the order of their numbers.
+    /// Whether the relation rounds no number of our solver, which sums over particles in the order of their
+    /// places, but over wall particles in the order of their numbers.
     pub fn is_bitwise(self, has_walls: bool) -> bool {
         self == BinaryUnits || self == Renumbered && !has_walls
     }
@@ -83,8 +84,8 @@ pub const DENSITY: Unit = [-2, 0, 1];
 const SPEED: Unit = [1, -1, 0];
 const PRESSURE: Unit = [0, -2, 1];
 
-/// What an observer sees: x' = (Q x + s + U t)/\[L\], v' = (Q v + U) \[T\]/\[L\], in units \[L\] m, \[T\] s
-/// and \[M\] kg/m.
+/// The frame of an observer: x' = (Q x + s + U t)/\[L\], v' = (Q v + U) \[T\]/\[L\], in units \[L\] m, \[T\]
+/// s and \[M\] kg/m.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     relation: Relation,
@@ -96,7 +97,7 @@ pub struct View {
 }
 
 impl Default for View {
-    /// The same as ours.
+    /// Our own frame.
     fn default() -> Self {
         let (turn, shift, boost) = (Matrix2::identity(), Vector2::zeros(), Vector2::zeros());
         Self { relation: Same, turn, shift, boost, units: [1.0; 3] }
@@ -104,7 +105,7 @@ impl Default for View {
 }
 
 impl View {
-    /// How a scene looks by a relation. `moves` says which of its particles do.
+    /// The transformation of a scene by a relation. `moves` marks its moving particles.
     ///
     /// # Errors
     /// Why the relation is no symmetry of it.
@@ -143,7 +144,7 @@ impl View {
         self.units.map(|inverse| 1.0 / inverse)
     }
 
-    /// By what a quantity of a unit is multiplied.
+    /// The factor of a quantity with this unit.
     pub fn scale(&self, unit: Unit) -> f64 {
         (0..3).map(|k| self.units[k].powi(unit[k])).product()
     }
@@ -161,7 +162,7 @@ impl View {
         (self.turn * velocity + self.boost) * self.scale(SPEED)
     }
 
-    /// A displacement as a function of the place, both as the observer sees them.
+    /// A displacement as a function of the place, both in the observer's frame.
     pub fn displacement(
         &self,
         by: impl Fn(Vector2<f64>) -> Vector2<f64>,
@@ -171,7 +172,7 @@ impl View {
         self.turn * by(self.turn.transpose() * (place / length - self.shift)) * length
     }
 
-    /// The pressure \[Pa\] of a density \[kg/m³\], both as the observer sees them.
+    /// The pressure \[Pa\] of a density \[kg/m³\], both in the observer's units.
     pub fn pressure_of(&self, pressure: impl Fn(f64) -> f64, density: f64) -> f64 {
         pressure(density / self.scale(DENSITY)) * self.scale(PRESSURE)
     }
@@ -229,15 +230,15 @@ impl View {
         Particle { position, velocity, density, mass, extra, ..*p }
     }
 
-    /// Place and velocity at a time \[s\] of what the observer sees.
+    /// Transforms a place and a velocity at a time \[s\] from the observer's frame back.
     pub fn back(&self, time: f64, [place, velocity]: [Vector2<f64>; 2]) -> [Vector2<f64>; 2] {
         let place = place / self.scale(LENGTH) - self.shift - self.boost * time;
         let velocity = velocity / self.scale(SPEED) - self.boost;
         [place, velocity].map(|vector| self.turn.transpose() * vector)
     }
 
-    /// The number that each particle had, by the number that it gets: that of one which moves if it does, so
-    /// that it does not depend on the others.
+    /// The original number of each particle by its new number; moving particles exchange numbers only among
+    /// themselves, so that their numbers do not depend on the others.
     pub fn numbers(&self, moves: &[bool]) -> Vec<usize> {
         let mut numbers: Vec<usize> = (0..moves.len()).collect();
         let mut random = Random::new(8);
@@ -275,7 +276,7 @@ mod tests {
 
     use super::*;
 
-    /// An observer who moves with 5 m/s sees 6 m/s at most of 1 m/s, in his units.
+    /// 1 m/s is at most 6 m/s for an observer who moves with 5 m/s, in his units.
     #[test]
     fn the_largest_speed_is_that_against_the_observer() {
         let (boost, units) = (Vector2::new(3.0, -4.0), [8.0, 32.0, 0.25]);

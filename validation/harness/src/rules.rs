@@ -9,7 +9,7 @@ use crate::limits::Limits;
 pub struct Rules {
     /// The time step and the rule that sets it.
     pub step: Step,
-    /// Its theoretical limits.
+    /// Theoretical limits.
     pub limits: Limits,
     /// Sound speed \[m/s\].
     pub sound_speed: f64,
@@ -17,14 +17,14 @@ pub struct Rules {
     pub end: f64,
 }
 
-/// A time step \[s\]: the least of those that the rules of a case allow.
+/// A time step \[s\]: the least step that the rules of a case allow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Step {
     /// The step \[s\].
     pub dt: f64,
     /// The rule that sets it, as its formula.
     pub by: &'static str,
-    /// What the rule multiplies.
+    /// The factor of the rule.
     pub number: f64,
 }
 
@@ -70,8 +70,8 @@ impl Step {
 }
 
 impl Rules {
-    /// Those of a run that is refused, for plans: the run itself is refused too, so that its gates, which
-    /// must be there, fail.
+    /// The step of a refused run in plans: the run itself is refused too, so that its gates, which must
+    /// exist, fail.
     pub const REFUSED: Self = Self {
         step: Step { dt: 1.0, by: "", number: 1.0 },
         limits: Limits::REFUSED,
@@ -89,7 +89,7 @@ impl Rules {
         self.limits.sweeps(self.dt())
     }
 
-    /// Its theoretical limit \[s\].
+    /// Theoretical limit \[s\].
     pub fn dt_limit(&self) -> f64 {
         self.limits.together
     }
@@ -118,13 +118,13 @@ pub fn samples(end: f64, count: usize, given: Option<f64>) -> Vec<f64> {
     (1..before).map(|k| k as f64 * every).chain([end]).collect()
 }
 
-/// Name of the time step \[s\] that a run chose, among what it chose.
+/// Key of the planned time step \[s\] in the numerics of a record.
 pub const PLANNED_DT: &str = "dt [s] planned";
 /// Name of that step over its theoretical limit.
 pub const PLANNED_DT_OVER_LIMIT: &str = "dt/limit planned";
 
-/// States the largest step that was taken beside the planned one of a record: steps are shortened to reach
-/// the times of samples and the end.
+/// Adds the largest step of the run to the planned one in a record: steps are shortened to reach the times of
+/// samples and the end.
 pub fn state_steps(record: &mut Record) {
     let planned = |name: &str| record.numerics.get(name).and_then(|value| value.as_f64());
     let (Some(dt), limit) = (planned(PLANNED_DT), planned(PLANNED_DT_OVER_LIMIT)) else { return };

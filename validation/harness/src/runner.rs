@@ -1,7 +1,7 @@
-//! Steps a simulation through the times of interest: the only time loop of the program. It measures the
-//! cost, shows progress, writes frames and stops at an interrupt; cases contain only what differs. The loop
-//! knows a run of a case by `Observed` alone, so it is compiled once for all cases of fluids, and once for
-//! those of solids.
+//! Steps a simulation through the times of interest: the only time loop of the program. It measures the cost,
+//! shows progress, writes frames and stops at an interrupt; cases contain only their own measurements. The
+//! loop accesses a run of a case only through `Observed`, so it is compiled once for all cases of fluids, and
+//! once for solids.
 
 use std::time::{Duration, Instant};
 
@@ -23,12 +23,12 @@ use crate::{
 /// Wall time after which it is shown again how far a run is.
 const SHOW_EVERY: Duration = Duration::from_millis(200);
 
-/// What every record states of the end of a run.
+/// Data of every record about the end of a run.
 #[derive(Debug)]
 pub struct Ended {
     /// How it ended.
     pub status: Status,
-    /// What it took.
+    /// Its cost.
     pub cost: Cost,
     /// Digest of positions, velocities, densities and stresses, in the order of the scene.
     pub state: String,
@@ -52,15 +52,15 @@ fn state<X: Numbers>(simulation: &dyn Stepper<X>) -> String {
 
 /// A simulation and all that is observed of it.
 trait Observed<X: Numbers> {
-    /// The simulation, and what sees its steps.
+    /// The simulation, and the observers of its steps.
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>);
     /// Calls the k-th of the functions that are called at times, at this one of the times.
     fn at(&mut self, k: usize, reached: usize);
-    /// Puts back what a case has changed of the simulation and what is no part of a checkpoint.
+    /// Restores changes of the simulation by a case that are not part of a checkpoint.
     fn resumed(&mut self);
 }
 
-/// What is observed of a run.
+/// The observations of a run.
 trait Seen<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow;
@@ -73,7 +73,7 @@ trait Seen<X: Numbers> {
 /// A run that is under way.
 type Running<'a, X> = &'a mut dyn Observed<X>;
 
-/// The way of a run, and what is called on it, by the names that a profile gives it.
+/// Times and callbacks of a run, with their names in a profile.
 struct Course<'a> {
     dt: f64,
     /// Steps to each of the times at least.
@@ -98,7 +98,7 @@ impl Course<'_> {
         let fewest = least.max(1.0) * self.times.len() as f64;
         let steps = ((end - simulation.time()) / dt).max(fewest);
         let size = Size::of(simulation, steps);
-        // Whoever is told of the particles keeps them, as text in the end.
+        // The receiver of particles keeps them, finally as text.
         let told = context.at_times.map_or(0.0, |_| size.particles * self.times.len() as f64);
         let size = Size { sweeps: self.sweeps, samples: told, ..size };
         let settings = "the end, the time step or the spacing";
@@ -153,8 +153,8 @@ impl Course<'_> {
     }
 }
 
-/// Sees every step: calls the observers, writes frames and checkpoints, shows how far the run is, and obeys
-/// an interrupt after every step, however long steps take.
+/// Handles every step: calls the observers, writes frames and checkpoints, shows the progress, and stops at
+/// an interrupt after the present step, however long steps take.
 struct Watch<'a> {
     context: &'a Context<'a>,
     course: &'a Course<'a>,
@@ -164,15 +164,15 @@ struct Watch<'a> {
     saved: f64,
     frames: Option<Frames<'a>>,
     profiler: Option<Profiler>,
-    /// What the way to the last of the times of interest took, and all observing.
+    /// Cost up to the last of the times of interest, and of all observing.
     cost: Cost,
-    /// When the way to the next one began, later by what observers, frames and checkpoints took since.
+    /// Start of the stretch to the next time, moved by the time for observers, frames and checkpoints since.
     start: Reading,
     /// Steps before it.
     steps: u64,
     /// How many of the times of interest were reached.
     reached: usize,
-    /// Whether what is called at the next of them reads quantities of that very time.
+    /// Whether a callback at the next time needs synchronised quantities.
     synchronises: bool,
 }
 
@@ -185,7 +185,7 @@ impl Watch<'_> {
         }
     }
 
-    /// What the run took until now, of which the last stepping took so long.
+    /// The cost of the run so far, of which the last stepping took `stepping`.
     fn cost<X: Numbers>(&self, simulation: &dyn Stepper<X>, stepping: Reading) -> Cost {
         let work = simulation.work();
         let last = if work.steps > self.steps { simulation.dt() } else { 0.0 };
@@ -203,7 +203,7 @@ impl Watch<'_> {
         }
     }
 
-    /// What a record states of a run that ends now, after its last stepping.
+    /// The data of a record of a run that ends now, after its last stepping.
     fn ended<X: Numbers>(&self, simulation: &dyn Stepper<X>, status: Status) -> Ended {
         let cost = self.cost(simulation, Reading::default());
         Ended { status, cost, state: state(simulation) }
@@ -215,7 +215,7 @@ impl Watch<'_> {
         Stage { reached: self.reached, cost, frames, ended }
     }
 
-    /// Writes the frames whose time has come, unless it is interrupted: those are written when it goes on.
+    /// Writes the due frames, unless interrupted: the continued run writes them.
     fn write_frames<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) {
         let Some(frames) = &mut self.frames else { return };
         self.profiler.iter().for_each(|profiler| profiler.observe(profile::FRAMES));
@@ -224,7 +224,7 @@ impl Watch<'_> {
         }
     }
 
-    /// What the case observes, and what of it is written.
+    /// The observations of the case, and their files.
     fn observe<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, seen: &mut dyn Seen<X>) -> Flow {
         let is_seen = !self.course.after_step.is_empty() || self.frames.is_some();
         if !is_seen && self.context.checkpoints.is_none() {
@@ -280,7 +280,7 @@ impl Watch<'_> {
         }
     }
 
-    /// Steps through the times that are left, with steps of at most `dt` \[s\] and at least so many to each,
+    /// Steps through the remaining times, with steps of at most `dt` \[s\] and at least `least` to each,
     /// observes each, and writes the last frame.
     fn step_through<X: Numbers>(&mut self, run: Running<X>, dt: f64, least: f64) -> Ended {
         let Course { times, at, .. } = self.course;
@@ -313,7 +313,7 @@ impl Watch<'_> {
         self.ended(simulation, Status::Completed)
     }
 
-    /// Shows every frame of another code to the observers, and calls what is to be called at its times.
+    /// Passes every frame of another code to the observers, and makes the calls at its times.
     fn play<X: Numbers>(
         &mut self,
         run: Running<X>,
@@ -331,7 +331,7 @@ impl Watch<'_> {
                 return Ok(self.ended(simulation, ended));
             }
             Watching { watch: self, seen }.after_step(simulation);
-            // A time may be stated twice, such as that of a sample and of a picture.
+            // A time may be stated twice, for example for a sample and a picture.
             while next(self.reached).is_some() {
                 (0..self.course.at.len()).for_each(|k| run.at(k, self.reached));
                 self.reached += 1;
@@ -362,7 +362,7 @@ impl Watch<'_> {
             self.write_frames(simulation);
         }
         if ended == Some(Status::Completed) {
-            // No step: derives again what may be asked for at the end.
+            // No step: refreshes the derived data for calls at the end.
             simulation.advance(self.end, 1.0, &mut ());
         }
         run.resumed();
@@ -370,7 +370,7 @@ impl Watch<'_> {
     }
 }
 
-/// A watch with what is observed of the run.
+/// A watch with the observations of the run.
 struct Watching<'w, 'a, X: Numbers> {
     watch: &'w mut Watch<'a>,
     seen: &'w mut dyn Seen<X>,
@@ -392,14 +392,14 @@ impl<X: Numbers> Observer<X> for Watching<'_, '_, X> {
     }
 }
 
-/// More time steps than this are refused, whatever is allowed.
+/// The largest number of time steps, under any permission.
 const MOST_STEPS: f64 = 1e10;
 
 /// Refuses a run that takes more time or memory than a run may, unless that is allowed, and more than 10¹⁰
 /// time steps in any case. The size of the steps that are made, which may be fewer than the run has.
 ///
 /// # Errors
-/// What it would take, and the settings on which this depends.
+/// Its cost, and the settings that it depends on.
 pub fn check_size(
     all: Size,
     most_steps: f64,
@@ -418,14 +418,14 @@ pub fn check_size(
     Ok(size)
 }
 
-/// A function that is called after every step with what is observed of the run.
+/// A function that is called after every step with the observations of the run.
 type AfterStep<'a, X, S> = Box<dyn Fn(&mut S, &dyn Stepper<X>) -> Flow + 'a>;
 /// A function that is called at the k-th of the times of interest.
 type At<'a, D, S> = Box<dyn Fn(&mut S, &mut D, usize) + 'a>;
 /// A function that is called when a run goes on from a checkpoint.
 type Resumed<'a, D, S> = Box<dyn Fn(&S, &mut D) + 'a>;
 
-/// What is observed of a run, and what is called of it after every step.
+/// The observations of a run, and the calls after every step.
 struct Seeing<'a, X: Numbers, S> {
     seen: &'a mut S,
     after_step: Vec<AfterStep<'a, X, S>>,
@@ -469,10 +469,9 @@ where
     }
 }
 
-/// A simulation with what is observed of it on its way through the times of interest.
+/// A simulation with its observations on its way through the times of interest.
 ///
-/// The functions of a case cannot change what they capture: all that changes is in `S`, which checkpoints
-/// hold.
+/// The functions of a case cannot change their captures: all changing data is in `S`, which checkpoints hold.
 pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
     run: Run<'a, X, D, S>,
     course: Course<'a>,
@@ -500,14 +499,14 @@ where
         Self { run, course: Course { dt, least, sweeps, times, pressure, after_step, at } }
     }
 
-    /// Makes at least so many steps to each of the times, from the one before it, of so many pair sweeps
-    /// each, for the estimate of what the run takes.
+    /// Makes at least `least` steps from each time to the next, and states the pair sweeps of a step for the
+    /// estimate of the cost.
     pub fn steps(mut self, least: usize, sweeps: f64) -> Self {
         (self.course.least, self.course.sweeps) = (least, sweeps);
         self
     }
 
-    /// Calls a function after every step, beside those named before; a profile shows its time by this name.
+    /// Calls a function after every step, after the earlier ones; a profile shows its time under this name.
     pub fn after_step(
         mut self,
         name: &'static str,
@@ -518,15 +517,15 @@ where
         self
     }
 
-    /// Calls a function at each of the times, with its number, likewise.
+    /// Calls a function at each of the times, with its number.
     pub fn at(mut self, name: &'static str, call: impl Fn(&mut S, &mut D, usize) + 'a) -> Self {
         self.run.at.push(Box::new(call));
         self.course.at.push((name, true));
         self
     }
 
-    /// The same for a function that reads positions and densities, or for which velocities and what else a
-    /// leapfrog has may lag behind them by half a step, which costs no pair sweep.
+    /// Calls a function at each of the times that reads only positions and densities, or accepts velocities
+    /// of a leapfrog that lag by half a step, which costs no pair sweep.
     pub fn at_positions(
         mut self,
         name: &'static str,
@@ -537,8 +536,8 @@ where
         self
     }
 
-    /// Calls a function when a run goes on from a checkpoint: for what a case has changed of a simulation and
-    /// what is no part of a [`Checkpoint`](touchstone_solver::Checkpoint), such as a force.
+    /// Calls a function when a run continues from a checkpoint: for changes of a simulation by a case that
+    /// are not part of a [`Checkpoint`](touchstone_solver::Checkpoint), such as a force.
     pub fn resumed(mut self, resumed: impl Fn(&S, &mut D) + 'a) -> Self {
         self.run.resumed = Box::new(resumed);
         self
@@ -552,11 +551,11 @@ where
         self.course.watch(context)?.play(&mut self.run, playback)
     }
 
-    /// Steps through the times. The cost is that of the stepping, and separately that of what is observed.
+    /// Steps through the times. The cost covers the stepping, and separately the observing.
     ///
     /// # Errors
-    /// If it would take more time or memory than a run may, the folder of frames cannot be made, or it does
-    /// not fit the checkpoint that it goes on from. A frame or a checkpoint that cannot be written is told to
+    /// If the run would exceed the limit of time or memory, the folder of frames cannot be made, or the
+    /// checkpoint does not fit. A frame or a checkpoint that cannot be written is reported to
     /// [`Context::lost`].
     pub fn run(mut self, context: &Context) -> Result<Ended, RunError> {
         self.course.run(&mut self.run, context)
@@ -681,8 +680,8 @@ mod tests {
         }
     }
 
-    /// A run of ten and thirty steps to two times, with an observer after each step that takes so long
-    /// \[wall s, processor s\] by the clock, or with none: what it took, and how often the clock was read.
+    /// A run of ten and thirty steps to two times, with an observer after each step of this duration
+    /// \[wall s, processor s\] by the clock, or without: its cost, and how often the clock was read.
     fn clocked(observer: Option<[f64; 2]>) -> (Cost, usize) {
         let (clock, times, mut wave) = (Ticking::default(), [10.0 * DT, 40.0 * DT], wave());
         let tell = |_| clock.read();
@@ -722,8 +721,8 @@ mod tests {
         assert_eq!(reads, 9, "once at first, then around each of two stretches and two times");
     }
 
-    /// A run of forty steps that is interrupted after so many, or goes on from the simulations of a
-    /// checkpoint: what it took, and its last checkpoint.
+    /// A run of forty steps that is interrupted after this number, or continues from the simulations of a
+    /// checkpoint: its cost, and its last checkpoint.
     fn resumable(
         stop_at: Option<u64>,
         earlier: Vec<Vec<u8>>,
@@ -756,7 +755,7 @@ mod tests {
         (cost, kept.into_inner().unwrap())
     }
 
-    /// Processor time of the last stretch alone was that of the run.
+    /// The cost of a continued run includes the part before the checkpoint.
     #[test]
     fn what_a_run_took_before_a_checkpoint_is_added_once() {
         let (whole, _) = resumable(None, Vec::new(), None);
@@ -822,7 +821,7 @@ mod tests {
         assert_eq!(names(), [false, true, true, true]);
     }
 
-    /// The frame of the step after which a run was interrupted was missing when the run had gone on.
+    /// The frame of the step after which a run is interrupted must not be missing when the run continues.
     #[test]
     fn a_frame_that_an_interrupt_left_unwritten_is_written_when_the_run_goes_on() {
         let [alone, cut] = [(), ()].map(|()| tempfile::tempdir().unwrap());
@@ -838,7 +837,7 @@ mod tests {
         }
     }
 
-    /// Each of several simulations goes on from its own bytes, and those that had ended count for nothing.
+    /// Each of several simulations continues from its own bytes, and completed ones do not run again.
     #[test]
     fn simulations_that_have_ended_keep_their_order_and_do_not_go_on() {
         let ends = [10.0 * DT, 20.0 * DT, 30.0 * DT];

@@ -33,7 +33,7 @@ impl Tier {
 /// A run of the plan and how it is judged.
 #[derive(Clone, Debug)]
 pub struct Planned {
-    /// What is run.
+    /// The run.
     pub spec: RunSpec,
     /// Judged on the record of this run.
     pub gates: Vec<Gate>,
@@ -50,13 +50,13 @@ impl Planned {
         Self { spec, gates: Vec::new(), timed: false, seconds: 1.0 }
     }
 
-    /// The same run, judged.
+    /// This run with gates.
     pub fn judged(mut self, gates: Vec<Gate>) -> Self {
         self.gates.extend(gates);
         self
     }
 
-    /// The same run, timed.
+    /// This run, timed.
     pub fn timed(self) -> Self {
         Self { timed: true, ..self }
     }
@@ -65,13 +65,13 @@ impl Planned {
 /// A run of a plan with its record and its judgements.
 #[derive(Clone, Debug)]
 pub struct JudgedRun {
-    /// What was planned.
+    /// The plan.
     pub planned: Planned,
     /// The result of the run.
     pub record: Record,
     /// One judgement per gate.
     pub judged: Vec<Judged>,
-    /// Of a run of another code: gates that judge our own method alone.
+    /// For a run of another code: gates that judge our own method only.
     pub not_of_others: Vec<String>,
 }
 
@@ -80,9 +80,9 @@ const NOT_OF_OTHERS: &str = "its bound follows from our own kernel, support and 
                              not state (settings kernel, support, dt)";
 
 impl JudgedRun {
-    /// Of a run of another code: the gates that apply, and the names of the others, each with the reason. All
-    /// apply but those of which it was known before its numbers were read that they cannot: a gate whose
-    /// metric the numbers do not determine fails.
+    /// For a run of another code: the gates that apply, and the names of the others, each with the reason.
+    /// All gates apply except those that cannot apply to any numbers of this code: a gate whose metric the
+    /// numbers do not determine fails.
     pub fn applicable(&self) -> (Vec<&Judged>, Vec<(&str, String)>) {
         let absent = |judged: &Judged| {
             let absent = self.record.absent_as(&judged.gate.metric)?;
@@ -121,8 +121,8 @@ pub fn counts<'a>(judged: impl IntoIterator<Item = &'a Judged>) -> Counts {
     Counts { unexplained, ..Counts::of(verdicts) }
 }
 
-/// The gates that are outside of their bounds for a known reason by its cause, that of most gates first.
-/// Those of a file that states no cause have one that says so.
+/// The gates outside their bounds for a known reason, by cause, in order of decreasing number of gates. Gates
+/// of a file without causes get a cause that states this.
 pub fn by_cause<'a, T>(
     all: impl IntoIterator<Item = T>,
     judged: impl Fn(&T) -> &'a Judged,
@@ -137,10 +137,10 @@ pub fn by_cause<'a, T>(
     causes
 }
 
-/// What belongs to keys, in their order: a short list in place of a tree.
+/// Values by key, in order: a short list in place of a tree.
 pub type Sorted<K, V> = Vec<(K, V)>;
 
-/// What belongs to a key, which is made if there is nothing yet.
+/// The value of a key, which is made if missing.
 pub fn entry<K: Ord, V>(all: &mut Sorted<K, V>, key: K, make: impl FnOnce() -> V) -> &mut V {
     let found = all.binary_search_by(|(other, _)| other.cmp(&key));
     let place = found.unwrap_or_else(|place| {
@@ -150,17 +150,17 @@ pub fn entry<K: Ord, V>(all: &mut Sorted<K, V>, key: K, make: impl FnOnce() -> V
     &mut all[place].1
 }
 
-/// What belongs to a key, if there is something.
+/// The value of a key, if present.
 pub fn find<'a, K: Ord, V>(all: &'a Sorted<K, V>, key: &K) -> Option<&'a V> {
     all.binary_search_by(|(other, _)| other.cmp(key)).ok().map(|place| &all[place].1)
 }
 
-/// The judged runs of a case. A study looks a run up by its [`RunSpec`]; one that is asked for and was not
-/// planned, or of which less is measured than the study asks for, is a fault of the study, which
-/// [`Runs::unplanned`] tells, so that it cannot pass in silence.
+/// The judged runs of a case. A study looks a run up by its [`RunSpec`]; a lookup of a run that was not
+/// planned, or of which fewer metrics are measured than the study needs, is a fault of the study, which
+/// [`Runs::unplanned`] reports.
 #[derive(Debug, Default)]
 pub struct Runs {
-    /// All of them in the order of the plan.
+    /// All runs in the order of the plan.
     pub all: Vec<JudgedRun>,
     by_key: Sorted<RunKey, usize>,
     /// The runs that other codes made, as the store has them.
@@ -201,7 +201,7 @@ impl Runs {
         self.judged(spec).map(|run| &run.record)
     }
 
-    /// The records of these specs, of those that were planned.
+    /// The records of these specs, as far as planned.
     pub fn records(&self, specs: impl IntoIterator<Item = RunSpec>) -> Vec<&Record> {
         specs.into_iter().filter_map(|spec| self.record(&spec)).collect()
     }
@@ -222,7 +222,7 @@ impl Runs {
         record.and_then(|record| record.value(metric)).unwrap_or(f64::NAN)
     }
 
-    /// Runs that were asked for and not planned, in their canonical form.
+    /// Runs that were looked up and not planned, in their canonical form.
     pub fn unplanned(&self) -> Vec<String> {
         let unplanned = touchstone_base::lock(&self.unplanned);
         unplanned.iter().map(|(asked, ())| asked.clone()).collect()

@@ -1,6 +1,6 @@
-//! Sealed problems: settings that are drawn where a reference holds, and gates whose bounds follow from those
-//! of judged runs. Between the resolutions of two judged runs the bound is interpolated, logarithm over
-//! logarithm; beyond them it changes with the formal order.
+//! Sealed problems: settings drawn where a reference holds, and gates whose bounds follow from judged runs.
+//! Between the resolutions of two judged runs the bound is interpolated, logarithm over logarithm; beyond
+//! them it changes with the formal order.
 
 use serde_json::Value;
 use touchstone_base::{
@@ -34,8 +34,8 @@ impl Draws {
         Some(if is_count(case, self.resolution.0) { value } else { 1.0 / value })
     }
 
-    /// The judged runs of a variant whose gates are on a metric; none if one of them is a control or may lie
-    /// outside, for such a bound says nothing of the variant.
+    /// The judged runs of a variant with gates on a metric; none if one of them is a control or has a
+    /// limitation, because its bound does not describe the variant.
     fn levels(&self, case: &dyn Case, variant: &str, metric: &str) -> Vec<Level> {
         let set: Vec<String> = self.set.iter().map(ToString::to_string).collect();
         if !self.variants.is_empty() && !self.variants.contains(&variant) {
@@ -105,7 +105,7 @@ impl Draws {
         }
     }
 
-    /// The judged runs that have the drawn values: those of [`Drawn::Judged`] have the same ones.
+    /// The judged runs with the drawn values: with the values of [`Drawn::Judged`].
     fn with_values<'a>(&self, levels: &'a [Level], settings: &Value) -> Vec<&'a Level> {
         let is_same = |level: &&Level| {
             let judged = self.others.iter().filter(|(_, how)| matches!(how, Drawn::Judged));
@@ -137,7 +137,7 @@ fn is_count(case: &dyn Case, name: &str) -> bool {
 /// `key=value` of the settings of a sealed problem.
 ///
 /// # Errors
-/// If no judged run tells a bound.
+/// If no judged run gives a bound.
 pub fn draw(case: &dyn Case, variant: &str, random: &mut Random) -> Result<Vec<String>, String> {
     let draws = of(case)?;
     let levels = draws.metrics.iter().map(|metric| draws.levels(case, variant, metric));
@@ -187,7 +187,7 @@ pub fn draw(case: &dyn Case, variant: &str, random: &mut Random) -> Result<Vec<S
     Ok(set)
 }
 
-/// What a case declares of sealed problems.
+/// The declaration of sealed problems of a case.
 fn of(case: &dyn Case) -> Result<Draws, String> {
     case.declaration(Tier::Quick).sealed.ok_or_else(|| {
         format!(

@@ -1,4 +1,4 @@
-//! What a run takes, estimated before its first step.
+//! The cost of a run, estimated before its first step.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -6,28 +6,28 @@ use std::fmt;
 use touchstone_report::{seconds, sig};
 use touchstone_solver::{Numbers, Stepper};
 
-/// Processor time of a step for one particle \[s\], and what each of its neighbours adds to it. Over all
-/// compositions and both integrators (a predictor-corrector visits its pairs as often as a leapfrog), the
-/// time of 90 % of the runs of the full tier that take 0.05 s or more lies within 0.5 and 1.9 of this, and
-/// that of all within 0.3 and 4.5, on a processor with AVX-512; their sum is 0.81 of it.
+/// Processor time of a step for one particle \[s\], and for each of its neighbours. Over all compositions and
+/// both integrators (a predictor-corrector visits its pairs as often as a leapfrog), the ratio of actual to
+/// estimated time is within 0.5 and 1.9 for 90 % of the runs of the full tier of 0.05 s or more, and within
+/// 0.3 and 4.5 for all, on a processor with AVX-512; the ratio of the sums is 0.81.
 const STEP: [f64; 2] = [1e-7, 2.5e-9];
-/// Memory of one particle \[bytes\], and what each of its neighbours adds to it: within a factor of two.
+/// Memory of one particle \[bytes\], and of each of its neighbours: within a factor of two.
 const MEMORY: [f64; 2] = [400.0, 0.75];
-/// Memory of what is kept of one step, its text in the record included \[bytes\].
+/// Memory of the stored data of one step, including its text in the record \[bytes\].
 const SAMPLE: f64 = 200.0;
 /// Processor time above which a run is refused \[s\].
 pub const MOST_SECONDS: f64 = 24.0 * 3600.0;
 /// Memory above which a run is refused \[bytes\].
 pub const MOST_BYTES: f64 = 4e9;
 
-/// What a run takes, estimated before its first step.
+/// The cost of a run, estimated before its first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
     /// Time steps.
     pub steps: f64,
-    /// Particles, those of walls included.
+    /// Particles, including wall particles.
     pub particles: f64,
-    /// Those whose pairs are summed: walls are neighbours, and few of them have neighbours of their own.
+    /// Particles whose pairs are summed: wall particles are neighbours, and few of them sum over neighbours.
     pub summed: f64,
     /// Neighbours of a particle.
     pub neighbours: f64,
@@ -38,13 +38,13 @@ pub struct Size {
 }
 
 impl Size {
-    /// So many steps of so many particles, whose kernel reaches over `reach` spacings.
+    /// The cost of these steps of these particles, with a kernel that reaches over `reach` spacings.
     pub fn new([steps, particles]: [f64; 2], reach: f64) -> Self {
         let (summed, neighbours) = (particles, PI * reach * reach);
         Self { steps, particles, summed, neighbours, sweeps: 2.0, samples: 0.0 }
     }
 
-    /// So many steps of a simulation; its kernel tells how far it reaches.
+    /// The cost of these steps of a simulation, with the reach of its kernel.
     pub fn of<X: Numbers>(simulation: &dyn Stepper<X>, steps: f64) -> Self {
         let particles = simulation.data().fluid_count() + simulation.data().walls().len();
         let spacing = simulation.data().fluid().next().map_or(1.0, |(m, p)| (m / p.density).sqrt());
@@ -70,7 +70,7 @@ impl Size {
         self.particles * (MEMORY[0] + MEMORY[1] * self.neighbours) + SAMPLE * self.samples
     }
 
-    /// Is it more than a run may take unless that is asked for?
+    /// Whether it exceeds the limit of a run without explicit permission.
     pub fn is_too_much(&self) -> bool {
         let is_within = self.seconds() <= MOST_SECONDS && self.bytes() <= MOST_BYTES;
         !is_within // so is a size that is not a number

@@ -27,8 +27,8 @@ pub const MOST_BYTES: u64 = 1 << 30;
 /// Begins the name of the record of a run that another code made.
 const SUBMITTED: &str = "submitted-";
 
-/// Begins the name of the file that says that a run is under way, or why it failed. Its age is the time
-/// since the last sign of life: what a process that was killed left is told from a run that goes on.
+/// Prefix of the file that states that a run is under way, or why it failed. Its age is the time since the
+/// last sign of life, which separates a run that continues from the remains of a killed process.
 const BEGUN: &str = ".begun-";
 /// Wall time between signs of life, and without one after which a run does not go on any more.
 const SIGN_EVERY: Duration = Duration::from_secs(20);
@@ -39,17 +39,17 @@ const MOST_REASON: u64 = 1 << 16;
 /// Why a store has no record of a run.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Pending {
-    /// Nobody has begun it since a record was last there.
+    /// Not begun since the last record, if any.
     Missing,
-    /// It was begun, and there was a sign of life within two minutes.
+    /// Begun, with a sign of life within two minutes.
     Running,
-    /// It was begun and ended without a word, as by a kill or a machine that failed.
+    /// Begun and ended without notice, as by a kill or a failing machine.
     Stopped,
-    /// It ended without a record, for this reason.
+    /// Ended without a record, for this reason.
     Failed(String),
 }
 
-/// A run that is under way, as its store tells others. That this cannot be written costs no run.
+/// A run under way, as its store reports it to other processes. A failure to write this file stops no run.
 pub struct Begun<'a> {
     folder: &'a OutputFolder,
     name: String,
@@ -57,7 +57,7 @@ pub struct Begun<'a> {
 }
 
 impl Begun<'_> {
-    /// Makes the file anew: through a link one would empty what that leads to, and wait at a pipe.
+    /// Makes the file anew: writing through a link would empty its target, and a pipe would block.
     fn sign(&self) {
         self.remove();
         let _ = File::create_new(self.folder.path().join(&self.name));
@@ -79,7 +79,7 @@ impl Begun<'_> {
         }
     }
 
-    /// It has ended, without a record if there is a reason for that.
+    /// The run has ended; without a record if there is a reason.
     pub fn end(self, failed: Option<&str>) {
         match failed {
             Some(why) => drop(self.folder.write(&self.name, why.as_bytes())),
@@ -151,10 +151,10 @@ impl Store {
         Ok(serves.then_some(record))
     }
 
-    /// Writes a record in place of an older one of the same run.
+    /// Writes a record and replaces an older one of the same run.
     ///
     /// # Errors
-    /// If the file cannot be written, or the record holds what a document cannot.
+    /// If the file cannot be written, or a document cannot hold the record.
     pub fn write(&self, record: &Record) -> Result<PathBuf, FileError> {
         let name = Self::name(&record.spec());
         let path = self.path().join(&name);
@@ -162,7 +162,7 @@ impl Store {
         self.folder.write(&name, record.to_json().map_err(refused)?.as_bytes())
     }
 
-    /// Says that a run is under way.
+    /// Marks a run as under way.
     pub fn begin(&self, spec: &RunSpec) -> Begun<'_> {
         let name = format!("{BEGUN}{}", Self::name(spec));
         let begun = Begun { folder: &self.folder, name, last: Mutex::new(Instant::now()) };
@@ -198,14 +198,15 @@ impl Store {
         paths(path, "").map_err(refused)?.into_iter().map(read).collect()
     }
 
-    /// The same, with an error in the place of a file that is no record; none of a folder that cannot be read.
+    /// All records of a folder, with an error for each file that is no record; none for a folder that cannot
+    /// be read.
     pub fn each(path: &Path) -> impl Iterator<Item = Result<Record, FileError>> {
         paths(path, "").unwrap_or_default().into_iter().map(read)
     }
 }
 
-/// The files of a folder that are records and whose names begin so, sorted. What a process that was killed
-/// had not finished is none: its name begins with a dot.
+/// The files of records in a folder with names that start with `begin`, sorted. Unfinished files of a killed
+/// process are not included: their names start with a dot.
 fn paths(folder: &Path, begin: &str) -> io::Result<Vec<PathBuf>> {
     let mut paths: Vec<PathBuf> =
         fs::read_dir(folder)?.flatten().map(|entry| entry.path()).collect();
@@ -268,7 +269,7 @@ mod tests {
         assert_eq!(Store::all(store.path()).unwrap(), [whole]);
     }
 
-    /// A record with more metrics than are asked for serves; one with fewer is made again.
+    /// A record with more metrics than requested serves; one with fewer is made again.
     #[test]
     fn a_record_serves_whoever_asks_for_no_more_than_was_measured() {
         const GAP: MetricKey = MetricKey::new("gap", "-", "E(t) - E(0)");
@@ -285,7 +286,7 @@ mod tests {
         assert!(serves(&spec) && !serves(&spec.clone().measure_all()));
     }
 
-    /// A run that goes on is told from one whose process was killed, and from one that failed.
+    /// A running run, a killed one and a failed one have different states.
     #[test]
     fn what_has_no_record_says_why() {
         let folder = tempfile::tempdir().unwrap();

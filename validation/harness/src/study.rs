@@ -1,11 +1,11 @@
-//! A study: a result from many runs, with what the report shows and the gates that judge it.
+//! A study: a result from many runs, with its part of the report and its gates.
 
 use touchstone_base::gate::Gate;
 use touchstone_report::Block;
 
 use crate::runs::Judged;
 
-/// A result from many runs: what the report shows, and the gates that judge it.
+/// A result from many runs: its part of the report, and its gates.
 #[derive(Clone, Debug)]
 pub struct Study {
     /// Anchor in the report: letters, digits, hyphens.
@@ -14,7 +14,7 @@ pub struct Study {
     pub title: String,
     /// Prose, figures, tables.
     pub blocks: Vec<Block>,
-    /// Judgements on what was found.
+    /// Judgements of the results.
     pub judged: Vec<Judged>,
 }
 
@@ -24,18 +24,18 @@ impl Study {
         Self { id: id.into(), title: title.into(), blocks: Vec::new(), judged: Vec::new() }
     }
 
-    /// The same with one more block.
+    /// Adds a block.
     pub fn block(mut self, block: impl Into<Block>) -> Self {
         self.blocks.push(block.into());
         self
     }
 
-    /// The same with one more paragraph.
+    /// Adds a paragraph.
     pub fn prose(self, text: impl Into<String>) -> Self {
         self.block(Block::Prose(vec![text.into()]))
     }
 
-    /// The same with a judged value.
+    /// Adds a judged value.
     pub fn judge(mut self, gate: Gate, value: f64) -> Self {
         self.judged.push(Judged::new(gate, Some(value)));
         self

@@ -24,13 +24,13 @@ use crate::{
 pub struct CaseResults {
     /// The case.
     pub case: &'static dyn Case,
-    /// Its runs, in the order of the plan.
+    /// Runs, in the order of the plan.
     pub runs: Runs,
-    /// Its studies.
+    /// Studies.
     pub studies: Vec<Study>,
     /// Its row on the first screen of the report.
     pub row: Option<Subject>,
-    /// What it declares.
+    /// Declaration.
     pub declared: Declaration,
 }
 
@@ -66,7 +66,7 @@ impl CaseResults {
     }
 }
 
-/// What a gate judges.
+/// The owner of a gate.
 #[derive(Clone, Copy)]
 pub enum Of<'a> {
     /// One run.
@@ -75,7 +75,7 @@ pub enum Of<'a> {
     Study(&'a Study),
 }
 
-/// A judgement with what it is of.
+/// A judgement with its owner.
 #[derive(Clone, Copy)]
 pub struct JudgedOf<'a> {
     /// The case.
@@ -134,7 +134,7 @@ pub fn plans(cases: &[&'static dyn Case], tier: Tier) -> Plans {
     cases.iter().map(|&case| (case, plan::of_case(case, tier))).collect()
 }
 
-/// Plans the cases, makes what the store lacks, judges.
+/// Plans the cases, makes the missing runs of the store, and judges.
 pub fn run(cases: &[&'static dyn Case], making: &Making) -> Suite {
     let plans = plans(cases, making.tier);
     let made = make::make(make::stored(&make::jobs(plans.clone()), making), making);
@@ -160,7 +160,7 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
                 let of_case = records.iter().filter(|record| record.run.case == case.name());
                 of_case.map(|record| submitted(case, record.clone())).collect()
             };
-            // Ours, made in turn with others, are those that the program contains.
+            // Our runs made in turn with other codes are part of the program.
             let others = made.submissions.iter_mut();
             others.for_each(|record| drop(record.numerics.remove(SESSION)));
             (runs.submissions, runs.peers) = (of_case(&made.submissions), of_case(&made.peers));
@@ -178,13 +178,13 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
     Suite { tier, cases, made }
 }
 
-/// The run of another code, judged by the gates that our plans have for the same settings: see
+/// The run of another code, judged by the gates of our plans for the same settings: see
 /// [`Gate::for_submission`].
 pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     leave_out_ours(case, &mut record);
     let spec = record.spec();
     let of = spec.submission.as_deref();
-    // Bounds of sealed problems are those of any method.
+    // Bounds of sealed problems apply to any method.
     let is_sealed = of.is_some_and(|of| of.seed.is_some());
     let states = is_sealed || of.is_some_and(|of| of.states_our_method);
     let gates = match is_sealed {
@@ -202,7 +202,8 @@ pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     JudgedRun { not_of_others, ..JudgedRun::new(Planned::new(spec).judged(judged), record) }
 }
 
-/// Leaves out of a run of another code what only ours have, such as `impulse` and `impulse@phase1`.
+/// Removes metrics that only our own runs have, such as `impulse` and `impulse@phase1`, from a run of another
+/// code.
 pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
     let Declaration { costly, stepwise, of_methods, .. } = case.declaration(Tier::Quick);
     for (metrics, why) in
@@ -210,7 +211,7 @@ pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
     {
         let is_ours = |name: &str| record::is_of(metrics, name);
         record.take_out(&|name, _| is_ours(name), &why);
-        // Of a run that diverged the case says something else, or nothing.
+        // For a diverged run the case states another reason, or none.
         let named = record.absent.iter_mut().filter(|(name, _)| is_ours(name));
         named.for_each(|(_, reason)| *reason = why.clone());
         for name in metrics.iter().map(|metric| String::from(*metric)) {
@@ -219,7 +220,7 @@ pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
     }
 }
 
-/// A failing gate if a study asked for a run that the case did not plan.
+/// A failing gate if a study looked up a run that the case did not plan.
 fn unplanned(case: &dyn Case, runs: &Runs) -> Option<Study> {
     let asked = runs.unplanned();
     if asked.is_empty() {

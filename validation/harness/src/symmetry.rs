@@ -1,5 +1,5 @@
-//! A battery of exact symmetries: the particles that another observer has after a few steps are those that we
-//! have, but for round-off. It needs no reference, and judges our own runs and those of other codes alike.
+//! A battery of exact symmetries: the particles of another observer after a few steps equal ours up to
+//! round-off. It needs no reference, and judges our own runs and other codes alike.
 
 use nalgebra::Vector2;
 use touchstone_base::{record::Profile, spec::RunSpec};
@@ -14,16 +14,16 @@ use crate::{
     size::Size,
 };
 
-/// The largest difference between the particles of two observers, against what round-off explains.
+/// The largest difference between the particles of two observers, relative to round-off.
 #[derive(Clone, Debug)]
 pub struct Difference {
     /// The time as the first of them has it \[s\].
     pub time: f64,
     /// The difference, of a place \[h\], a velocity \[c0\] or a density \[ρ0\]; NaN if particles are missing.
     pub value: f64,
-    /// What round-off explains.
+    /// The bound by round-off.
     pub floor: f64,
-    /// What differs.
+    /// The quantity with the difference.
     pub quantity: &'static str,
     /// The number of the particle, as the first observer has it.
     pub particle: u32,
@@ -42,7 +42,7 @@ impl Difference {
     }
 }
 
-/// The problem as an observer sees it, and the particles at its times, or at more.
+/// The problem in the frame of an observer, and the particles at its times, or at more.
 pub type Seen<'a> = (&'a Outline, &'a [Frame]);
 
 fn moves(outline: &Outline) -> Vec<bool> {
@@ -69,9 +69,9 @@ fn told((outline, frames): Seen, k: usize) -> Vec<Placed> {
     all
 }
 
-/// What round-off explains a step after the other: a step rounds place, velocity and density, in the units h,
-/// c0 and ρ0 by ε times their size; no longer than h/c0, it makes of an error of a force no larger error of a
-/// velocity. Velocities keep what steps add, so that after n steps places differ by n² times that at most, as
+/// The bound of round-off over consecutive steps: a step rounds place, velocity and density, in the units h,
+/// c0 and ρ0 by ε times their size; with a step of at most h/c0, an error of a force becomes no larger error
+/// of a velocity. Errors of velocities add up, so after n steps places differ by at most n² times this, as
 /// long as the motion itself does not amplify it.
 fn rounding(outline: &Outline) -> f64 {
     let (h, c0) = (outline.medium.h, outline.medium.sound_speed);
@@ -82,7 +82,7 @@ fn rounding(outline: &Outline) -> f64 {
     f64::EPSILON * sizes.fold(1.0, f64::max)
 }
 
-/// What round-off explains after so many steps.
+/// The bound of round-off after this number of steps.
 pub fn floor(base: &Outline, other: &Outline, steps: f64) -> f64 {
     rounding(base).max(rounding(other)) * steps * steps
 }
@@ -122,7 +122,7 @@ pub fn far_away((outline, frames): Seen) -> Option<(usize, usize, String)> {
     })
 }
 
-/// Compares what two observers of one problem have, of which the first sees it as it is. `steps` are those to
+/// Compares two observers of one problem, the first in the original frame. `steps` is the number of steps to
 /// the last time.
 pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
     let Outline { medium, times, domain, .. } = base.0;
@@ -142,7 +142,7 @@ pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
         let (ours, theirs) = (told(base, k), told(other, k));
         let ids = |all: &[Placed]| all.iter().map(|placed| placed.id).collect::<Vec<_>>();
         if ours.is_empty() || ids(&ours) != ids(&theirs) {
-            // One of them diverged.
+            // One run diverged.
             worst = Difference { time, value: f64::NAN, floor, ..worst }.or(worst);
         }
         for (a, b) in ours.iter().zip(&theirs) {
@@ -160,7 +160,7 @@ pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
     worst
 }
 
-/// The problem and the particles of our own run of a spec as an observer sees them; no particles if it
+/// The problem and the particles of our own run of a spec in the frame of an observer; no particles if it
 /// diverged.
 fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<Frame>), RunError> {
     let mut frames = Vec::new();
@@ -180,12 +180,11 @@ fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<F
     Ok((outline, frames))
 }
 
-/// What the particles that two observers have at three times take of memory, over what is kept of a step of a
-/// particle.
+/// Memory of the particles of two observers at three times, over the stored data of a particle in one step.
 const KEPT: f64 = 3.0;
 
-/// What the batteries of runs take together, those that are refused left out: all relations, one after the
-/// other, and the particles of all specs at the same time.
+/// The total cost of the batteries of runs without refused ones: all relations in sequence, and the particles
+/// of all specs at once.
 pub fn size(specs: &[(&dyn Case, RunSpec)]) -> Size {
     let (mut all, relations) = (Size::new([0.0, 0.0], 0.0), Relation::ALL.len() as f64);
     for (case, spec) in specs {
@@ -202,19 +201,19 @@ pub fn size(specs: &[(&dyn Case, RunSpec)]) -> Size {
     all
 }
 
-/// What of a state is below this when squared \[-\] is lost, in one unit and not in another.
+/// Parts of a state with a square below this \[-\] underflow, in one unit and not in another.
 const UNDERFLOW: f64 = 1e-150;
 
-/// What a relation comes to: the largest difference, or why it does not hold.
+/// Result of a relation: the largest difference, or why it does not apply.
 pub type Found = (Relation, Result<Difference, RunError>);
 
-/// What each relation comes to for our own run of a spec. Those that round nothing must give the same
-/// bits, but for what underflows.
+/// Results of all relations for our own run of a spec. Relations that round nothing must give equal bits, up
+/// to underflow.
 ///
 /// # Errors
 /// If the run is refused, or is none of a scene.
 pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<Found>, RunError> {
-    // A relation is asked at a few early times, which a scene that fails later passes.
+    // A relation is tested at a few early times, which a scene passes even if it fails later.
     let spec = &spec.clone().allow_unstable();
     let (base, frames) = seen(case, spec, Relation::Same)?;
     let steps = base.times.last().map_or(0.0, |end| (end / base.dt).round());

@@ -1,7 +1,7 @@
-//! The table of the runs of a case: variants over values of settings, for each tier, with what they are for.
+//! The table of the runs of a case: variants over values of settings, for each tier, with their groups.
 //!
-//! A case states its runs here once. Its plan, its ladders and its studies look them up by what they are for,
-//! so none of them states variants, resolutions or tiers again.
+//! A case states its runs here once. Its plan, its ladders and its studies look them up by group, so none of
+//! them states variants, resolutions or tiers again.
 
 use touchstone_base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
 use touchstone_report::ColourMap;
@@ -21,7 +21,7 @@ const DISORDER: f64 = 1e-6;
 
 /// One run of a table.
 pub struct Row<T, G> {
-    /// What it is for.
+    /// Its group.
     pub group: G,
     /// Name of the variant.
     pub variant: &'static str,
@@ -39,7 +39,7 @@ impl<T, G> Row<T, G> {
     }
 }
 
-/// The runs of a case in one tier. `G` is what runs are for, an enum of the case.
+/// The runs of a case in one tier. `G` is the group of a run, an enum of the case.
 pub struct Table<T: 'static, G> {
     case: &'static Composed<T>,
     tier: Tier,
@@ -88,7 +88,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         &mut self.rows[place]
     }
 
-    /// Adds the members of an ensemble, in both tiers: a run a seed, all of the same settings.
+    /// Adds the members of an ensemble, in both tiers: one run for each seed, with equal settings.
     pub fn starts(
         &mut self,
         group: G,
@@ -144,7 +144,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         ladder
     }
 
-    /// A picture of the runs that keep particles; `panels` gives those of one.
+    /// A picture of the runs that keep particles; `panels` gives the panels of one run.
     pub fn picture(
         &self,
         texts: [&'static str; 3],

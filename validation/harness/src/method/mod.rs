@@ -80,7 +80,7 @@ pub fn scene<S: Standard>(parts: Parts<S::Extra>) -> Scene<S> {
     }
 }
 
-/// What no scheme needs to know: parts with their errors and their disorder.
+/// The scheme-independent part: parts with deliberate errors and disorder.
 fn setting<X: Numbers>(mut parts: Parts<X>) -> (Medium, Vec<PlaneWall>, Setting<X>) {
     mutate(&mut parts);
     let pairs = parts.particles.iter().zip(&parts.surface).filter(|(p, _)| p.role == Role::Wall);
@@ -94,16 +94,16 @@ fn setting<X: Numbers>(mut parts: Parts<X>) -> (Medium, Vec<PlaneWall>, Setting<
     (medium, mirrors, Setting { feet, skin, skin_share, limits, parallel_from, ..usual })
 }
 
-/// A scheme without its type: its properties, and how it is built. `D` is what a
-/// case needs of a simulation beyond [`Stepper`].
+/// A scheme without its type: its properties and its constructor. `D` is the interface of its simulations,
+/// [`Stepper`] or more.
 pub struct Method<X = (), D: ?Sized = dyn Stepper<X>> {
-    /// What is known of it.
+    /// Properties.
     pub properties: Properties,
     /// The simulation of a scene with these parts.
     pub build: fn(Parts<X>) -> Result<Box<D>, SceneError>,
 }
 
-// Derived, it would ask for clones of `X` and `D`, which a method has none of.
+// Not derived, because a derived `Clone` would require clones of `X` and `D`.
 impl<X, D: ?Sized> Clone for Method<X, D> {
     fn clone(&self) -> Self {
         Self { properties: self.properties.clone(), build: self.build }

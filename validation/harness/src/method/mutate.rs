@@ -58,7 +58,7 @@ fn disturb<X: Numbers>(parts: &mut Parts<X>, Disorder { most, seed }: Disorder) 
     }
 }
 
-/// Makes the parts those that another observer sees.
+/// Transforms the parts to the frame of another observer.
 ///
 /// # Errors
 /// Why the relation is no symmetry of the scene.

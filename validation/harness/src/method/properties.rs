@@ -1,4 +1,4 @@
-//! What is known of a method before anything is built.
+//! Properties of a method that need no simulation.
 
 use nalgebra::Vector2;
 use touchstone_maths::theory::{Stepping, lattice::SquareLattice, time_step};
@@ -24,7 +24,7 @@ impl<S> Standard for S where
 {
 }
 
-/// What is known of a method before anything is built.
+/// Properties of a method that need no simulation.
 #[derive(Clone, Debug)]
 pub struct Properties {
     /// Name of the kernel.
@@ -33,7 +33,7 @@ pub struct Properties {
     pub integrator: &'static str,
     /// Name of the walls.
     pub walls: &'static str,
-    /// Where the first row of boundary particles lies.
+    /// Position of the first row of boundary particles.
     pub first_row: FirstRow,
     /// Do its walls read [`Parts::surface`](super::Parts::surface)?
     pub has_feet: bool,
@@ -43,7 +43,7 @@ pub struct Properties {
     pub support: f64,
     /// The theory of its time step.
     pub theory: time_step::Integrator,
-    /// The largest stable step in a medium at rest \[s\], of a method whose waves are not those of terms.
+    /// The largest stable step in a medium at rest \[s\], for a method whose waves do not follow from terms.
     pub limit: Option<fn(&Medium) -> f64>,
     /// The settings that only its terms and walls read.
     pub uses: Vec<Knob>,
@@ -51,14 +51,14 @@ pub struct Properties {
     pub terms: Vec<&'static str>,
     /// W from h and r².
     weight: fn(f64, f64) -> f64,
-    /// The square lattice as its kernel sees it, from h/dx and η²/h².
+    /// The symbols of the square lattice with its kernel, from h/dx and η²/h².
     lattice: fn(f64, f64) -> SquareLattice,
     /// Are gradients corrected by the inverse of the moments?
     pub is_corrected: bool,
 }
 
 impl Properties {
-    /// Those of a scheme.
+    /// The properties of a scheme.
     pub fn of<S: Standard>() -> Self {
         let mut uses = Vec::new();
         S::Forces::uses(&mut uses);
@@ -110,7 +110,7 @@ impl Properties {
         }
     }
 
-    /// The square lattice with these h/dx and η²/h², as its forces see it.
+    /// The symbols of the square lattice with these h/dx and η²/h², for its forces.
     pub fn square(&self, [h_over_dx, eta2_over_h2]: [f64; 2]) -> SquareLattice {
         let lattice = (self.lattice)(h_over_dx, eta2_over_h2);
         if self.is_corrected { lattice.corrected() } else { lattice }

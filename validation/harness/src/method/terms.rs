@@ -13,11 +13,12 @@ use crate::medium::{Knob, Medium};
 
 /// A term that can be constructed from a medium.
 pub trait FromMedium: Sized {
-    /// Its value.
+    /// The term with the constants of a medium.
     fn new(medium: &Medium) -> Self;
-    /// Adds the settings that only some terms read and this one does, including those of the terms inside it.
+    /// Adds the settings that this term reads and some other terms do not, including the settings of the
+    /// terms inside it.
     fn uses(_: &mut Vec<Knob>) {}
-    /// Adds the term as an equation, and those inside it.
+    /// Adds the term as an equation, and the terms inside it.
     fn state(_: &mut Vec<&'static str>);
 }
 
@@ -111,7 +112,7 @@ from_medium! {
         |m| (A::new(m), B::new(m), C::new(m), D::new(m)), "";
 }
 
-/// Where the first row of boundary particles lies.
+/// Position of the first row of boundary particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FirstRow {
     /// There are no boundary particles: mirror particles, or no wall.
@@ -139,7 +140,7 @@ impl FirstRow {
 pub trait Boundary: Sized {
     /// The name in reports.
     const NAME: &str;
-    /// Its boundary particles.
+    /// Position of its boundary particles.
     const FIRST_ROW: FirstRow;
     /// The settings that only some walls read and these do.
     const USES: &[Knob] = &[];

@@ -1,4 +1,4 @@
-//! The error budget: the same run with one thing changed at a time.
+//! The error budget: one run with one thing changed at a time.
 
 use touchstone_report::Cell;
 
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use crate::studies::tests::{ERROR, column, runs, spec, tables};
 
-    /// Changes of the run at n = 0, 1, and so on: their names, parts, what they are compared with, errors.
+    /// Changes of the run at n = 0, 1, and so on: their names, parts, runs of comparison, and errors.
     fn study_of(changes: &[(&str, &'static str, usize, f64)]) -> Study {
         let of = |n: usize| -> RunSpec { spec("seed", n) };
         let change =

@@ -303,7 +303,8 @@ mod tests {
         }
     }
 
-    /// The card said "completed for" the value of a torn run, and of a variant that diverged in another run.
+    /// The card must not state "completed for" the value of a torn run, or of a variant that diverged in
+    /// another run.
     #[test]
     fn a_variant_breaks_at_its_least_value_that_is_torn_or_diverges() {
         let of = |variant: &str, n, error: f64| run(spec(variant, n), |r| r.put(ERROR, error));

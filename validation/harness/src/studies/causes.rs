@@ -1,8 +1,8 @@
-//! Why gates do not detect an error of a constant, whatever the case.
+//! Causes why gates of any case do not detect an error of a constant.
 
 use touchstone_base::gate::Cause;
 
-/// What is measured does not depend on the constant.
+/// The metrics do not depend on the constant.
 pub static NOT_MEASURED: Cause = Cause::new(
     "Some constants, such as the density of an incompressible flow, hardly affect what is measured, so no \
      gate detects an error in them.",

@@ -25,9 +25,9 @@ use crate::{
 pub(super) struct Point {
     /// Spacing.
     pub spacing: f64,
-    /// What it is called in figures: its resolution.
+    /// Label in figures: its resolution.
     pub label: String,
-    /// Its error; NaN if it has none.
+    /// Error; NaN if there is none.
     pub error: f64,
     /// Processor seconds of the stepping, sorted \[s\].
     pub seconds: Vec<f64>,
@@ -80,7 +80,7 @@ pub(super) fn points(error: &MetricName, ladder: &Ladder, runs: &Runs) -> Vec<Po
     of.collect()
 }
 
-/// What a run costs.
+/// The cost of a run.
 pub(super) type Cost = fn(&Point) -> f64;
 
 /// Points that no other point beats in both error and cost, cheapest first.
@@ -96,8 +96,8 @@ fn pareto<'a>(points: impl Iterator<Item = &'a Point>, cost: Cost) -> Vec<&'a Po
     front
 }
 
-/// The least median of a point of a ladder with at most this error, of those whose finer levels have at most
-/// this error too: a single level may be good because parts of its error cancel. NaN if there is none.
+/// The least median cost of the points of a ladder with at most this error and with finer levels of at most
+/// this error: a single level may be good because parts of its error cancel. NaN if there is none.
 fn cheapest(ladder: &[Point], error: f64) -> f64 {
     let holds = |point: &&Point| {
         let finer = ladder.iter().filter(|p| p.spacing <= point.spacing);
@@ -106,10 +106,10 @@ fn cheapest(ladder: &[Point], error: f64) -> f64 {
     ladder.iter().filter(holds).map(Point::median).fold(f64::NAN, f64::min)
 }
 
-/// The errors of which the table tells the least run time that reaches them.
+/// The errors for which the table states the least run time.
 const GOALS: [f64; 2] = [1e-2, 1e-3];
 
-/// What is found of a ladder.
+/// Results for a ladder.
 struct Row<'a> {
     of: &'a Ladder,
     points: Vec<Point>,
@@ -230,7 +230,7 @@ const LABELS: &str = "*Orders agree*: every local order is within 15 % of the fi
 const TIMES: &str = "Times are the least median run time on one core of a level whose error, and that of \
     every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
 
-/// Orders, intervals, and what errors cost.
+/// Orders, intervals, and the costs of errors.
 fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
     let about = format!("Observed orders of accuracy. {} {LABELS} {TIMES}", accuracy.about);
     let finest = |row: &Row| row.points.last().map_or(f64::NAN, |p| p.error);
@@ -279,7 +279,7 @@ mod tests {
         points.into_iter().map(|p| p.label.clone()).collect()
     }
 
-    /// What is a tenth worse at a higher cost is beaten, what is a hundredth better is not.
+    /// A run that is a tenth worse at a higher cost is dropped, one that is a hundredth better is kept.
     #[test]
     fn the_front_drops_what_is_a_little_worse_and_keeps_what_is_a_little_better() {
         let points = [
@@ -297,13 +297,13 @@ mod tests {
         assert_eq!(names(pareto(work.iter(), |p| p.pairs)), ["a hundredth better"]);
     }
 
-    /// The median, not the mean or the fastest, is what a level costs.
+    /// The cost of a level is the median, not the mean or the minimum.
     #[test]
     fn the_cost_is_a_median_and_every_finer_level_counts() {
         let disturbed = [point("disturbed once", 1e-3, &[2.0, 2.1, 30.0])];
         assert_eq!((cheapest(&disturbed, 1e-3), disturbed[0].spread()), (2.1, (2.0, 30.0)));
         assert!(cheapest(&disturbed, 1e-5).is_nan());
-        // A failure has no error, so what is coarser than it does not count either.
+        // A failure has no error, so coarser levels do not count either.
         let failed = Point { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
         assert!(cheapest(&[point("failed later", 1e-3, &[1.0]), failed], 1e-2).is_nan());
     }
@@ -377,7 +377,7 @@ mod tests {
         assert!(judged.verdict.is_failure() && judged.value.is_some_and(f64::is_nan), "{judged:?}");
         let label = &column(tables(&study)[0], "label")[0];
         assert!(label.starts_with("no order: the level with spacing 0.05"), "{label}");
-        // What is coarser than it has no cost either.
+        // Coarser levels have no cost either.
         assert_eq!(column(tables(&study)[0], &format!("time to {}", percent(0.01, 1))), ["–"; 2]);
     }
 }

@@ -22,7 +22,7 @@ pub fn study(curves: &Curves, runs: &Runs) -> Study {
     Study::new(&curves.id, &curves.title).block(figure.panel_size(360.0, 270.0))
 }
 
-/// A name has one colour in all panels, which is that of its position among `names`.
+/// A name has one colour in all panels, by its position among `names`.
 fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     let mut plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
     for (name, points) in &of.references {

@@ -1,4 +1,4 @@
-//! Ensembles: until when their members agree, and how what comes later is distributed.
+//! Ensembles: the time until which their members agree, and the distribution after it.
 
 use touchstone_base::{
     gate::{Bound, Evidence, Gate},
@@ -20,7 +20,7 @@ use crate::{
 const DRAWN: usize = 160;
 const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// An ensemble, and the records of those of its members that reached their end.
+/// An ensemble, and the records of the members that reached their end.
 struct Made<'a> {
     of: &'a Ensemble,
     records: Vec<&'a Record>,
@@ -96,7 +96,7 @@ pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
     study
 }
 
-/// A distribution without those members that ended early would be that of the lucky ones.
+/// A distribution without the members that ended early would be biased.
 fn complete(made: &Made) -> Judged {
     let (id, all) = (format!("{}.members", made.of.id), made.of.members.len() as f64);
     let because =
@@ -214,8 +214,8 @@ fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
     plot.without_legend()
 }
 
-/// Least, quartiles, median and largest of the members at each time that is drawn; none of members that are
-/// not sampled at the same times.
+/// Least, quartiles, median and largest of the members at each drawn time; none for members sampled at
+/// different times.
 fn quantiles(members: &[Curve]) -> Vec<(f64, [f64; 5])> {
     let Some(first) = members.first().filter(|f| members.iter().all(|m| m.len() == f.len())) else {
         return Vec::new();

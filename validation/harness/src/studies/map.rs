@@ -41,8 +41,8 @@ mod tests {
     use super::*;
     use crate::studies::tests::{ERROR, runs, spec};
 
-    /// Cells of x = 1, 2, 3 and y = 10, 20: the run of x + y, whose error is that; the cell of 2 and 10 was
-    /// not run, that of 3 and 20 has two runs.
+    /// Cells of x = 1, 2, 3 and y = 10, 20: the run of x + y has this sum as its error; the cell of 2 and 10
+    /// has no run, the cell of 3 and 20 has two.
     #[test]
     fn a_cell_is_of_the_runs_of_its_column_and_row() {
         let cell = |x: usize, y: usize| -> Vec<RunSpec> {

@@ -32,7 +32,7 @@ pub(crate) fn anchor(case: &str, study: &str) -> String {
     format!("{}-{study}", case.replace('_', "-"))
 }
 
-/// All studies of a declaration, in the order of the report: those of the case alone first.
+/// All studies of a declaration, in the order of the report: studies of the case alone first.
 pub fn of(case: &str, declared: &Declaration, runs: &Runs) -> Vec<Study> {
     let mut studies = declared.studies.as_ref().map_or_else(Vec::new, |own| own(runs));
     studies.extend(declared.curves.iter().map(|curves| curves::study(curves, runs)));

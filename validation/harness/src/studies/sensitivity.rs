@@ -30,7 +30,7 @@ const ABOUT: &str = "What the gates can detect. One constant of the scene is mul
 /// An error that means that none up to 30 % is detected.
 const NONE: f64 = 1.0;
 
-/// A constant and what the searches found: the best of all runs.
+/// A constant and the results of the searches: the best of all runs.
 struct Row<'a> {
     watched: &'a Watched,
     detected: Option<&'a Record>,
@@ -42,7 +42,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// The smallest detected error; NaN if a search is missing, for that says nothing.
+    /// The smallest detected error; NaN if a search is missing.
     fn error(&self) -> f64 {
         let error = self.detected.and_then(|record| record.value(DETECTED)).unwrap_or(NONE);
         if self.is_whole { error } else { f64::NAN }
@@ -105,7 +105,7 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
     Row { watched, detected, undetected, faults, is_whole }
 }
 
-/// The gates of the runs that a gross fault fails, those that compare the program with itself not counted.
+/// The gates of the runs that fail with a gross fault, without gates that compare the program with itself.
 fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> usize {
     let mut failed = Vec::new();
     for (healthy, spec) in sensitivity.faulty(of, factor) {
@@ -175,7 +175,7 @@ mod tests {
         }
     }
 
-    /// Of two runs that are searched one was made, and detects 2 %: the other one is missing all the same.
+    /// One of two searched runs was made, and detects 2 %: the other one is still missing.
     #[test]
     fn one_search_of_two_is_not_all() {
         let of = [spec("seed", 1), spec("seed", 2)];
@@ -186,8 +186,7 @@ mod tests {
         assert_eq!(study.judged[0].judgement.verdict, Verdict::Fail);
     }
 
-    /// What a search has found: the smallest detected error, and the largest smaller one that is not
-    /// detected.
+    /// Result of a search: the smallest detected error, and the largest smaller one that is not detected.
     fn search(detected: Option<f64>, undetected: Option<f64>) -> impl FnOnce(&mut Record) {
         move |record: &mut Record| {
             if let Some(error) = detected {
@@ -200,9 +199,8 @@ mod tests {
         }
     }
 
-    /// Of two runs, that counts which detects the smaller error, in whichever order they come, with its own
-    /// gates and its own largest error that goes undetected. A later run that detects nothing had left its
-    /// own 30 % beside an error of 2 % that another one detects.
+    /// The run that detects the smaller error counts, in any order, with its own gates and its own largest
+    /// undetected error. A later run that detects nothing must not add its 30 % to the 2 % of another one.
     #[test]
     fn the_run_that_sees_most_counts() {
         let of = [spec("seed", 1), spec("seed", 2)];

@@ -1,4 +1,4 @@
-//! Runs that other codes made of a case: how they were judged, and their errors over run time beside ours.
+//! Runs of other codes for a case: their verdicts, and their errors over run time together with ours.
 
 use touchstone_base::{
     gate::Verdict,
@@ -30,7 +30,7 @@ struct Mark<'a> {
 }
 
 impl Mark<'_> {
-    /// Is it one of those that the program contains? Every code may call itself as it likes.
+    /// Whether it is a run that the program contains. Other codes may choose any name.
     fn is_ours(&self) -> bool {
         self.of.code == OURS && self.session.is_some()
     }
@@ -41,8 +41,8 @@ fn session(record: &Record) -> Option<&str> {
     record.numerics.get(SESSION)?.as_str()
 }
 
-/// The submissions that have an error of this study; of the same method with as many particles the fastest,
-/// for one that goes on for longer has no other error.
+/// The submissions with an error of this study; for equal methods and numbers of particles only the fastest,
+/// because a longer run has no other error.
 fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.run.submission.as_ref()?);
@@ -71,8 +71,8 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
     first
 }
 
-/// Where another code is better than ours in the same session: in error with as many particles, or in time at
-/// no more error, whatever the resolution.
+/// Where another code is better than ours in one session: in error at an equal number of particles, or in
+/// time at no more error, at any resolution.
 fn better(marks: &[Mark]) -> Option<String> {
     let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.is_ours());
     if ours.is_empty() || others.is_empty() {
@@ -169,10 +169,10 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     panels.fold(figure, Figure::panel)
 }
 
-/// A run with fewer particles measures what a step costs whatever their number.
+/// Runs with fewer particles measure mostly the fixed cost of a step.
 const FEW: usize = 120;
 
-/// Where and when the runs that the program contains were made, and what their reader must know.
+/// Place and time of the runs that the program contains, and notes for their reader.
 fn provenance(runs: &Runs) -> Option<String> {
     let day = runs.peers.iter().find_map(|run| session(&run.record))?;
     let mut words = format!(
@@ -195,7 +195,7 @@ fn provenance(runs: &Runs) -> Option<String> {
     Some(words)
 }
 
-/// Pairs of equal results that are told by name.
+/// Number of pairs of equal results that are named.
 const MOST_EQUAL: usize = 10;
 
 /// Results that several codes handed in.
@@ -254,7 +254,7 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
     Some(study.block(table(declared, runs)))
 }
 
-/// The runs of the closed division, then those of the open one, the best first.
+/// The runs of the closed division, then of the open one, the best first.
 fn table(declared: &Declaration, runs: &Runs) -> touchstone_report::Table {
     type Row<'a> = (&'a Submission, &'a JudgedRun, f64, &'a str);
     let rows = runs.of_others().filter_map(|run| {
@@ -354,8 +354,8 @@ mod tests {
         Mark { of, name, particles, session, error, seconds: s }
     }
 
-    /// A run of a code with as many particles, seconds and this error; the same error at another time and a
-    /// number of no accuracy, each with a gate that it fails.
+    /// A run of a code with this number of particles, seconds and error; the same error at another time and a
+    /// number that is no accuracy, each with a gate that it fails.
     fn run_of(code: &str, particles: usize, seconds: f64, error: f64) -> JudgedRun {
         let gate = |metric: &str, most: f64| {
             let (id, bound) = (format!("case.{metric}"), Bound::Below(most));
@@ -383,7 +383,8 @@ mod tests {
         Declaration { accuracy, ..Declaration::default() }
     }
 
-    /// Of runs of one code with as many particles the fastest is shown; of curves, which have none, each.
+    /// Of runs of one code with equal numbers of particles the fastest is shown; of curves, which have no
+    /// particles, each.
     #[test]
     fn the_fastest_of_one_code_with_as_many_particles_is_shown() {
         let of = [(10, 3.0, 0.3), (10, 1.0, 0.2), (20, 2.0, 0.1), (0, 5.0, 0.5), (0, 6.0, 0.6)];
@@ -393,7 +394,7 @@ mod tests {
         assert_eq!(shown, [0.2, 0.1, 0.5, 0.6]);
     }
 
-    /// Errors at all times are of the accuracy, which one failing gate fails; the best is the first.
+    /// Errors at all times belong to the accuracy, which one failing gate fails; the best is the first.
     #[test]
     fn the_table_has_the_best_first_and_the_accuracy_apart() {
         let runs = of_others(vec![run_of("worse", 10, 1.0, 0.3), run_of("better", 10, 1.0, 0.2)]);
@@ -408,7 +409,8 @@ mod tests {
         assert_eq!(column(table, "all gates"), ["1 pass, 2 fail, 0 not applicable"; 2]);
     }
 
-    /// Equal results are told of two codes, and of one that handed in ours, but not of one code or of ours.
+    /// Equal results are reported for two codes, and for a code that submitted ours, but not within one code
+    /// or among ours.
     #[test]
     fn equal_results_are_told_of_different_codes() {
         let with = |code: &str, results: &str| {

@@ -1,5 +1,4 @@
-//! The runs of one case that a store holds, whatever they are: their errors and costs side by side, judged by
-//! nothing.
+//! The runs of one case in a store: their errors and costs in a table, without judgement.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +19,7 @@ use crate::{
 
 /// The setting that refines the runs of a case.
 pub struct Resolution {
-    /// Its name.
+    /// Name.
     pub setting: &'static str,
     /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
     pub is_count: bool,
@@ -40,7 +39,7 @@ impl Resolution {
         })
     }
 
-    /// The spacing of a run in units that are the same for all runs of the case; NaN if it has none.
+    /// The spacing of a run in units common to all runs of the case; NaN if it has none.
     fn spacing(&self, settings: &Value) -> f64 {
         let value = settings[self.setting].as_f64().unwrap_or(f64::NAN);
         if self.is_count { 1.0 / value } else { value }

@@ -26,12 +26,12 @@ pub fn runs(errors: impl IntoIterator<Item = (RunSpec, f64)>) -> Runs {
     )
 }
 
-/// Runs that reached their end, and what their records hold.
+/// Runs that reached their end, with the content of their records.
 pub fn records<F: FnOnce(&mut Record)>(of: impl IntoIterator<Item = (RunSpec, F)>) -> Runs {
     Runs::new(of.into_iter().map(|(spec, fill)| run(spec, fill)).collect())
 }
 
-/// A run that reached its end, and what its record holds.
+/// A run that reached its end, with the content of its record.
 pub fn run(spec: RunSpec, fill: impl FnOnce(&mut Record)) -> JudgedRun {
     let mut record = Record::of(&spec, 1);
     fill(&mut record);
@@ -66,7 +66,7 @@ pub fn tables(study: &Study) -> Vec<&Table> {
     tables.collect()
 }
 
-/// What a column of a table shows, from top to bottom, with common blanks.
+/// The cells of a column of a table, from top to bottom, with ordinary blanks.
 pub fn column(table: &Table, head: &str) -> Vec<String> {
     let of = table.columns.iter().position(|column| column.head == head);
     let of = of.unwrap_or_else(|| panic!("a column `{head}` of {:?}", table.columns));

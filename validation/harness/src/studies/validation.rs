@@ -18,25 +18,25 @@ use crate::{
     study::Study,
 };
 
-/// Roache's factor of safety of an order that levels test, and what makes his index, which lies to one side
-/// of the result, a standard uncertainty (V&V 20, section 2).
+/// Roache's factor of safety for an order tested by levels, and the divisor that turns his index, which is
+/// one-sided, into a standard uncertainty (V&V 20, section 2).
 const TESTED: [f64; 2] = [1.25, 1.15];
-/// The factor of Eça & Hoekstra (2014) where nothing tests an order or there is none, and what makes that
-/// uncertainty of 95 %, which lies to both sides, a standard one.
+/// The factor of Eça & Hoekstra (2014) without a tested order, and the divisor that turns this two-sided
+/// uncertainty of 95 % into a standard one.
 const UNTESTED: [f64; 2] = [3.0, 2.0];
 /// The largest order that differences of three levels may show: a higher one than the method has is a
 /// coincidence, not a limit that is approached.
 const FASTEST: f64 = 2.5;
-/// What makes u_val an uncertainty of 95 %.
+/// The factor from u_val to an uncertainty of 95 %.
 const EXPANDS: f64 = 2.0;
-/// A comparison whose uncertainty of 95 % is larger than this share of what is compared would not tell a
-/// result that is wrong by a tenth: then a small E says nothing.
+/// A comparison with an uncertainty of 95 % above this fraction of the compared quantity could not detect an
+/// error of a tenth: a small E is then no evidence.
 const TELLS: f64 = 0.1;
 
-/// What a ladder says of its finest level.
+/// Result of a ladder for its finest level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numerical {
-    /// U_num, within which the limit of refinement lies at 95 %. NaN if it is not known.
+    /// U_num, which bounds the distance from the limit of refinement at 95 %. NaN if unknown.
     pub expanded: f64,
     /// u_num.
     pub standard: f64,
@@ -48,12 +48,12 @@ pub struct Numerical {
     pub how: String,
 }
 
-/// What is known of one comparison. Missing is NaN.
+/// Result of one comparison. Missing values are NaN.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// E = S − D, of the finest level.
     pub error: f64,
-    /// What the levels say of it.
+    /// Numerical uncertainty from the levels.
     pub numerical: Numerical,
     /// u_input.
     pub input: f64,
@@ -63,7 +63,7 @@ pub struct Found {
     pub exact: Option<Order>,
 }
 
-/// What can be said of a result.
+/// Verdict on a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Said {
     /// Against an exact reference: the error falls, for the interval of its order is above 0.
@@ -194,10 +194,11 @@ fn magnitudes(levels: &[Level]) -> Vec<Level> {
     levels.iter().map(|level| Level { value: level.value.abs(), ..*level }).collect()
 }
 
-/// What levels, coarse to fine, say of the finest. Where one order describes all errors, of one sign, it is
-/// the grid convergence index of the two finest with that order. Where differences of the last three have an
-/// order, which three levels fix and cannot test, it is three times the distance from the limit of that
-/// order; else three times the range of the last three, or the distance of the only two.
+/// The numerical uncertainty of the finest level from levels, coarse to fine. Where one order describes all
+/// errors, of one sign, it is the grid convergence index of the two finest levels with this order. Where the
+/// differences of the last three levels have an order, which three levels determine and cannot test, it is
+/// three times the distance from the limit of this order; else three times the range of the last three
+/// levels, or the distance of the only two.
 pub fn numerical(levels: &[Level]) -> Numerical {
     let found = |[limit, distance]: [f64; 2],
                  [factor, coverage]: [f64; 2],
@@ -267,7 +268,7 @@ const OF_UNCERTAIN: &str = "\
     |E| > 2 u_val: model error. If |E| ≤ 2 u_val and 2 u_val is above a tenth of what is compared, \
     nothing can be said. Without an order there is neither: the ladder does not tell.";
 
-/// All comparisons of a case: those with exact references, and the others.
+/// All comparisons of a case: with exact references, and with others.
 pub fn study(case: &str, comparisons: &[Comparison], runs: &Runs) -> Study {
     let rows: Vec<Row> = comparisons.iter().map(|of| (of, Found::of(of, runs))).collect();
     let (exact, uncertain): (Vec<Row>, Vec<Row>) =
@@ -429,8 +430,8 @@ mod tests {
         assert_eq!(words, "model error −2.8 % ± 2.8 %");
     }
 
-    /// Against an exact reference an error converges or stops at a number, whatever C and p are: it is never
-    /// not distinguishable, and no error of a model.
+    /// Against an exact reference an error converges or stalls, for any C and p: the verdict is never "not
+    /// distinguishable", nor an error of a model.
     #[test]
     fn against_an_exact_reference_an_error_converges_or_stops() {
         let verdict = |error: &dyn Fn(f64) -> f64| {
