@@ -1,5 +1,5 @@
-//! Faults that were once met by a user, each as a script in `cases`: `# exit:` states its exit code (0
-//! without one), `# says:` a regular expression that its output has, `# never:` one that it has not.
+//! Faults that users have met, each as a script in `cases`: `# exit:` states its exit code (0 without one),
+//! `# says:` a regular expression that its output must match, `# never:` one that it must not match.
 
 use std::fs;
 use std::path::Path;

@@ -32,7 +32,7 @@ fn touchstone_in(folder: &Path, arguments: &[&str]) -> Output {
     command.current_dir(folder).args(arguments).output().unwrap()
 }
 
-/// Runs the program in an empty folder of its own.
+/// Runs the program in a separate empty folder.
 fn touchstone(arguments: &[&str]) -> Output {
     touchstone_in(tempfile::tempdir().unwrap().path(), arguments)
 }
@@ -185,7 +185,7 @@ fn a_run_of_years_or_of_more_memory_than_there_is_is_refused() {
         refused(&[&["run", case][..], &sets].concat(), says);
         assert!(start.elapsed() < Duration::from_secs(5), "{case}: {:?}", start.elapsed());
     }
-    // More than 10^10 steps are refused whatever is allowed.
+    // More than 10^10 steps are refused under any permission.
     let asked = ["run", "acoustic_wave", "--set", "dt=1e-15", "--allow-long"];
     refused(&asked, &["the number of time steps would be"]);
 }
@@ -196,7 +196,7 @@ fn a_run_says_what_it_takes_before_its_first_step() {
     let first = message.lines().next().unwrap_or_default();
     assert!(first.starts_with("estimate: ") && first.contains(" on one core and "), "{first}");
     assert_eq!(message.matches("estimate: ").count(), 1, "{message}");
-    // Of a run that is one simulation, the steps are those that are made.
+    // For a run of one simulation, the estimated steps are the actual ones.
     let steps = |text: &str| text.split(' ').nth(1).and_then(|word| word.parse::<f64>().ok());
     let estimate = steps(first).unwrap();
     let output = touchstone(&short("couette", &["--json"]));
@@ -219,7 +219,7 @@ fn a_time_step_beyond_the_limit_needs_a_word_and_may_diverge() {
     let limit = message.split("at most ").nth(1).unwrap().split(' ').next().unwrap();
     let just_beyond = format!("dt={}", 1.005 * limit.parse::<f64>().unwrap());
     refused(&short("couette", &["--set", &just_beyond]), &["--allow-unstable"]);
-    // What else damps has its part in the limit.
+    // Other damping contributes to the limit.
     let diffused = ["run", "couette", "--rows", "10", "--set", "end=0.1", "--set", "diffusion=2"];
     refused(&diffused, &["dt is", "--allow-unstable"]);
     let output = touchstone(&short("couette", &["--set", &just_beyond, "--allow-unstable"]));
@@ -337,9 +337,9 @@ const SHORT: [&str; 22] = [
     "still_wedge --set n=8 --set end=1",
 ];
 
-/// Of each case there are as many frames as asked for, at equal intervals and with all fields, and a profile
-/// whose parts add up; what is left of each run is what it is without them, and without the metrics that are
-/// left out unless asked for.
+/// Each case writes the requested number of frames, at equal intervals and with all fields, and a profile
+/// whose parts add up; everything else equals the run without them, including the metrics that are left out
+/// by default.
 #[test]
 fn watching_does_not_change_a_run() {
     let names: Vec<&str> = SHORT.iter().filter_map(|run| run.split(' ').next()).collect();
@@ -397,8 +397,8 @@ fn watching_does_not_change_a_run() {
     }
 }
 
-/// The last sample of the rings was the one before it once more, as was that of a disk of the leapfrog, and a
-/// table that begins with a number that is not finite was empty.
+/// No table repeats its last sample, as for rings or a disk of the leapfrog, and a table whose first number
+/// is not finite is not empty.
 #[test]
 fn no_table_repeats_a_time_or_ends_early() {
     for run in SHORT {
@@ -422,7 +422,7 @@ fn no_table_repeats_a_time_or_ends_early() {
     }
 }
 
-/// Watched or not, a run that diverges says so, and its frames are those before.
+/// A run that diverges reports this with and without frames, and its frames end before.
 #[test]
 fn a_watched_run_that_diverges_says_so() {
     let folder = tempfile::tempdir().unwrap();
@@ -443,7 +443,7 @@ fn states(store: &Path) -> BTreeMap<String, Option<String>> {
     records.map(read).collect()
 }
 
-/// Nothing is lost with a process that is killed but the run that it was at.
+/// A killed process loses only its present run.
 #[cfg(unix)]
 #[test]
 fn a_killed_report_goes_on() {
@@ -502,7 +502,7 @@ fn rows_that_are_given_twice_are_refused() {
     refused(&short("couette", &["--set", "rows=10"]), &[words]);
 }
 
-/// Plain runs computed an energy ledger that nobody had asked for, and judged it.
+/// Plain runs neither compute nor judge an energy ledger that was not requested.
 #[test]
 fn a_run_says_which_metrics_and_gates_were_not_asked_for() {
     let run = |rest: &[&'static str]| {
@@ -563,7 +563,7 @@ fn an_unknown_gate_is_answered_by_a_few_names() {
     assert!(message.len() < 600, "{} bytes: {message}", message.len());
 }
 
-/// Starts a long run, sends it a signal once it is under way, and returns what it said.
+/// Starts a long run, sends it a signal once it is under way, and returns its output.
 #[cfg(unix)]
 fn interrupted(out: &Path, signal: &str) -> Output {
     let mut child = Command::new(env!("CARGO_BIN_EXE_touchstone"))
@@ -622,7 +622,7 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
 }
 
-/// Times and memory apart, which are of the machine, and how often it went on, a record as text.
+/// A record as text, without times and memory, which depend on the machine, and the number of its restarts.
 fn told(folder: &Path) -> (String, u32) {
     let text = fs::read_to_string(folder.join("record.json")).unwrap();
     let mut record = Record::from_json(&text).unwrap();
@@ -632,8 +632,9 @@ fn told(folder: &Path) -> (String, u32) {
     (record.to_json().unwrap(), resumed)
 }
 
-/// Checkpoints with other numbers and the digest of these, and what is said of them. The numbers begin after
-/// two lines: seven times, of which the first is that of the state, and five counts, the first of steps.
+/// Checkpoints with other numbers and a matching digest, and the expected messages. The numbers begin after
+/// two lines: seven times, the first of which is the state's, and five counts, the first of which is the
+/// number of steps.
 #[cfg(unix)]
 fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
     let lines: Vec<&[u8]> = whole.splitn(3, |byte| *byte == b'\n').collect();
@@ -657,7 +658,7 @@ fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
         (with(0, 1e9_f64.to_le_bytes()), "a time that is not on its way"),
         (with(0, f64::NAN.to_le_bytes()), "a time that is not on its way"),
         (with(56, u64::MAX.to_le_bytes()), "a count that no run reaches"),
-        // The length of a list of what was observed.
+        // The length of a list of observations.
         (sealed(&head, &numbers[..numbers.len() - 40]), "damaged or truncated"),
     ]
 }
@@ -736,7 +737,7 @@ fn checkpoints_are_refused_where_they_make_no_sense() {
     refused(&with_specs, &["cannot be used with"]);
 }
 
-/// What a plan refuses for its length is made with the flag that the refusal names.
+/// A run that a plan refuses for its length is made with the flag named in the refusal.
 #[cfg(unix)]
 #[test]
 fn runs_of_a_plan_may_be_long_if_this_is_allowed() {
@@ -813,8 +814,8 @@ fn bits_do_not_depend_on_the_instructions_that_the_c_library_finds() {
     }
 }
 
-/// The record of a run was lost with exit 0. Rust opens `/dev/null` where standard output is closed, and of
-/// `>/dev/null` somebody knows.
+/// A record that cannot be printed is an error. Rust opens `/dev/null` where standard output is closed;
+/// `>/dev/null` by the user is no error.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_document_for_a_closed_standard_output_is_an_error() {
@@ -861,7 +862,7 @@ fn a_reader_that_goes_away_is_no_bug_and_a_full_disk_is_told() {
     assert!(stderr(&full).contains("cannot write to standard output"));
 }
 
-/// `judge` of an empty store said that it lacks no run, and has all of them from another build.
+/// An empty store lacks all runs.
 #[test]
 fn a_store_without_records_lacks_them_all() {
     let folder = tempfile::tempdir().unwrap();
@@ -883,7 +884,8 @@ fn a_store_without_records_lacks_them_all() {
     assert!(planned > 0 && lacking == planned && other == 0, "{words}");
 }
 
-/// Memory in MB and time in seconds: what a run holds at its end is within a factor of three of it.
+/// Memory in MB and time in seconds: the memory of a run at its end is within a factor of three of the
+/// estimate.
 #[test]
 fn a_plan_states_memory_in_megabytes_and_time_in_seconds() {
     let folder = tempfile::tempdir().unwrap();
@@ -907,8 +909,8 @@ fn a_plan_states_memory_in_megabytes_and_time_in_seconds() {
     assert!((1e-2..1e2).contains(&ratio), "{} s for {} s", row[1], record.cost.cpu_s);
 }
 
-/// Numbers of sensors that no water reached were 0, an error of a flow that had hardly begun was one "against
-/// finite elements", and `run periodic_hill` had another end than the run of README.
+/// Numbers of sensors that no water reached are absent, an error of a flow that has hardly begun is not
+/// stated against finite elements, and `run periodic_hill` is the run of README.
 #[test]
 fn a_short_run_says_what_it_did_not_reach_and_a_default_one_is_planned() {
     let tank = ["width=0.6", "height=0.3", "tank=1.61", "rim=2", "n=10", "end=1"];
@@ -943,7 +945,8 @@ fn a_short_run_says_what_it_did_not_reach_and_a_default_one_is_planned() {
 /// which a narrow scene has more of than particles, and the pairs of interface particles are not estimated.
 const ESTIMATED: [f64; 2] = [2.5, 3.0];
 
-/// Every wall particle counted as one with neighbours of its own: 6.7 times the pairs of a small dam break.
+/// Wall particles without neighbour lists must not count as particles with neighbours: 6.7 times the pairs of
+/// a small dam break.
 #[test]
 fn the_size_of_a_run_is_estimated_within_a_factor_of_what_it_counts() {
     let mut all = Vec::new();
@@ -997,7 +1000,7 @@ fn assignment(case: usize) -> impl Strategy<Value = String> {
     (key, number).prop_map(|(key, value)| format!("{key}={value}"))
 }
 
-/// Settings that make a scene small, of those that the case has.
+/// Settings that make a scene small, among the settings of the case.
 fn small(case: &dyn Case, variant: &str) -> Vec<String> {
     let all = ["rows=5", "columns=0", "layers=6", "n=8", "spacing=0.5"].map(String::from);
     let is_known = |set: &String| case.settings(variant, std::slice::from_ref(set)).is_ok();
@@ -1022,8 +1025,8 @@ fn ends(case: &dyn Case) -> Vec<String> {
 /// Runs that are estimated to take less processor time than this are made to their end \[s\].
 const TO_THE_END: f64 = 0.005;
 
-/// Was a run of these settings begun, after its size was told, or was it refused in words that name a
-/// setting? A long one is stopped after its first step. Each metric of a record is a finite number.
+/// Whether a run of these settings started after its estimate was printed; otherwise the refusal must name a
+/// setting. A long run is stopped after its first step. Each metric of a record is finite.
 fn is_begun(case: &dyn Case, variant: &str, set: &[String]) -> bool {
     let run = format!("{} {variant} {}", case.name(), set.join(" "));
     let (stop, told) = (AtomicBool::new(false), AtomicUsize::new(0));
@@ -1098,8 +1101,8 @@ fn a_given_step_is_taken_in_every_case() {
     assert!(cut.is_empty(), "{cut:?}");
 }
 
-/// The ends of the range of each setting of each case, in each case's first variant and its last: refused in
-/// words that name a setting, or begun after its size was told.
+/// The ends of the range of each setting of each case, in each case's first and last variant: refused with
+/// the name of a setting, or started after the estimate.
 #[test]
 fn the_ends_of_every_range_are_refused_or_run() {
     let of_case = |case: &&'static dyn Case| {
@@ -1118,7 +1121,7 @@ fn the_ends_of_every_range_are_refused_or_run() {
     assert!(begun > 200 && refusals > 50, "{begun} runs, {refusals} refusals");
 }
 
-/// Whatever is set is refused in words or runs; the runs are stopped after a few steps.
+/// Any settings are refused with words or run; the runs are stopped after a few steps.
 #[test]
 fn no_settings_make_a_run_panic() {
     let count = touchstone_cases::CASES.len();
@@ -1127,7 +1130,7 @@ fn no_settings_make_a_run_panic() {
         (Just(case), any::<prop::sample::Index>(), set, any::<bool>())
     });
     let config = ProptestConfig { cases: 50 * count as u32, ..ProptestConfig::default() };
-    // Runs of each case that were built and begun: a test of refusals alone would be none.
+    // Number of runs of each case that started: a test of refusals only would be none.
     let begun: Vec<AtomicUsize> = (0..count).map(|_| AtomicUsize::new(0)).collect();
     let mut runner = TestRunner::new(config);
     let result = runner.run(&drawn, |(index, variant, mut set, allow_unstable)| {
@@ -1165,7 +1168,7 @@ fn no_settings_make_a_run_panic() {
 }
 
 proptest! {
-    /// Texts that are no assignments at all.
+    /// Texts that are no assignments.
     #[test]
     fn no_text_makes_settings_panic(set in prop::collection::vec(".{0,40}", 0..4)) {
         let _ = touchstone_cases::CASES[0].settings("seed", &set);

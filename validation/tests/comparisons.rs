@@ -11,8 +11,8 @@ fn touchstone(folder: &Path, line: &str) -> Output {
     command.current_dir(folder).args(line.split(' ')).output().unwrap()
 }
 
-/// Is a planned run one of the ladders of `seed` and `modern` in Couette flow, or of those of `modern` in the
-/// dam break without the tank?
+/// Whether a planned run belongs to the ladders of `seed` and `modern` in Couette flow, or to the ladders of
+/// `modern` in the dam break without the tank.
 fn is_of_a_ladder(line: &str) -> bool {
     let run: Value = serde_json::from_str(line).unwrap();
     let set = &run["settings"];

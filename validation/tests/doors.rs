@@ -1,4 +1,4 @@
-//! What was found to come in, or to get lost, through specs, stores, signals and disks that are full.
+//! Robustness: malformed specs, damaged stores, signals, full disks.
 
 #![cfg(unix)]
 
@@ -46,7 +46,7 @@ fn make(folder: &Path, lines: &[&str]) -> Output {
     touchstone(folder, MAKE)
 }
 
-/// Fields that nobody checked: 10^9 pictures, a resolution that was never reached, a variant that was a path.
+/// Every field is checked: 10^9 pictures, a resolution that is never reached, a variant that is a path.
 #[test]
 fn a_line_that_no_run_can_have_is_told_with_its_field_and_costs_no_other_line() {
     let couette = |variant: &str, settings: &str, rest: &str| {
@@ -142,7 +142,7 @@ fn a_damaged_and_an_older_record_are_told_by_name_and_made_again() {
     }
 }
 
-/// It hung until somebody wrote into the pipe.
+/// Opening a pipe must not block.
 #[test]
 fn a_pipe_in_place_of_a_record_is_told_and_not_waited_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -162,7 +162,7 @@ fn a_pipe_in_place_of_a_record_is_told_and_not_waited_for() {
     }
 }
 
-/// `compare`, `explain`, `run --out` and `run --resume` hung until somebody wrote into the pipe.
+/// `compare`, `explain`, `run --out` and `run --resume` must not block on a pipe.
 #[test]
 fn a_pipe_in_place_of_what_a_run_or_a_report_left_is_not_waited_for() {
     let folder = tempfile::tempdir().unwrap();
@@ -250,7 +250,7 @@ fn submit_as(folder: &Path, name: &str) {
     assert!(said(&submitted).contains("store/submitted-couette-seed-"), "{}", said(&submitted));
 }
 
-/// Waits for a child, at most so long \[s\]; how it ended and what it said.
+/// Waits for a child for up to `seconds` \[s\]; returns its exit code and its output.
 fn ended(mut child: Child, seconds: f64) -> (Option<i32>, String) {
     let start = Instant::now();
     while child.try_wait().unwrap().is_none() && start.elapsed().as_secs_f64() < seconds {
@@ -266,8 +266,8 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
 }
 
-/// Commands said "interrupting", went on for up to 12 s and ended with 0; a run that wrote many frames took
-/// 58 s, specs of 100,000 lines 70 s.
+/// A signal ends commands, runs with many frames and long lists of specs within a second, with an exit code
+/// other than 0.
 #[test]
 fn a_signal_ends_every_command_within_a_second() {
     let folder = tempfile::tempdir().unwrap();
@@ -307,7 +307,7 @@ fn a_signal_ends_every_command_within_a_second() {
     assert_eq!(parts.collect::<Vec<_>>(), Vec::<String>::new());
 }
 
-/// What a first signal leaves 0.7 s for ends at once by a second one, without the words of the first.
+/// Work to which a first signal gives 0.7 s ends at once by a second one, without the message of the first.
 #[test]
 fn a_second_signal_does_not_wait() {
     let folder = tempfile::tempdir().unwrap();
@@ -396,7 +396,7 @@ fn a_checkpoint_that_cannot_be_written_names_the_last_good_one() {
     while !out.join("checkpoint").exists() && start.elapsed() < Duration::from_secs(60) {
         sleep(Duration::from_millis(5));
     }
-    // Nobody can write into what is no folder any more.
+    // The folder is missing, so nothing can be written.
     fs::rename(&out, folder.path().join("kept")).unwrap();
     fs::write(&out, "in the way").unwrap();
     let told = lines.find(|line| line.contains("the run goes on"));

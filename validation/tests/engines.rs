@@ -1,5 +1,5 @@
-//! Plans made by existing engines, with the files of `validation/contrib`: the records are those of a local
-//! run. An engine that is not installed is skipped, which the output says.
+//! Plans made by existing engines, with the files of `validation/contrib`: the records equal a local run's.
+//! An engine that is not installed is skipped, with a message.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ fn plan(folder: &Path, end: &str) -> PathBuf {
     folder.join("plan.jsonl")
 }
 
-/// The records of a store, without what time and memory they took.
+/// The records of a store, without time and memory.
 fn records(store: &Path) -> Vec<Record> {
     let without_times = |record: Record| {
         let (wall_s, cpu_s, observing_s, solver_bytes) = (0.0, 0.0, 0.0, 0);
@@ -107,7 +107,7 @@ impl Node {
     fn go(&self, action: &str) -> bool {
         let (script, port) = (contrib("slurm_node.sh"), 20_000 + std::process::id() % 20_000);
         let mut script = command("sh", &self.0, &[&script, action, "."]);
-        // Daemons keep the pipes of who started them.
+        // Daemons keep the pipes of their parent.
         script.env("SLURM_PORT", port.to_string()).stdout(Stdio::null()).stderr(Stdio::null());
         script.status().is_ok_and(|status| status.success())
     }
@@ -160,8 +160,8 @@ fn mocked(folder: &Path, arguments: &[&str]) -> Option<i32> {
     command.env("PATH", path).output().unwrap().status.code()
 }
 
-/// Tasks executed `$(…)` in the path of the plan; blank lines made a task too many; an empty plan said
-/// nothing.
+/// A task must not execute `$(…)` in the path of the plan, blank lines must not make a task, and an empty
+/// plan must be reported.
 #[test]
 fn a_path_is_no_command_and_a_plan_without_runs_is_told() {
     use std::os::unix::fs::PermissionsExt;
@@ -200,7 +200,7 @@ fn a_path_is_no_command_and_a_plan_without_runs_is_told() {
         assert_eq!(mocked(at, &[specs, "st"]), Some(2), "{specs}");
     }
     assert_eq!(mocked(at, &["plain/p"]), Some(2));
-    // A line that is refused fails its task, whatever diverges beside it.
+    // A refused line fails its task, whatever diverges in other lines.
     let specs = plan(at, "0.01");
     let whole = fs::read_to_string(&specs).unwrap();
     assert_eq!(mocked(at, &["plan.jsonl", "there"]), Some(0), "one diverges");
@@ -210,7 +210,8 @@ fn a_path_is_no_command_and_a_plan_without_runs_is_told() {
     assert_eq!(here.unwrap().status.code(), Some(2), "one diverges, and one is refused");
 }
 
-/// What was done before is kept, what was under way is told, and the same command makes it: the same record.
+/// Completed work is kept, interrupted work is reported, and the same command completes it with the same
+/// record.
 #[test]
 fn a_worker_that_is_killed_costs_its_run_alone() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Exported problems: what they must state, numbers of the files for other codes, and results that only look
+//! Exported problems: required statements, numbers of the files for other codes, and results that only look
 //! right.
 
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ fn touchstone(folder: &Path, line: &str) -> Output {
     Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
 }
 
-/// What a command that ends with 0 says on standard output.
+/// The standard output of a command that must end with 0.
 #[track_caller]
 fn done(folder: &Path, line: &str) -> String {
     let output = touchstone(folder, line);
@@ -59,7 +59,7 @@ impl Table {
     }
 }
 
-/// The rows of a table at other times, by linear interpolation between the frames, each of so many rows.
+/// The rows of a table at other times, by linear interpolation between the frames of `count` rows each.
 fn at_times(table: &Table, count: usize, times: &[f64], scale: f64) -> Vec<Vec<f64>> {
     let frames: Vec<&[Vec<f64>]> = table.rows.chunks(count).collect();
     let [t, u, v] = ["t", "u", "v"].map(|name| table.columns[name]);
@@ -114,7 +114,7 @@ fn heights_and_gravity_of_a_dam_break_are_judged() {
         table.rows.iter_mut().zip(&whole).for_each(|(row, was)| row[y] = height(was[y]));
         fails(&table, what);
     }
-    // A fall with more gravity is the same with a faster clock; a longer one has all times that it needs.
+    // A fall with more gravity equals one with a faster clock; a longer one includes all times.
     done(of, "export dam_break --set end=1.85 --out longer --solve");
     let longer = Table::read(&of.join("longer/results.csv"));
     for factor in [0.97_f64, 1.03] {
@@ -123,7 +123,7 @@ fn heights_and_gravity_of_a_dam_break_are_judged() {
     }
 }
 
-/// What a document has at a path of keys.
+/// The value at a path of keys of a document.
 fn at<'a>(document: &'a Value, path: &str) -> &'a Value {
     path.split('/').fold(document, |of, key| match key.parse::<usize>() {
         Ok(place) => &of[place],
@@ -166,8 +166,8 @@ fn all_variants(folder: &Path) -> Vec<(String, String)> {
     .collect()
 }
 
-/// Settings of terms that the variant lacks stood among the settings: each is listed with its term, and the
-/// spec has all of them.
+/// Settings of terms that the variant lacks must be listed apart, each with its term, and the spec has all of
+/// them.
 fn states_what_is_read(problem: &Value, what: &str) {
     let all = at(problem, "spec/settings").as_object().unwrap();
     let listed: Vec<&str> = problem["settings"]
@@ -191,8 +191,7 @@ fn states_what_is_read(problem: &Value, what: &str) {
     }
 }
 
-/// The default problem of hills had no gate, of which a page of the whole case was to tell: what `export`
-/// names is judged.
+/// A problem without gates names one with gates.
 #[test]
 fn a_problem_that_nothing_judges_names_one_that_is_judged() {
     let folder = tempfile::tempdir().unwrap();
@@ -218,9 +217,8 @@ fn a_problem_that_nothing_judges_names_one_that_is_judged() {
     assert!(named.contains(&"spinning_disk".into()), "{named:?}");
 }
 
-/// Whether walls stick or slip was stated nowhere, hills had no force and no flux, metrics no formula before
-/// a run; terms that a variant lacks stood among the material, gates that judge no other code among
-/// the gates.
+/// A problem states whether walls stick or slip, the force and flux of hills, and formulas of metrics; terms
+/// that a variant lacks are not listed as material, nor gates that judge no other code among the gates.
 #[test]
 fn every_problem_states_what_is_needed_to_run_and_to_measure_it() {
     let folder = tempfile::tempdir().unwrap();
@@ -232,7 +230,7 @@ fn every_problem_states_what_is_needed_to_run_and_to_measure_it() {
         let boundary = problem["boundary"].as_str().unwrap();
         let words = ["lip", "No force", "no wall", "no surface", "Clamped"];
         assert!(words.iter().any(|word| boundary.contains(word)), "{what}: {boundary}");
-        // Whatever stands in the document stands on the page.
+        // All content of the document is on the page.
         let mut said = vec![boundary.to_string()];
         for list in ["further", "settings"] {
             for fact in problem[list].as_array().unwrap() {
@@ -300,8 +298,7 @@ fn hills_state_the_flux_that_their_force_keeps() {
     assert!(page.contains("dv/dt = -(1/ρ) ∇p + ν ∇²v + (f, 0)") && page.contains("1.0175 | m^2/s"));
 }
 
-/// The times of a cantilever were its end alone, from which nothing is measured: handed in at the times that
-/// are asked for, every gate that is listed is judged.
+/// A cantilever needs a path over time: submitted at the requested times, every listed gate is judged.
 #[test]
 fn results_at_the_times_that_are_asked_for_are_judged_by_every_gate_that_is_listed() {
     let folder = tempfile::tempdir().unwrap();
@@ -342,7 +339,7 @@ fn results_at_the_times_that_are_asked_for_are_judged_by_every_gate_that_is_list
     }
 }
 
-/// Every number of a problem against that of the run.
+/// Every number of a problem equals the run's.
 #[test]
 fn numbers_of_a_problem_are_those_of_the_run() {
     let folder = tempfile::tempdir().unwrap();
@@ -404,8 +401,8 @@ fn numbers_of_a_problem_are_those_of_the_run() {
     close(number(&vortices, "material/kinematic_viscosity/value"), 1.0 / 50.0, "ν = U L/Re");
 }
 
-/// What a page or a list repeats of a problem: its end, forces, artificial viscosity, rows of a curve, times
-/// of a path, units of an observer, particles.
+/// Numbers repeated on a page or in a list equal the problem's: end, forces, artificial viscosity, rows of a
+/// curve, times of a path, units of an observer, particles.
 #[test]
 fn pages_and_lists_have_the_numbers_of_their_problem() {
     let folder = tempfile::tempdir().unwrap();
@@ -435,7 +432,7 @@ fn pages_and_lists_have_the_numbers_of_their_problem() {
     assert!(role.contains(&2.0), "there are particles on the walls");
     let checked = touchstone(folder.path(), "submit couette own --check");
     assert!(checked.status.success(), "{}", String::from_utf8_lossy(&checked.stderr));
-    // Results have whatever particles a code likes, but those that move.
+    // Results may have any particles, but must include the moving ones.
     let mut moved = Table::read(&own.join("results.csv"));
     let id = moved.columns["id"];
     moved.rows.retain(|row| role[row[id] as usize] == 0.0);
@@ -569,7 +566,7 @@ fn is_of_atoms(line: &str, [data, script]: [&str; 2], particles: &Table) {
             3
         };
         assert_eq!(atom[1], f64::from(kind), "{line}, {k}");
-        // One mass a type: that of the first particle, and a note where others have another one.
+        // One mass for each type: the first particle's, and a note where others differ.
         assert_eq!(masses[kind as usize - 1][1], of[7][0], "{line}: mass");
         let is_alike = (mass / of[7][0] - 1.0).abs() < 1e-12;
         assert!(is_alike || script.contains("differ by up to"), "{line}: mass {mass}");
@@ -653,7 +650,7 @@ fn pressure_forces(particles: &Table, h: f64, of_both: bool) -> Vec<[f64; 2]> {
     (0..x.len()).map(force).collect()
 }
 
-/// On a lattice a pressure of one side alone has the same sum, so that no gate saw it.
+/// On a lattice a pressure of one side alone has an equal sum, so that no gate can see it.
 #[test]
 fn a_pressure_force_that_lacks_one_side_fails_on_disordered_particles() {
     let folder = tempfile::tempdir().unwrap();
@@ -697,8 +694,7 @@ fn still_water_over_a_wedge_is_measured_over_the_last_quarter() {
     }
 }
 
-/// An observer who numbers particles otherwise gives other numbers to particles of walls, too, and each kind
-/// keeps its own numbers.
+/// An observer who renumbers particles also renumbers wall particles, and each kind keeps its own numbers.
 #[test]
 fn particles_of_each_kind_are_renumbered_among_themselves() {
     let folder = tempfile::tempdir().unwrap();
@@ -731,7 +727,7 @@ fn particles_of_each_kind_are_renumbered_among_themselves() {
     }
 }
 
-/// One relation of one variant that does not hold fails the whole battery, whatever holds after it.
+/// One violated relation of one variant fails the whole battery, whatever holds after it.
 #[test]
 fn a_symmetry_that_is_broken_fails_whatever_comes_after_it() {
     let folder = tempfile::tempdir().unwrap();

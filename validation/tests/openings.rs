@@ -1,5 +1,5 @@
-//! Sizes, folders, places and files that `export`, `submit`, `relate` and others take, found to be without a
-//! limit, or to cost what was there before.
+//! Limits of sizes, and safe handling of folders, paths and files, for `export`, `submit`, `relate` and
+//! others.
 
 #![cfg(unix)]
 
@@ -29,7 +29,7 @@ fn made(folder: &Path, line: &str) {
     assert!(output.status.success(), "{line}: {}", said(&output));
 }
 
-/// It ends with 2 and says why.
+/// The command ends with 2 and this message.
 fn refused(folder: &Path, line: &str, words: &str) {
     let output = touchstone(folder, line);
     let message = said(&output);
@@ -92,8 +92,8 @@ fn what_is_too_large_for_a_run_is_too_large_for_every_command() {
     }
 }
 
-/// `export` of another case left the scripts and the results of the first one beside its problem, and
-/// replaced what somebody else had written.
+/// An export must not leave scripts and results of another case with its problem, and must not replace
+/// foreign files.
 #[test]
 fn an_export_neither_mixes_problems_nor_replaces_what_is_not_its_own() {
     let folder = tempfile::tempdir().unwrap();
@@ -169,8 +169,8 @@ fn a_challenge_takes_a_method_that_a_submission_can_have() {
     }
 }
 
-/// All places at 1e16 are the same, for the subtraction of whole periods leaves nothing of them; after
-/// 70,000 steps round-off would be more than 10⁻⁶ h, and an error of as much passed.
+/// All positions at 1e16 are equal after the subtraction of whole periods; after 70,000 steps round-off would
+/// exceed 10⁻⁶ h, and errors of this size would pass. Both are refused.
 #[test]
 fn observers_are_not_compared_where_round_off_would_hide_every_error() {
     let folder = tempfile::tempdir().unwrap();
@@ -284,7 +284,7 @@ fn a_store_leads_to_no_file_outside_of_it() {
     assert_eq!(fs::read_to_string(at.join("precious")).unwrap(), "mine");
 }
 
-/// What the environment asks of threads was an exit code of no table, or a signal.
+/// Limits of threads in the environment cause a documented exit code, not a signal.
 #[cfg(target_os = "linux")]
 #[test]
 fn threads_that_cannot_be_started_are_told_with_what_to_change() {

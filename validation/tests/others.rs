@@ -1,5 +1,6 @@
-//! What is said of results of other codes: a run that cannot be measured fails, what was not handed in is not
-//! judged, a place in another period is the same place, and bounds of our own method judge it alone.
+//! Verdicts on results of other codes: a run that cannot be measured fails, metrics of missing columns are
+//! not judged, a position in another period is equivalent, and bounds of our own method judge only our
+//! method.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -24,7 +25,7 @@ struct Entry {
     rows: Vec<Vec<String>>,
 }
 
-/// What came of a submission.
+/// Result of a submission.
 struct Said {
     code: i32,
     text: String,
@@ -146,8 +147,8 @@ fn a_submission_that_diverged_fails_and_names_particle_field_value_and_time() {
     }
 }
 
-/// A solid may be compressed or stretched to what no weakly compressible fluid has: the bounds of a run that
-/// diverged are 30 % of the density of a fluid, a half and twice that of a solid.
+/// A solid may be compressed or stretched more than any weakly compressible fluid: the divergence bounds are
+/// 30 % of the density for a fluid, and a half and twice the density for a solid.
 #[test]
 fn a_density_has_the_bounds_of_its_material() {
     for (problem, least, most) in [
@@ -166,8 +167,8 @@ fn a_density_has_the_bounds_of_its_material() {
     }
 }
 
-/// Twice the sum of sound speed, largest speed at the start and that of a fall is the speed of a run that
-/// diverged, a million times the size of the scene is the place of a particle that is lost.
+/// Twice the sum of sound speed, largest initial speed and speed of a fall is the divergence bound of speed;
+/// a million times the size of the scene is the bound of position.
 #[test]
 fn speeds_and_places_have_the_bounds_of_their_scene() {
     for (problem, fall) in [
@@ -201,14 +202,14 @@ fn speeds_and_places_have_the_bounds_of_their_scene() {
         }
         let found = [field("v", -1.01 * most), field("u", 1.01 * most), field("y", 1.01e6 * size)];
         assert_eq!(found, ["velocity", "velocity", "position"], "{problem}");
-        // Water in an eighth of its height is several times as dense, whatever densities it states.
+        // Water in an eighth of its height has several times the density, whatever densities it states.
         let y = own.column("y");
         let all: Vec<_> = own.of(None).into_iter().map(|row| (row, y)).collect();
         let status = own.edited(&all, |_, y| y / 8.0).record.map(|record| record.status);
         let is_crowded = matches!(&status, Some(Status::Diverged { field, .. })
             if field == "density of the places");
         assert!(is_crowded, "{problem}: {status:?}");
-        // Of a place that is as far away only that it is not lost is stated.
+        // A position at this distance only proves that the particle is not lost.
         assert_ne!(field("y", 0.99e6 * size), "position", "{problem}");
     }
 }
@@ -238,7 +239,7 @@ fn a_wall_that_is_stated_to_move_contradicts_the_problem() {
     assert!(said.code == 2 && said.text.contains(&says), "expected {says} in {}", said.text);
 }
 
-/// Pressures of still water were those of our own start, and passed.
+/// Pressures of still water must not come from our own start.
 #[test]
 fn nothing_is_judged_that_rests_on_a_density_that_was_not_handed_in() {
     let own = Entry::own("hydrostatic");
@@ -263,7 +264,7 @@ const WITHOUT: [(&str, &[&str]); 9] = [
     ("operators --variant quintic-density --set n=16 --set disorder=0", &["symbol_error"]),
 ];
 
-/// Whatever is measured without densities has the same value whatever they are.
+/// Metrics measured without densities do not depend on their fill.
 #[test]
 fn what_is_measured_without_densities_does_not_depend_on_them() {
     for (problem, rests) in WITHOUT {
@@ -356,8 +357,7 @@ fn what_passes_goes_on_with_a_finer_problem() {
     assert!(next.contains("touchstone export couette --variant modern --set rows=40"), "{next}");
 }
 
-/// What results of another code cannot have, for it takes our own terms, every step or our own theory, is not
-/// among what is measured of them.
+/// Metrics that need our own terms, every step or our own theory are not listed for other codes.
 #[test]
 fn a_problem_lists_nothing_that_only_our_own_runs_have() {
     for problem in ["dam_break --set n=8 --set end=1", "elliptic_drop --set n=8 --set end=0.2"] {
@@ -379,7 +379,7 @@ fn a_problem_lists_nothing_that_only_our_own_runs_have() {
     }
 }
 
-/// Where no plan has a gate, 0 was the exit code, and nothing was said of the error.
+/// Without a gate in any plan the exit code is 2, and the error is printed.
 #[test]
 fn nothing_judged_ends_with_2_and_names_what_is() {
     let own = Entry::own("couette --variant plain --set rows=12");
@@ -400,8 +400,8 @@ fn nothing_judged_ends_with_2_and_names_what_is() {
     assert_eq!(said.record.expect("a record").status, Status::Completed);
 }
 
-/// Our own run with a quarter of its step failed, for the error of the step cancels a part of that of the
-/// sums.
+/// Our own run with a quarter of its step must not fail: the error of the step cancels a part of the error of
+/// the sums.
 #[test]
 fn a_window_of_our_own_step_judges_only_what_states_it() {
     let at_once = |flow: &str| {
@@ -444,7 +444,7 @@ fn a_window_of_our_own_needs_our_kernel_support_and_step() {
     }
 }
 
-/// A run that states our step has made as many steps as that takes, and no more than one further for each of
+/// A run that states our step has made the corresponding number of steps, and at most one more for each of
 /// the times that it had to reach.
 #[test]
 fn a_run_of_our_step_has_made_the_steps_that_this_takes() {
@@ -469,10 +469,11 @@ fn a_run_of_our_step_has_made_the_steps_that_this_takes() {
     }
 }
 
-/// Place and velocity of a particle, those of the problem at the start, and the mean of the places there.
+/// Changes position and velocity of a particle, from those of the problem at the start, and the mean of the
+/// initial positions.
 type Alter = fn([f64; 4], [f64; 4], [f64; 2]) -> [f64; 4];
 
-/// What is made of every particle of an honest submission.
+/// Changes of every particle of a valid submission.
 const ALTERED: [(&str, Alter); 8] = [
     ("one x", |[_, y, u, v], _, [x, _]| [x, y, u, v]),
     ("one y", |[x, _, u, v], _, [_, y]| [x, y, u, v]),
@@ -485,7 +486,7 @@ const ALTERED: [(&str, Alter); 8] = [
 ];
 
 impl Entry {
-    /// The same by a code that does not state our kernel, support and step.
+    /// The submission of a code that does not state our kernel, support and step.
     fn foreign(problem: &str) -> Self {
         let own = Self::own(problem);
         let path = own.folder.join("method.json");
@@ -496,7 +497,7 @@ impl Entry {
         own
     }
 
-    /// Submits what is made of each particle.
+    /// Submits the changed particles.
     fn altered(&self, alter: Alter) -> Said {
         let text = fs::read_to_string(self.folder.join("particles.csv")).unwrap();
         let mut lines = text.lines().map(cells);
@@ -519,7 +520,7 @@ impl Entry {
     }
 }
 
-/// Problems, and what of these is right there, or is not measured: the strain of a pulse of 1e-4.
+/// Problems, with the changes that are right there, or not measured: the strain of a pulse of 1e-4.
 const SEEN: [(&str, &[&str]); 7] = [
     ("elliptic_drop --set n=20", &[]),
     ("hydrostatic", AT_REST),
@@ -577,8 +578,8 @@ fn a_front_that_falls_back_fails() {
     }
 }
 
-/// Particles that the exact vortices carry failed: they come near each other where the flow stretches them,
-/// and sample its energy and momentum worse than those that shifting spreads.
+/// Particles advected by the exact vortices must pass: they approach each other where the flow stretches
+/// them, and sample its energy and momentum worse than shifted ones.
 #[test]
 fn the_exact_flow_passes_vortices() {
     let own = Entry::foreign("taylor_green");
@@ -638,8 +639,8 @@ fn row_of(page: &str, code: &str) -> Vec<String> {
     cells.split_off(cells.len() - 3)
 }
 
-/// "1 pass" stood for an error of 52 %: the page says of each code whether its accuracy is judged, and which
-/// other gates fail. Results of our own run under another name are told.
+/// The page states for each code whether its accuracy is judged, and which other gates fail: "1 pass" must
+/// not hide an error of 52 %. Results of our own run under another name are reported.
 #[test]
 fn the_page_tells_accuracy_from_other_gates_and_our_own_run_from_others() {
     let operators =
@@ -795,7 +796,7 @@ fn a_force_that_another_code_does_not_state_is_in_no_series() {
     assert!(record.column("series", "force").is_empty());
 }
 
-/// The particles of a code that chose its own ones are those that are measured: twice as many a side.
+/// The measured particles are the code's own: twice as many a side.
 #[test]
 fn particles_that_a_code_chose_itself_are_the_ones_that_are_measured() {
     let own = Entry::own("hydrostatic");

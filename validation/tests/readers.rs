@@ -1,5 +1,5 @@
-//! Results of one run in the formats of other codes: the same metrics, whatever the format, the order of
-//! bytes, the unit of places and the columns beside those that are read.
+//! Results of one run in the formats of other codes: equal metrics for any format, byte order, unit of length
+//! and additional columns.
 
 use std::fmt::Write;
 use std::fs;
@@ -145,7 +145,7 @@ fn results_of_one_run_have_the_same_metrics_in_every_format() {
     let names = "t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]";
     let plain = submitted(folder.path(), &table(&rows, names, commas)).unwrap();
     let other_names = "time,Idp,x,y,velocity:x,velocity:y,rho";
-    // A column with a usual name beside the one that has ours: the latter is read.
+    // A column with a usual name in addition to one with our name: the latter is read.
     let both = |row: &Row| format!("7,{}", commas(row));
     for (what, files) in [
         ("usual names", table(&rows, other_names, commas)),
@@ -165,7 +165,7 @@ fn results_of_one_run_have_the_same_metrics_in_every_format() {
             );
         }
     }
-    // Equal results are told by their digest, which has the times too.
+    // The digest identifies equal results, including their times.
     let digest = |files: &[(String, String)]| {
         let record = submitted(folder.path(), files).unwrap_or_else(|error| panic!("{error}"));
         record.run.submission.as_ref().and_then(|of| of.results.clone()).expect("a digest")
@@ -184,8 +184,8 @@ fn results_of_one_run_have_the_same_metrics_in_every_format() {
     assert!(error.contains("there is no ITEM: TIME"), "{error}");
 }
 
-/// Another version is another method, and so is another truth value among its settings, wherever it stands:
-/// each has a problem of its own.
+/// Another version is another method, and so is another truth value anywhere among its settings: each has its
+/// own problem.
 #[test]
 fn another_version_or_truth_value_draws_another_sealed_problem() {
     let folder = tempfile::tempdir().unwrap();

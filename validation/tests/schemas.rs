@@ -1,4 +1,4 @@
-//! The JSON Schemas of `references/schemas` describe what the program writes, and refuse what is damaged.
+//! The JSON Schemas of `references/schemas` describe the output of the program, and refuse damaged documents.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -28,7 +28,7 @@ struct Validator<'a> {
 }
 
 impl<'a> Validator<'a> {
-    /// What is wrong with a document, with the path of each fault.
+    /// The faults of a document with their paths.
     fn faults(&self, schema: &'a Value, of: &Value, path: &str) -> Vec<String> {
         let Some(keywords) = schema.as_object() else {
             let is_refused = *schema == json!(false);
@@ -180,7 +180,7 @@ fn matches(pattern: &str, text: &str) -> bool {
     (least.parse().unwrap()..=most.parse().unwrap()).contains(&count) && text.chars().all(has)
 }
 
-/// What this command line prints, whatever its exit code.
+/// The output of this command line, with any exit code.
 fn touchstone(folder: &Path, line: &str) -> String {
     let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
     let output = command.current_dir(folder).args(line.split(' ')).output().unwrap();
@@ -191,7 +191,8 @@ fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// Records with what is rare: other tasks, another code, a mistake, an interruption, numbers not finite.
+/// Records with rare content: other tasks, another code, a deliberate error, an interruption, numbers not
+/// finite.
 fn rare_records(record: &Record) -> Vec<Value> {
     let mut rare = record.clone();
     rare.status = Status::Interrupted { step: 3, time: f64::INFINITY };
@@ -286,7 +287,7 @@ fn is_read(name: &str, document: &Value) -> Option<bool> {
     }
 }
 
-/// Takes away, adds and spoils each key of one object; tells where schema and expectation differ.
+/// Removes, adds and damages each key of one object; returns the differences between schema and expectation.
 fn damage(name: &str, schema: &Value, document: &Value, at: &str, object: &Value) -> Vec<String> {
     let [open, closed] = [false, true].map(|is_closed| Validator { root: schema, is_closed });
     let is_strict = object.get("additionalProperties").is_some();
@@ -317,7 +318,7 @@ fn damage(name: &str, schema: &Value, document: &Value, at: &str, object: &Value
     let (is_refused, is_read) = changed(&|of| drop(of.insert("stranger".into(), json!(1))));
     expect("with a stranger".into(), is_refused[0], is_strict);
     expect("with a stranger, closed".into(), is_refused[1], true);
-    // Serde does not deny a stranger beside the tag of a variant without fields.
+    // Serde does not deny an unknown key beside the tag of a variant without fields.
     let is_bare = object["properties"].as_object().unwrap().keys().eq(["kind"]);
     if let Some(is_read) = is_read.filter(|_| !is_bare) {
         expect("with a stranger, by the reader".into(), !is_read, is_strict);
@@ -325,8 +326,8 @@ fn damage(name: &str, schema: &Value, document: &Value, at: &str, object: &Value
     wrong
 }
 
-/// What the program writes is described to the last key, every description is of something that it writes,
-/// and a key that is missing, foreign or of the wrong type is refused, as the reader of the program does.
+/// The output of the program is described to the last key, every description matches some output, and a key
+/// that is missing, unknown or of the wrong type is refused, as by the reader of the program.
 #[test]
 fn schemas_describe_what_is_written_and_refuse_what_is_damaged() {
     let schemas = NAMES.map(schema);
@@ -381,7 +382,7 @@ fn every_key_has_a_description_and_every_number_a_unit() {
     assert!(count > 150, "{count} keys");
 }
 
-/// What two schemas define under one name is the same.
+/// Equal names in two schemas have equal definitions.
 #[test]
 fn schemas_agree_on_what_they_share() {
     let schemas = NAMES.map(schema);

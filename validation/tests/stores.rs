@@ -20,14 +20,14 @@ fn touchstone(folder: &Path, line: &str) -> Output {
     Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
 }
 
-/// What a command prints, and its exit code.
+/// The output of a command, and its exit code.
 fn of(folder: &Path, line: &str) -> (String, i32) {
     let output = touchstone(folder, line);
     let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
     (format!("{out}{error}"), output.status.code().unwrap())
 }
 
-/// Our own results as those of another code, made once.
+/// Our own results as another code's, made once.
 fn solved() -> &'static Path {
     static FOLDER: OnceLock<tempfile::TempDir> = OnceLock::new();
     let folder = FOLDER.get_or_init(|| {
@@ -187,7 +187,8 @@ fn a_code_that_fails_in_a_new_version_is_a_new_failure() {
     assert!(code == 1 && words.contains("gone: 1") && words.contains("new: "), "{words}");
 }
 
-/// A second submission of one method took the place of the first, also a failing one that of a passing one.
+/// A second submission of one method must not replace the first without notice, in particular not a passing
+/// one by a failing one.
 #[test]
 fn a_submission_never_takes_the_place_of_another_in_silence() {
     let folder = tempfile::tempdir().unwrap();
@@ -201,7 +202,7 @@ fn a_submission_never_takes_the_place_of_another_in_silence() {
     let written = || records(&store).iter().map(|path| fs::read(path).unwrap()).collect::<Vec<_>>();
     let before = written();
     assert_eq!(of(at, "submit couette a --store st").1, 0, "the same once more");
-    // Other columns first, other digits: the same results.
+    // Other columns first, other digits: equal results.
     let text = fs::read_to_string(at.join("a/results.csv")).unwrap();
     let swapped = |line: &str| {
         let mut cells: Vec<&str> = line.split(',').collect();
@@ -221,7 +222,7 @@ fn a_submission_never_takes_the_place_of_another_in_silence() {
     assert_eq!(written(), before);
 }
 
-/// A record can be edited and given a digest that fits: only its results tell.
+/// A record can be edited and given a matching digest: only its results can disprove it.
 #[test]
 fn a_forged_record_is_refused_by_its_results() {
     let folder = tempfile::tempdir().unwrap();
@@ -260,8 +261,7 @@ fn a_forged_record_is_refused_by_its_results() {
     }
 }
 
-/// Equal results of two codes have equal digests, and the machine of the other code is not that of this
-/// program.
+/// Equal results of two codes have equal digests, and the machine of the other code is not this program's.
 #[test]
 fn results_have_a_digest_and_machines_are_not_mixed() {
     let folder = tempfile::tempdir().unwrap();
@@ -324,7 +324,7 @@ fn drawn(at: &Path, method: &str, arguments: &str) -> Result<String, String> {
     }
 }
 
-/// A solver could grind: `changed: "nothing 2"` drew another problem with the same seed.
+/// A change of words must not draw another problem: a solver could try words until one fits.
 #[test]
 fn words_of_a_method_draw_nothing_and_what_it_is_does() {
     let folder = tempfile::tempdir().unwrap();
@@ -368,7 +368,7 @@ fn words_of_a_method_draw_nothing_and_what_it_is_does() {
     assert_ne!(other_seed.unwrap(), first);
 }
 
-/// Equal numbers are one number however they are written, wherever they stand among the settings of a method.
+/// Equal numbers in any notation, anywhere among the settings of a method, have one digest.
 #[test]
 fn a_method_has_one_digest_however_its_numbers_are_written() {
     let folder = tempfile::tempdir().unwrap();
@@ -395,7 +395,7 @@ fn a_method_has_one_digest_however_its_numbers_are_written() {
     }
 }
 
-/// What no submission can have was sealed, and problems that nobody can judge.
+/// Problems that no submission can solve, or no gate can judge, are not sealed.
 #[test]
 fn what_has_no_bound_or_is_no_method_is_not_sealed() {
     let folder = tempfile::tempdir().unwrap();
@@ -513,7 +513,7 @@ fn double(path: &Path, column: &str) {
     fs::write(path, format!("{head}\n{}", rows.lines().map(row).collect::<String>())).unwrap();
 }
 
-/// `report` of a sweep said "603 gates fail, 1 gate passes", and wrote that over whatever page was there.
+/// `report` of a sweep judges no gates, and replaces no page of other records.
 #[test]
 fn a_sweep_is_shown_judged_by_nothing_and_replaces_no_page_of_other_records() {
     let folder = tempfile::tempdir().unwrap();

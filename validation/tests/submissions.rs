@@ -1,5 +1,5 @@
-//! Submissions of other codes: our own results come back with the values of the run itself, and what is
-//! damaged is refused with file, line and column.
+//! Submissions of other codes: our own results return the metrics of the run, and damaged ones are refused
+//! with file, line and column.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -36,7 +36,7 @@ fn whole() -> &'static Path {
     folder.path()
 }
 
-/// A copy of the whole submission in a folder of its own.
+/// A copy of the whole submission in a separate folder.
 fn copy() -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let copy = folder.path().join("copy");
@@ -116,8 +116,8 @@ fn of_curve(line: &str, file: &str) -> (tempfile::TempDir, Record) {
     (folder, record)
 }
 
-/// Of a code that hands in no particles nothing was measured. What follows from its curve has the values of
-/// the run that wrote it, and all else is left out by name.
+/// For a code without particles the metrics of its curve equal the run that wrote it, and all others are
+/// removed by name.
 #[test]
 fn our_own_profile_or_path_is_measured_as_the_run_was() {
     for (line, file, least, left_out) in [
@@ -158,7 +158,7 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
     }
 }
 
-/// Of a curve of the open division nobody knows how many particles there were.
+/// The number of particles of a curve of the open division is unknown.
 #[test]
 fn a_curve_of_the_open_division_has_no_number_of_particles() {
     let line = "couette --variant seed --set rows=8 --set end=0.1";
@@ -273,7 +273,7 @@ fn drop_lines(folder: &Path, from: usize, to: usize) {
     fs::write(&path, kept.map(|(_, line)| format!("{line}\n")).collect::<String>()).unwrap();
 }
 
-/// Adds the first frame once more, so much later than the first or the last one.
+/// Repeats the first frame at a later time, `by` after the first or the last one.
 fn shifted(folder: &Path, file: &str, by: f64) {
     let text = read(&folder.join(file));
     let mut lines: Vec<String> = text.lines().map(String::from).collect();
@@ -294,7 +294,7 @@ fn dump(folder: &Path, atoms: &str, rows: &str) {
     fs::write(folder.join("a.dump"), text).unwrap();
 }
 
-/// What is done to a whole submission, and what the message names.
+/// Changes of a whole submission, and the names in the message.
 const DAMAGES: [(&str, Damage, &[&str]); 52] = [
     (
         "no method",
@@ -635,7 +635,7 @@ fn submitted(folder: &Path, line: &str, store: &str) -> serde_json::Value {
     serde_json::from_str(&read(&file.path())).unwrap()
 }
 
-/// What is read and what is not is told; what a code does not know of its cost is not in the record.
+/// Columns that are read and not read are reported; unknown costs are not in the record.
 #[test]
 fn unknown_costs_have_no_keys_and_columns_that_are_not_read_are_told() {
     let (folder, copy) = copy();
@@ -661,7 +661,7 @@ fn unknown_costs_have_no_keys_and_columns_that_are_not_read_are_told() {
     assert_eq!(["wall_s", "cpu_s", "threads"].map(of), [1.5, 6.0, 4.0].map(Some), "{cost}");
 }
 
-/// A problem whose document says of its settings something else than they give is not the one that is judged.
+/// A problem with a document that contradicts its settings is refused.
 #[test]
 fn a_problem_that_contradicts_its_own_settings_is_refused_by_field() {
     let (folder, copy) = copy();
@@ -775,7 +775,7 @@ fn the_order_of_own_particles_does_not_count() {
     assert_ne!(first["submission"]["results"], other["submission"]["results"]);
 }
 
-/// Writes places, velocities and densities with so many digits; with 0 as floats of 4 bytes.
+/// Writes positions, velocities and densities with `digits` digits; with 0 as floats of 4 bytes.
 fn round(folder: &Path, digits: usize) {
     let text = read(&folder.join("results.csv"));
     let round = |(k, cell): (usize, &str)| match cell.parse::<f64>() {
@@ -788,8 +788,8 @@ fn round(folder: &Path, digits: usize) {
     fs::write(folder.join("results.csv"), lines).unwrap();
 }
 
-/// Few digits of a file are no flaw of the method: what they do not determine is not applicable, by the name
-/// of the column.
+/// Few digits of a file are no flaw of the method: metrics that they do not determine are not applicable,
+/// with the name of the column.
 #[test]
 fn rounding_of_a_file_is_no_flaw_of_a_method() {
     for (line, gate, digits, other) in [
@@ -886,7 +886,7 @@ fn a_series_is_held_at_its_last_row() {
     assert_eq!(held, stated);
     rows.last_mut().unwrap().1 = 0.16;
     assert_ne!(of(&rows, "other"), stated, "what comes last counts");
-    // Its next row would have come long before the end.
+    // Its next row would be long before the end.
     rows.truncate(times.len() - 1);
     let (last, front) = *rows.last().unwrap();
     rows.push((last + 1e-3 * (end - last), front));
@@ -915,7 +915,7 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
     let (once, twice, other) = (drawn(7, "a"), drawn(7, "b"), drawn(8, "c"));
     assert_eq!(once, twice, "the same seed draws the same settings");
     assert_ne!(once, other, "another seed draws others");
-    // Particles that stand still will do: what is looked at comes before they are measured.
+    // Particles at rest suffice: the check comes before they are measured.
     let problem = read(&at.join("a/problem.json"));
     let spec: serde_json::Value = serde_json::from_str(&problem).unwrap();
     let spec: RunSpec = serde_json::from_value(spec["spec"].clone()).unwrap();
@@ -945,8 +945,8 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
     }
 }
 
-/// What `references/peers` says of other codes can be read, holds no particles, and was measured against the
-/// present tables of the dam break.
+/// The records of other codes in `references/peers` are readable, hold no particles, and were measured with
+/// the present tables of the dam break.
 #[test]
 fn the_records_of_other_codes_are_sound() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../references/peers/records");
@@ -983,7 +983,7 @@ fn the_records_of_other_codes_are_sound() {
     assert_eq!(codes.into_iter().collect::<Vec<_>>(), expected);
 }
 
-/// Stress is not in the results: what does not need it is measured, and nothing counts as diverged.
+/// Stress is not among the results: metrics without it are measured, and nothing counts as diverged.
 #[test]
 fn a_solid_is_measured_without_its_stress_and_without_what_needs_every_step() {
     for (line, expected) in [
@@ -1009,7 +1009,7 @@ fn a_solid_is_measured_without_its_stress_and_without_what_needs_every_step() {
     }
 }
 
-/// A copy of a record under another name would count twice; it is told by its name.
+/// A copy of a record under another name would count twice; it is reported by its name.
 #[test]
 fn a_copied_record_does_not_count() {
     let (folder, _copy) = copy();
@@ -1022,7 +1022,7 @@ fn a_copied_record_does_not_count() {
     assert!(told.is_some_and(|line| line.contains("does not count")), "{words}");
 }
 
-/// What other programs put before and at the ends of lines is no flaw.
+/// Byte order marks, and line ends of other systems, are no flaw.
 #[test]
 fn byte_order_marks_and_line_ends_of_windows_are_read() {
     let (folder, copy) = copy();
@@ -1072,7 +1072,7 @@ fn each_quantity_is_compared(folder: &tempfile::TempDir, last: usize, row: &[&st
     }
 }
 
-/// An observer who stands far away has larger numbers, which round off more.
+/// A distant observer has larger numbers with larger round-off.
 #[test]
 fn round_off_is_that_of_the_larger_numbers() {
     let folder = tempfile::tempdir().unwrap();
@@ -1091,8 +1091,8 @@ fn round_off_is_that_of_the_larger_numbers() {
     assert_eq!(codes, [Some(0), Some(1)]);
 }
 
-/// Two observers of one problem, as files: our own solver tells both the same; where one number differs by a
-/// billionth, the particle is named; what is no pair of observers is refused.
+/// Two observers of one problem, as files: our own solver gives equal results for both; if one number differs
+/// by a billionth, the particle is named; files that are no pair of observers are refused.
 #[test]
 fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     let folder = tempfile::tempdir().unwrap();
@@ -1110,7 +1110,7 @@ fn observers_are_compared_and_only_if_they_are_of_one_problem() {
     let last = results.lines().count();
     let row: Vec<&str> = results.lines().last().unwrap().split(',').collect();
     let x = row[2].parse::<f64>().unwrap();
-    // What round-off explains grows with the square of the steps that the code states.
+    // The bound of round-off grows with the square of the stated steps.
     set(&other, last, 2, &(x + 1e-12).to_string());
     let system = folder.path().join("same/system.json");
     let stated = read(&system);

@@ -1,4 +1,4 @@
-//! What other programs read: verdicts as JSON and as JUnit XML.
+//! Input of other programs: verdicts as JSON and as JUnit XML.
 
 use std::fs;
 use std::path::Path;
@@ -16,7 +16,7 @@ fn verdicts(folder: &Path, line: &str) -> (Value, String) {
     (json, fs::read_to_string(folder.join("junit.xml")).unwrap())
 }
 
-/// A case with passes, limitations and controls, and the same without records, so that its gates fail.
+/// A case with passes, limitations and controls, and without records, so that its gates fail.
 fn of_a_case() -> [(Value, String); 2] {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("empty")).unwrap();
@@ -24,7 +24,7 @@ fn of_a_case() -> [(Value, String); 2] {
         .map(|line| verdicts(folder.path(), line))
 }
 
-/// Every gate with how its run ended, that of a study as if it had been completed.
+/// Every gate with the end of its run; a study counts as completed.
 fn entries(verdicts: &Value) -> Vec<(&Value, bool)> {
     let list = |value: &'_ Value| value.as_array().expect("a list").len();
     assert!(list(&verdicts["runs"]) > 0);
@@ -46,7 +46,7 @@ fn is_inside(bound: &Value, value: f64) -> bool {
     }
 }
 
-/// The verdict by what `docs/records.md` says of the keys.
+/// The verdict by the keys, as in `docs/records.md`.
 fn judged_again(gate: &Value, is_completed: bool) -> &'static str {
     let is = |key: &str| gate[key].as_bool().unwrap();
     let Some(value) = gate["value"].as_f64() else {
@@ -66,7 +66,7 @@ fn judged_again(gate: &Value, is_completed: bool) -> &'static str {
     }
 }
 
-/// A limitation had a value and a margin, and a script could not find out what they were compared with.
+/// A script can recompute every verdict, including limitations, from the numbers of the file.
 #[test]
 fn a_script_can_judge_every_gate_from_its_own_numbers() {
     let mut kinds = std::collections::BTreeSet::new();
@@ -87,7 +87,7 @@ fn a_script_can_judge_every_gate_from_its_own_numbers() {
     assert!(kinds.iter().eq(expected), "{kinds:?}");
 }
 
-/// Neither the numbers of tests nor those of failures were compared with what stands below them.
+/// The stated numbers of tests and failures equal the numbers of elements.
 #[test]
 fn junit_counts_what_it_holds() {
     for (verdicts, xml) in of_a_case() {

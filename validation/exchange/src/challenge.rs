@@ -1,5 +1,5 @@
-//! Sealed problems: settings that are drawn from a seed and from what the method is, so that a method which
-//! was tuned for the problems that everybody knows shows it.
+//! Sealed problems: settings drawn from a seed and from the description of the method, so that tuning a
+//! method for the public problems becomes visible.
 
 use serde_json::{Map, Value, json};
 use touchstone_base::{random::Random, reference::sha256, spec::RunSpec};
@@ -11,8 +11,8 @@ use crate::{
 };
 
 impl Method {
-    /// SHA-256 of code, version, scheme, division and settings, in whatever order and with whatever white
-    /// space they were written. What `changed` says in words is left out.
+    /// SHA-256 of code, version, scheme, division and settings, independent of their order and white space.
+    /// The prose of `changed` is excluded.
     pub fn digest(&self) -> String {
         let Self { code, version, scheme, division, settings, .. } = self;
         let settings: Map<String, Value> =
@@ -20,8 +20,8 @@ impl Method {
         sha256(json!([code, version, scheme, division, settings]).to_string().as_bytes())
     }
 
-    /// The same without prose: of names the letters and digits, of settings the numbers and truth values.
-    /// Other words would draw other problems, until one fits.
+    /// The digest without prose: letters and digits of names, numbers and truth values of settings. Otherwise
+    /// a change of words would draw other problems, until one fits.
     fn digest_without_prose(&self) -> String {
         let Self { code, version, scheme, division, settings, .. } = self;
         let plain = |text: &String| -> String {
@@ -61,7 +61,7 @@ fn usual(value: &Value) -> Value {
 /// Is the problem of a submission the one that its seed and its method give?
 ///
 /// # Errors
-/// What was changed.
+/// The changed items.
 pub fn check(
     case: &dyn Case,
     sealed: &Sealed,

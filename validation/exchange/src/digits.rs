@@ -1,10 +1,11 @@
-//! Digits of what was handed in: rates over a short time, and equality to round-off, need all of a double.
+//! Digits of submitted numbers: rates over a short time, and equality to round-off, need all digits of a
+//! double.
 
 use touchstone_harness::playback::{Frame, Placed};
 
-/// Numbers with at most so many digits are rounded: of numbers with all digits one in 10⁵ is as short.
+/// Numbers with at most this many digits count as rounded: of unrounded numbers one in 10⁵ is as short.
 const FEW: usize = 11;
-/// As many different numbers tell that it is no coincidence.
+/// Number of different rounded values that exclude a coincidence.
 const DIFFERENT: usize = 3;
 /// A bound as small is of round-off.
 pub const ROUND_OFF: f64 = 1e-6;
@@ -12,13 +13,13 @@ pub const ROUND_OFF: f64 = 1e-6;
 /// The columns of a particle.
 pub const NAMES: [&str; 5] = ["x", "y", "u", "v", "density"];
 
-/// The numbers of a particle; NaN for what is missing.
+/// The numbers of a particle; NaN for missing ones.
 pub fn of(placed: &Placed) -> [f64; 5] {
     let Placed { position, velocity, density, .. } = placed;
     [position.x, position.y, velocity.x, velocity.y, density.unwrap_or(f64::NAN)]
 }
 
-/// Digits of a number as the shortest text that reads back equal, or that of a float of 4 bytes.
+/// Digits of a number in its shortest exact text, as a double or as a float of 4 bytes.
 fn digits(value: f64) -> usize {
     let short = value as f32;
     let text = if f64::from(short) == value { format!("{short:e}") } else { format!("{value:e}") };
@@ -26,8 +27,8 @@ fn digits(value: f64) -> usize {
     mantissa.bytes().filter(u8::is_ascii_digit).count()
 }
 
-/// The first column of a frame whose numbers all have few digits, in words, if there is one: of the numbers
-/// that are not those of the start, which may be round.
+/// Describes the first column of a frame whose numbers all have few digits. Numbers equal to the start's,
+/// which may be round, do not count.
 pub fn few(frame: &Frame, start: &dyn Fn(u32) -> Option<[f64; 5]>) -> Option<String> {
     (0..NAMES.len()).find_map(|k| {
         let moved = frame.particles.iter().filter_map(|placed| {

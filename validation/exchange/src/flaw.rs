@@ -1,15 +1,15 @@
-//! What is wrong with a submission, and where.
+//! Flaws of a submission, with their places.
 
 use std::{collections::BTreeMap, fmt};
 
 use touchstone_base::text::{first, short};
 
-/// What is wrong with a text whose last line does not end: the rest of its last number may be missing.
+/// Message for a text whose last line has no end: the rest of its last number may be missing.
 pub const CUT: &str = "the last line does not end; the file was cut short";
-/// Characters of a flaw that are told: what it repeats of a file is cut where it is repeated, and here once
-/// more, where a library repeats it.
+/// Printed characters of a flaw: repeated parts of a file are cut where they are repeated, and here again,
+/// where a library repeats them.
 const MOST_CHARACTERS: usize = 1000;
-/// Flaws of a kind that are told.
+/// Printed flaws of one kind.
 const MOST_OF_A_KIND: usize = 3;
 
 /// One thing that is wrong or missing.
@@ -21,23 +21,23 @@ pub struct Flaw {
     pub line: Option<u64>,
     /// Column or field, if it is of one.
     pub column: Option<String>,
-    /// What it is, and what was expected.
+    /// The flaw, and the expected content.
     pub what: String,
 }
 
 impl Flaw {
-    /// Of a whole file.
+    /// A flaw of a whole file.
     pub fn of(file: impl Into<String>, what: impl Into<String>) -> Self {
         let what = first(&what.into(), MOST_CHARACTERS);
         Self { file: file.into(), line: None, column: None, what }
     }
 
-    /// The same at a line.
+    /// The flaw at a line.
     pub fn at(self, line: u64) -> Self {
         Self { line: Some(line), ..self }
     }
 
-    /// The same in a column or field.
+    /// The flaw in a column or field.
     pub fn in_column(self, column: impl Into<String>) -> Self {
         Self { column: Some(short(&column.into())), ..self }
     }
@@ -53,7 +53,7 @@ impl fmt::Display for Flaw {
 }
 
 impl Flaw {
-    /// What flaws of one kind have in common: the column, and the first words of what it is.
+    /// The common part of flaws of one kind: the column, and the first words of the description.
     fn kind(&self) -> (Option<&str>, Vec<&str>) {
         let is_word = |word: &&str| word.chars().all(|c| c.is_alphabetic() || c == ',' || c == ';');
         let words = self.what.split_whitespace().filter(is_word).take(3);

@@ -1,4 +1,4 @@
-//! Problems for other codes, and what these codes made of them.
+//! Problems for other codes, and their results.
 //!
 //! ```text
 //! case ──▶ problem: problem.json, README.md, particles ──▶ another code ──▶ results ──▶ measured and judged

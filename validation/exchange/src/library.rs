@@ -15,9 +15,10 @@ use crate::{
 
 /// A solver that moves the particles of a problem.
 pub trait Solver {
-    /// What it is.
+    /// Its method.
     fn method(&self) -> Method;
-    /// Solves the problem, and tells the moving particles at each of its times, ascending; what it took.
+    /// Solves the problem, and passes the moving particles at each of its times, ascending, to `tell`;
+    /// returns the machine and the cost.
     fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System;
 }
 
@@ -25,7 +26,7 @@ pub trait Solver {
 /// has a section of the report.
 ///
 /// # Errors
-/// If the case refuses the run, or what the solver told does not fit it: each flaw in a line.
+/// If the case refuses the run, or the results of the solver do not fit: each flaw in a line.
 pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Record, RunError> {
     let problem = Problem::of(case, spec.clone())?;
     let mut results = Results::default();

@@ -40,29 +40,29 @@ pub struct Problem {
     pub spec: RunSpec,
     /// The problem in words.
     pub about: &'static str,
-    /// What scene and drive are made of.
+    /// Scene and drive.
     pub outline: Outline,
-    /// What a run of another code with these settings can be judged by.
+    /// Gates that judge a run of another code with these settings.
     pub gates: Vec<Gate>,
     /// The settings that the variant reads.
     pub fields: Vec<&'static Field>,
-    /// The command of the nearest run that has a gate for results of another code, if this one has none.
+    /// The command of the nearest run with a gate for results of another code, if this one has none.
     pub nearest: Option<String>,
     /// The conditions at walls, clamps and surfaces in words.
     pub boundary: &'static str,
-    /// What it is driven by beside the acceleration.
+    /// Drives in addition to the acceleration.
     pub further: Vec<Fact>,
     /// Every metric that is measured of results.
     pub metrics: Vec<MetricName>,
-    /// What may be handed in in place of particles.
+    /// Profile or series that may be submitted in place of particles.
     pub curve: Option<Curve>,
-    /// Of a sealed problem, what it was drawn from.
+    /// Origin of a sealed problem.
     pub sealed: Option<Sealed>,
-    /// If observers are to be compared, how the one differs who sees it so.
+    /// Relation of the observer, if observers are compared.
     pub relation: Option<Relation>,
 }
 
-/// What a sealed problem was drawn from.
+/// Origin of a sealed problem.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sealed {
@@ -85,30 +85,30 @@ const HAND_IN: &str = "A folder with these files:\n\n\
     - `results.csv` with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every \
     moving particle at each of the times below. Other formats: LAMMPS dump, `.npz`, `.vtu`, `.vtp`.\n";
 
-/// What a reader needs of the document: the run that is asked for.
+/// The requested run, as read from the document.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Asked {
     /// version of the document
     pub schema: u32,
     /// the run
     pub spec: RunSpec,
-    /// what it was drawn from
+    /// origin of a sealed problem
     #[serde(default)]
     pub sealed: Option<Sealed>,
-    /// name of the relation by which it is seen
+    /// name of the relation of the observer
     #[serde(default)]
     pub relation: Option<String>,
-    /// what the document says beside these
+    /// other content of the document
     #[serde(flatten)]
     rest: Map<String, Value>,
 }
 
 impl Asked {
-    /// Are the numbers of the document those that its spec gives? Its prose may be that of another version,
-    /// and it may have keys that ours lacks.
+    /// Checks that the numbers of the document are the numbers of its spec. Its prose may belong to another
+    /// version, and it may have more keys than ours.
     ///
     /// # Errors
-    /// The first field that says something else.
+    /// The first field that differs.
     pub fn agrees(&self, problem: &Problem) -> Result<(), Flaw> {
         let ours = problem.to_json();
         let both = self.rest.iter().filter_map(|(key, stated)| Some((key, stated, ours.get(key)?)));
@@ -140,7 +140,7 @@ fn contradiction<'a>(field: &str, stated: &'a Value, ours: &'a Value) -> Option<
             let mut of = both.map(|(key, a, b)| contradiction(&format!("{field}.{key}"), a, b));
             return of.find_map(|found| found);
         }
-        // What has names may have more or fewer of them in another version.
+        // Lists of named items may be longer or shorter in another version.
         (Value::Array(stated), Value::Array(ours))
             if !ours.is_empty() && ours.iter().all(|of| of["name"].is_string()) =>
         {
@@ -198,7 +198,7 @@ impl Problem {
         Self::seen(case, spec, None, false)
     }
 
-    /// The problem at a few early times as another observer sees it, if there is a relation.
+    /// The problem at a few early times in the frame of another observer, if there is a relation.
     ///
     /// # Errors
     /// As [`Problem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the
@@ -215,7 +215,8 @@ impl Problem {
         let ours = [stepwise, of_methods, costly].concat();
         let (mut gates, mut metrics) = (Vec::new(), Vec::new());
         let (mut further, mut fields, mut nearest) = (Vec::new(), Vec::new(), None);
-        // What another observer sees is compared, not measured, and settings are as the first one sees them.
+        // Results of other observers are compared, not measured, and settings are in the frame of the first
+        // one.
         if relation.is_none() {
             gates = plan::gates_of(case, &spec);
             gates.retain(|gate| !record::is_of(&ours, &gate.metric));
@@ -250,7 +251,7 @@ impl Problem {
         })
     }
 
-    /// The times of its particles \[s\]: those at which it is measured, or as many as its path takes.
+    /// The times of its particles \[s\]: times of measurement, or as many as its path needs.
     pub fn times(&self) -> Vec<f64> {
         let times = &self.outline.times;
         match (self.curve.as_ref().map_or(0, |curve| curve.least), times.last()) {
@@ -261,7 +262,7 @@ impl Problem {
         }
     }
 
-    /// The same, sealed: judged by what follows from the bounds of judged runs.
+    /// The sealed problem, with gates that follow from the bounds of judged runs.
     #[must_use]
     pub fn sealed(mut self, case: &dyn Case, sealed: Sealed) -> Self {
         self.gates = sealed::gates(case, &self.spec);
@@ -340,7 +341,7 @@ impl Problem {
         document
     }
 
-    /// Adds what is beside the scene: boundaries, drive, settings, metrics, the curve in place of particles.
+    /// Adds everything but the scene: boundaries, drive, settings, metrics, the curve in place of particles.
     fn state(&self, document: &mut Value) {
         let stated = |name: &str, value: Value, [unit, about]: [&str; 2]| {
             let mut all = json!({ "name": name, "unit": unit, "about": about });
@@ -504,7 +505,8 @@ impl Problem {
         }
     }
 
-    /// That no gate judges results of another code, if so, and which problem is judged.
+    /// A note that no gate judges results of another code, and a problem with gates; `None` if there are
+    /// gates.
     pub fn unjudged(&self) -> Option<String> {
         let is_judged = !self.gates.is_empty() || self.relation.is_some();
         let of = |run: &String| {
@@ -521,7 +523,7 @@ impl Problem {
         })
     }
 
-    /// What may be handed in in place of particles.
+    /// Profile or series that may be submitted in place of particles.
     fn of_curve(&self) -> String {
         let Some(curve) = &self.curve else { return String::new() };
         let columns = curve.columns.iter().map(|(name, unit)| format!(",{name}[{unit}]"));

@@ -1,5 +1,5 @@
-//! A folder of results of another code: what it says of its method and its machine, and its particles,
-//! measured by the code that measures our own runs.
+//! A folder of results of another code: its method, its machine, and its particles, measured by the code that
+//! measures our own runs.
 
 use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
@@ -40,10 +40,10 @@ pub const METHOD: &str = "method.json";
 const MOST_IN_SUPPORT: usize = 1000;
 /// Mass over density of a particle that a code chose itself, in squares of the problem's spacing.
 const VOLUMES: RangeInclusive<f64> = 1e-6..=1e6;
-/// Flaws of frames that are told.
+/// Printed flaws of frames.
 const MOST_FLAWS: usize = 20;
 
-/// A particle is lost whose distance from the origin is as many times that of the farthest at the start.
+/// A particle is lost beyond this multiple of the largest distance from the origin at the start.
 const FAR: f64 = 1e6;
 /// Share by which numbers of a method may differ that are stated as ours.
 const SAME: f64 = 1e-6;
@@ -65,15 +65,15 @@ pub struct Method {
     pub version: String,
     /// the scheme in words
     pub scheme: String,
-    /// what it took over
+    /// part of the problem that it used
     pub division: Division,
     /// settings by name
     pub settings: Map<String, Value>,
-    /// what differs from the problem
+    /// changes of the problem
     pub changed: String,
 }
 
-/// A machine and what the run took, as the document says; a number may be unknown.
+/// The machine and the cost of the run, as stated; a number may be unknown.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct System {
@@ -112,7 +112,7 @@ pub struct Entry {
     pub digest: String,
     /// The machine.
     pub system: System,
-    /// The problem that it says it solves, if the folder has one.
+    /// The stated problem, if the folder has one.
     pub asked: Option<Asked>,
     /// The particles.
     pub results: Results,
@@ -169,7 +169,7 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
         Some(Err(reason)) => {
             (Err(vec![Flaw::of(CURVE, format!("cannot be read: {reason}"))]), None)
         }
-        // What it stands for is known with the problem.
+        // The problem determines which particles represent it.
         Some(Ok(text)) => (Ok(Results::default()), Some((text, renamed.clone()))),
         None => (read::read(folder, renamed), None),
     };
@@ -209,8 +209,8 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Entry, Vec<Flaw>> {
     }
 }
 
-/// What is wrong with the ids of a frame, and in which of its rows: all that are expected are there once, and
-/// each is below that of the end.
+/// Errors of the ids of a frame with their rows: all expected ids must occur once, and each must be below
+/// `end`.
 fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, String)> {
     let (mut wrong, time) = (Vec::new(), number(frame.time));
     let mut ids: Vec<(u32, usize)> =
@@ -222,7 +222,7 @@ fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, Strin
     let has = |id: u32| ids.binary_search_by_key(&id, |(id, _)| *id).is_ok();
     let mut lacking = expected.iter().filter(|id| !has(**id));
     if let Some(first) = lacking.next() {
-        // The last id tells: a file that only lacks the first particle ends with the last of the problem.
+        // The last id decides: a file that only lacks the first particle ends with the last of the problem.
         let last = ids.last().map(|(id, _)| *id as usize);
         let ends = [Some(end), expected.last().map(|id| *id as usize + 1)];
         let is_higher = ends.contains(&last) && expected.iter().all(|id| has(id + 1));
@@ -258,8 +258,9 @@ fn reach(problem: &Problem) -> f64 {
     FAR * places.fold(problem.outline.method.support * medium.h, |most, x| most.max(x.abs()))
 }
 
-/// Bounds beyond which a run of the problem has diverged: 30 % of the density of a fluid, a half of that of a
-/// solid, and twice the sum of the sound speed, the largest speed at the start and that of a fall to the end.
+/// Bounds beyond which a run of the problem has diverged: 30 % of the density for a fluid, a half for a
+/// solid, and twice the sum of the sound speed, the largest initial speed and the speed of a fall until the
+/// end.
 fn limits(problem: &Problem) -> touchstone_solver::Limits {
     let Outline { particles, medium, times, .. } = &problem.outline;
     let share = if problem.is_solid() { 0.5 } else { 0.7 };
@@ -273,7 +274,7 @@ fn limits(problem: &Problem) -> touchstone_solver::Limits {
     touchstone_solver::Limits { density: [share * low, most], speed }
 }
 
-/// What is wrong with a frame of which so many particles are in one support that pairs exceed the memory.
+/// Error for a frame with so many particles in one support that pairs exceed the memory.
 fn crowded(frame: &Frame, support: f64, domain: &Domain, reach: f64) -> Option<String> {
     let mut cells: BTreeMap<[i64; 2], usize> = BTreeMap::new();
     for placed in frame.particles.iter().filter(|placed| placed.position.amax() <= reach) {
@@ -288,7 +289,7 @@ fn crowded(frame: &Frame, support: f64, domain: &Domain, reach: f64) -> Option<S
     ))
 }
 
-/// What is wrong with a text that reports and records show in one line.
+/// Error for a text that reports and records cannot show in one line.
 fn unnamed(file: &str, field: &str, text: &str) -> Option<Flaw> {
     let is_name = !text.trim().is_empty() && text.chars().count() <= 100;
     let unseen = unseen(text);
@@ -317,7 +318,7 @@ fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
 }
 
 impl Entry {
-    /// Puts the particles of the problem where they stand for a profile or series, if there is one.
+    /// Places the particles of the problem so that they represent a profile or series, if there is one.
     ///
     /// # Errors
     /// If the case measures none, or everything that is wrong with the table.
@@ -345,13 +346,13 @@ impl Entry {
         Problem::of(case, spec).map(Some)
     }
 
-    /// Whose particles are measured: those of the problem stand for a curve.
+    /// The measured particles: for a curve the problem's.
     fn particles(&self) -> Division {
         if self.curve.is_some() { Division::Closed } else { self.method.division }
     }
 
-    /// Leaves out what follows from particles, of a profile or series. Their number is known in the closed
-    /// division, in which it is that of the problem.
+    /// For a profile or series, removes metrics that need particles. Their number is known in the closed
+    /// division, where it is the problem's.
     fn only_of_curve(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
         let Some(curve) = case.declaration(Tier::Quick).curve.filter(|_| self.curve.is_some())
         else {
@@ -452,7 +453,7 @@ impl Entry {
         stated.iter().filter(move |_| is_closed).filter_map(other)
     }
 
-    /// The numbers of the particles of a code that chose them itself, and what is wrong with its start.
+    /// The ids of the particles of a code with its own particles, and the flaws of its start.
     fn own_ids(&self, problem: &Problem, flaws: &mut Vec<Flaw>) -> Vec<u32> {
         let Results { frames, own, places, .. } = &self.results;
         let (file, line) = &places[0];
@@ -490,7 +491,7 @@ impl Entry {
         ids
     }
 
-    /// Who made the run.
+    /// Code of the run.
     fn submission(&self, problem: &Problem) -> Submission {
         let Method { code, version, scheme, division, .. } = self.method.clone();
         let sealed = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
@@ -500,8 +501,8 @@ impl Entry {
         Submission { code, version, scheme, division, method, results, seed, states_our_method }
     }
 
-    /// SHA-256 of the particles in the order of their ids: equal results of two codes are told, in whatever
-    /// format each was handed in.
+    /// SHA-256 of the particles in the order of their ids: equal results of two codes are detected in any
+    /// format.
     fn digest_of_results(&self) -> String {
         let mut digests = String::new();
         let mut add = |bytes: Vec<u8>| digests += &sha256(&bytes);
@@ -531,7 +532,7 @@ impl Entry {
         Playback { frames: &self.results.frames, own, domain, reach, limits, fill }
     }
 
-    /// What a submission does not state: each by its name, and another number in its place.
+    /// Columns that a submission lacks: each by its name, with another fill in its place.
     fn not_given(&self, problem: &Problem, fill: Fill) -> Vec<(&'static str, Fill)> {
         let Results { frames, own, .. } = &self.results;
         let starts = own.iter().map(|own| &own.start);
@@ -545,9 +546,9 @@ impl Entry {
             .collect()
     }
 
-    /// Measures the particles in a scene as those of a run of the problem. What rests on a column that was
-    /// not handed in is absent, by the name of the column: it is measured once more with other numbers in
-    /// place of this column, and differs.
+    /// Measures the particles in a scene like a run of the problem. Metrics that depend on a missing column
+    /// are absent, with the name of the column: they differ when measured again with another fill of this
+    /// column.
     ///
     /// # Errors
     /// If the case refuses the run, or a frame cannot be put in place of its particles.
@@ -608,8 +609,8 @@ impl Entry {
         digits::few(last, &start).filter(|_| self.curve.is_none())
     }
 
-    /// Leaves out what few digits do not determine: what the case measures over a very short time, and what
-    /// is compared with round-off.
+    /// Removes metrics that rounded numbers do not determine: measurements over a very short time, and
+    /// comparisons with round-off.
     fn leave_out_rounded(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
         let Some(few) = self.few_digits(problem) else { return };
         let rates = case.declaration(Tier::Quick).of_all_digits;
@@ -623,7 +624,7 @@ impl Entry {
         record.take_out(&is_to_go, &Absent::NotGiven(few));
     }
 
-    /// Does the method state the kernel, the support and the step of ours, and did it make as many steps?
+    /// Whether the method states our kernel, support and step, and made the corresponding number of steps.
     fn states_our_method(&self, problem: &Problem) -> bool {
         let Outline { medium, times, dt, .. } = &problem.outline;
         let is = |name: &str, expected: f64| {

@@ -6,7 +6,7 @@ use touchstone_exchange::read::{Renamed, read};
 /// Id, place, velocity and density.
 type Row = (u32, Vector2<f64>, Vector2<f64>, Option<f64>);
 
-/// What two atoms at one time are read as.
+/// Two atoms at one time, as read.
 fn read_as(renamed: &Renamed) -> Vec<Row> {
     let text = "ITEM: TIMESTEP\n7\nITEM: TIME\n0.5\nITEM: NUMBER OF ATOMS\n2\n\
                 ITEM: ATOMS id x y vx vy c_rho\n2 3 4 5 6 1010\n1 0 1 2 -2 990\n";
@@ -34,7 +34,7 @@ fn atoms_are_counted_from_one_and_a_name_of_the_caller_comes_before_that_of_lamm
 
 const BOX: &str = "ITEM: BOX BOUNDS pp ss pp\n-1 3\n10 12\n-1 1\n";
 
-/// What is read of a dump, or what is wrong with it.
+/// The content of a dump, or its flaws.
 fn read_text(text: &str, map: &[(&str, &str)]) -> Result<Vec<(f64, Vec<Row>)>, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.dump"), text).unwrap();
@@ -50,7 +50,7 @@ fn read_text(text: &str, map: &[(&str, &str)]) -> Result<Vec<(f64, Vec<Row>)>, S
     Ok(results.frames.iter().map(frame).collect())
 }
 
-/// A snapshot with so many atoms in its head, and these rows.
+/// A snapshot with this number of atoms in its head, and these rows.
 fn snapshot(head: &str, count: usize, columns: &str, rows: &str) -> String {
     format!(
         "ITEM: TIMESTEP\n7\n{head}ITEM: NUMBER OF ATOMS\n{count}\nITEM: ATOMS {columns}\n{rows}"
@@ -167,7 +167,7 @@ fn many_snapshots_are_read_in_no_time() {
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
-/// Frame 10 comes after frame 9, whatever other numbers stand before theirs.
+/// Frame 10 comes after frame 9, whatever other numbers precede theirs.
 #[test]
 fn files_are_in_the_order_of_the_last_number_of_their_names() {
     let folder = tempfile::tempdir().unwrap();

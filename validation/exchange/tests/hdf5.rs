@@ -25,7 +25,7 @@ fn fixture(name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests").join(name)).unwrap()
 }
 
-/// What is read of a file with these bytes, or what is wrong with it.
+/// The content of a file with these bytes, or its flaws.
 fn read_as(name: &str, bytes: &[u8]) -> Result<Results, String> {
     let folder = tempfile::tempdir().unwrap();
     read_in(folder.path(), name, bytes)

@@ -1,4 +1,4 @@
-//! Arrays of NumPy: what is read, and archives that are damaged or much larger than they look.
+//! Arrays of NumPy: valid ones, and archives that are damaged or much larger than they look.
 
 use std::io::Write;
 
@@ -6,7 +6,7 @@ use flate2::{Compression, write::DeflateEncoder};
 use rawzip::{CompressionMethod, ZipArchiveWriter};
 use touchstone_exchange::read::{Renamed, read};
 
-/// An array of floats with a head that says what it likes.
+/// An array of floats with an arbitrary head.
 fn array(order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {
     let numbers: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
     of_kind("<f8", order, shape, &numbers)
@@ -51,7 +51,7 @@ fn archive(changed: &str, bytes: &[u8], method: CompressionMethod) -> Vec<u8> {
     all
 }
 
-/// What is said of an archive; nothing if it is read.
+/// The message for an archive; empty if it is read.
 fn said(archive: &[u8]) -> String {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.npz"), archive).unwrap();
@@ -81,7 +81,7 @@ fn an_archive_is_read_whole_or_not_at_all() {
     let place = changed.windows(4).position(|bytes| bytes == b"PK\x07\x08").unwrap();
     changed[place - 1] ^= 1; // the last byte of the first array
     assert!(said(&changed).contains("column t"), "{}", said(&changed));
-    // A sum that is not that of the array: the four bytes in its directory and after its data.
+    // A wrong checksum of the array: the four bytes in its directory and after its data.
     for method in [CompressionMethod::STORE, CompressionMethod::DEFLATE] {
         let mut changed = archive("", &[], method);
         for (mark, sum) in [(b"PK\x01\x02", 16), (b"PK\x07\x08", 4)] {
@@ -123,7 +123,7 @@ fn damaged_arrays_are_refused_by_name() {
     }
 }
 
-/// Whole numbers of every width and order of bytes are ids.
+/// Integers of every width and byte order are ids.
 #[test]
 fn ids_are_whole_numbers_of_every_width() {
     let mut kinds = 0;

@@ -1,8 +1,8 @@
-//! Tables of comma-separated values: names, what files state beside places and velocities, and messages.
+//! Tables of comma-separated values: names, further columns, and messages.
 
 use touchstone_exchange::read::{Renamed, Results, read};
 
-/// What is read of tables, or what is wrong with them.
+/// The content of tables, or their flaws.
 fn read_as(text: &str, map: &[(&str, &str)]) -> Result<Results, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("results.csv"), text).unwrap();
@@ -15,7 +15,7 @@ fn read_as(text: &str, map: &[(&str, &str)]) -> Result<Results, String> {
 
 const ROWS: &str = "0,0,1,2,3,4,5\n0,1,6,7,8,9,10\n";
 
-/// A density under a usual name is the density, whatever its capitals; under another one it is told.
+/// A density under a usual name is read, in any capitals; under another name a note states that it is not.
 #[test]
 fn usual_names_are_read_and_others_are_told() {
     for name in ["density", "Density", "rho", "Rhop", "rho[kg/m^3]", "c_rho", "RHO"] {
@@ -124,7 +124,7 @@ fn own_particles_start_in_the_first_frame() {
     assert_eq!(results.own.iter().map(|own| own.mass).collect::<Vec<_>>(), [1.5, 2.5]);
 }
 
-/// Mass and role are one for each particle at all times.
+/// Each particle has one mass and one role at all times.
 #[test]
 fn mass_and_role_do_not_change() {
     let of = |later: &str| {
@@ -144,8 +144,8 @@ fn mass_and_role_do_not_change() {
     }
 }
 
-/// Files of one submission have the same columns: a density in some of them would be that of the start in
-/// the others.
+/// Files of one submission must have the same columns: a density in some files only would be the initial one
+/// in the others.
 #[test]
 fn files_have_the_same_columns() {
     let folder = tempfile::tempdir().unwrap();
@@ -162,7 +162,7 @@ fn files_have_the_same_columns() {
     }
 }
 
-/// What a file says is repeated by its beginning, three of a kind, and a count.
+/// Messages repeat the beginning of a file's content, three of a kind, and a count.
 #[test]
 fn messages_are_short_whatever_a_file_says() {
     let heads = |count: usize| "a,".repeat(count) + "b";

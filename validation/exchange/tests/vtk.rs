@@ -1,5 +1,5 @@
-//! Files of ParaView as other programs write them: every encoding gives one result, and what a file says of
-//! itself is honoured.
+//! Files of ParaView as other programs write them: every encoding gives one result, and the stated types are
+//! respected.
 
 use std::io::Write;
 
@@ -63,7 +63,7 @@ impl Style {
         vec![self.head(&head.collect::<Vec<_>>()), blocks.concat()]
     }
 
-    /// An array: the text of its element; what is appended grows.
+    /// An array: the text of its element; `appended` grows.
     fn array(
         self,
         name: &str,
@@ -89,7 +89,7 @@ impl Style {
         )
     }
 
-    /// A file of three particles with vectors of so many components, ids of a kind, and one more array.
+    /// A file of three particles with vectors of `of` components, ids of a kind, and one more array.
     fn file(self, of: usize, ids: (&str, &str), more: (&str, &str, &[f64])) -> Vec<u8> {
         let vector = |x: [f64; 3], y: [f64; 3]| -> Vec<f64> {
             let rows = x.iter().zip(y).map(|(x, y)| vec![*x, y, 0.0][..of].to_vec());
@@ -126,7 +126,7 @@ impl Style {
     }
 }
 
-/// What is read of a file, or what is wrong with it.
+/// The content of a file, or its flaws.
 fn read_as(file: &[u8], map: &[(&str, &str)]) -> Result<Results, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.vtp"), file).unwrap();
@@ -167,7 +167,7 @@ fn every_encoding_gives_one_result() {
         (" format=\"appended\"", "base64"),
     ] {
         for k in 0..16 {
-            // Blocks of 24 bytes: those of the points are full, those of velocities are not.
+            // Blocks of 24 bytes: full for the points, not full for velocities.
             let (wide, big) = (k & 1 > 0, k & 2 > 0);
             let style =
                 Style { format, encoding, wide, big, block: if k & 4 > 0 { 24 } else { 0 } };
@@ -182,7 +182,7 @@ fn every_encoding_gives_one_result() {
     assert_eq!(tried, 96);
 }
 
-/// Whole numbers of every width are ids; an array that nobody reads is not decoded, whatever it is.
+/// Integers of every width are ids; an array that is not used is not decoded, whatever it contains.
 #[test]
 fn ids_are_whole_numbers_of_every_width_and_other_arrays_are_not_decoded() {
     let binary = Style { format: " format=\"binary\"", ..TEXT };
@@ -204,7 +204,7 @@ fn ids_are_whole_numbers_of_every_width_and_other_arrays_are_not_decoded() {
     assert!(words.contains("column density: it is -2;"), "{words}");
 }
 
-/// Particles are numbered by their place only if no array could be their ids, and this is said.
+/// Particles are numbered by position only if no array can be their ids, and a note states this.
 #[test]
 fn ids_under_an_unknown_name_are_asked_for() {
     let file = TEXT.file(3, ("serial", "Int32"), ("kind", "UInt8", &[0.0; 3]));
@@ -228,7 +228,7 @@ fn ids_under_an_unknown_name_are_asked_for() {
     assert_eq!(particles(&read_as(&both, &[("id", "Idp")]).unwrap()), expected());
 }
 
-/// What is written in place of something, and what is said.
+/// A replaced text, and the message.
 #[test]
 fn what_a_file_says_of_itself_is_honoured() {
     let raw = Style { format: " format=\"appended\"", encoding: "raw", ..TEXT };
@@ -263,7 +263,7 @@ fn what_a_file_says_of_itself_is_honoured() {
     }
 }
 
-/// Heads that promise what is not there, or more than a computer has, cost nothing.
+/// Headers that promise missing data, or more data than a computer has, cost nothing.
 #[test]
 fn heads_of_arrays_are_not_believed() {
     let head = |numbers: &[u64]| -> String {

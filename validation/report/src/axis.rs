@@ -12,7 +12,7 @@ pub struct Axis {
     pub scale: Scale,
     /// Ends of the axis; `None` takes the data's with some padding.
     pub range: Option<(f64, f64)>,
-    /// What stands at its ticks, one beside the other; empty for numbers.
+    /// Labels at its ticks, in order; empty for numbers.
     pub names: Vec<String>,
 }
 
@@ -32,7 +32,7 @@ impl Axis {
         Self { scale: Scale::Log, ..Self::linear(label) }
     }
 
-    /// The same axis with fixed ends.
+    /// Fixes the ends.
     pub fn range(self, lo: f64, hi: f64) -> Self {
         Self { range: Some((lo, hi)), ..self }
     }
@@ -124,7 +124,8 @@ pub(super) struct Mapping {
 }
 
 impl Mapping {
-    /// 0 at the low end, 1 at the high end, beyond them outside; `None` for what has no place.
+    /// 0 at the low end, 1 at the high end, beyond these values outside; `None` for a value without a
+    /// position.
     pub fn unit(&self, v: f64) -> Option<f64> {
         let place = match self.scale {
             Scale::Linear => (v - self.lo) / (self.hi - self.lo),

@@ -21,7 +21,8 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// The bar of a map so high, for given ends or for those of the data, symmetric where the map is.
+    /// The colour bar of a map with this height, for given ends or for the range of the data, symmetric if
+    /// the map is.
     pub fn new(
         map: ColourMap,
         label: &str,
@@ -43,7 +44,7 @@ impl Bar {
         Self { map, values, is_shared: false }
     }
 
-    /// Which of the colours a value has.
+    /// The index of the colour of a value.
     pub fn step(&self, value: f64) -> Option<usize> {
         Some(((self.values.mapping.unit(value)? * STEPS as f64) as usize).min(STEPS - 1))
     }

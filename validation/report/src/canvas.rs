@@ -50,7 +50,7 @@ impl Rect {
         (x.clamp(self.left, self.right()), y.clamp(self.top, self.bottom()))
     }
 
-    /// Whether the whole of another lies inside.
+    /// Whether another rectangle is completely inside.
     pub fn encloses(&self, other: &Self) -> bool {
         self.contains((other.left, other.top)) && self.contains((other.right(), other.bottom()))
     }
@@ -65,7 +65,7 @@ impl Rect {
         }
     }
 
-    /// The part of the segment that lies inside (Liang and Barsky).
+    /// The part of the segment inside (Liang and Barsky).
     pub fn clip(&self, a: Point, b: Point) -> Option<(Point, Point)> {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
@@ -89,7 +89,7 @@ impl Rect {
     }
 }
 
-/// What a drawing is drawn on.
+/// A surface for drawing.
 pub(super) trait Sheet {
     /// A filled polygon.
     fn area(&mut self, corners: &[Point], colour: Colour);
@@ -97,7 +97,7 @@ pub(super) trait Sheet {
     fn line(&mut self, points: &[Point], colour: Colour, width: f64, dash: Dash);
     /// A filled disc.
     fn disc(&mut self, centre: Point, radius: f64, colour: Colour);
-    /// A text whose point lies on its base line; of an upright one, which reads upwards, to its right.
+    /// A text with its point on its base line; upright text reads upwards, to the left of its point.
     fn text(&mut self, text: &str, at: Point, how: Type);
 }
 
@@ -113,7 +113,7 @@ impl<'a> Canvas<'a> {
         Self { sheet, corner: (0.0, 0.0) }
     }
 
-    /// What lies right of and below the corner of a rectangle.
+    /// The part of a canvas to the right of and below the corner of a rectangle.
     pub fn from(&mut self, area: Rect) -> Canvas<'_> {
         let corner = self.moved((area.left, area.top));
         Canvas { sheet: self.sheet, corner }

@@ -36,7 +36,7 @@ pub fn check_page(html: &str) -> Result<(), String> {
             "a" => {
                 if let Some(target) = element.attribute("href").and_then(|to| to.strip_prefix('#'))
                 {
-                    // What follows a question mark is read by the page's script.
+                    // The page's script reads the part after a question mark.
                     targets.insert(target.split('?').next().unwrap_or_default());
                 }
             }
@@ -60,7 +60,7 @@ fn name<'a>(node: &Node<'a, '_>) -> &'a str {
     node.tag_name().name()
 }
 
-/// A page loads nothing, and links to nothing but parts of itself, files beside it, and papers.
+/// A page loads nothing, and links only to parts of itself, to files in its folder, and to papers.
 fn check_attribute(element: &Node, attribute: &Attribute) -> Result<(), String> {
     let (tag, value) = (name(element), attribute.value());
     match attribute.name() {
@@ -81,8 +81,8 @@ fn check_attribute(element: &Node, attribute: &Attribute) -> Result<(), String> 
     }
 }
 
-/// Does a link lead to a part of the page, or to a file beside it or below? Names without a colon have no
-/// scheme, such as `javascript:`.
+/// Whether a link leads to a part of the page, or to a file in its folder or below. Names without a colon
+/// have no scheme, such as `javascript:`.
 fn leads_beside(target: &str) -> bool {
     let is_odd = |c: char| c == ':' || c == '\\' || c.is_whitespace() || c.is_control();
     let is_file = !target.is_empty() && !target.contains(is_odd) && !target.starts_with('/');

@@ -26,11 +26,11 @@ impl Colour {
     /// Okabe–Ito yellow; too pale for lines, good for cells.
     pub const YELLOW: Self = Self(240, 228, 66);
 
-    /// A dark brown, beside the Okabe–Ito colours: darker than vermillion to every eye.
+    /// A dark brown in addition to the Okabe–Ito colours: darker than vermillion for every colour vision.
     pub const BROWN: Self = Self(112, 66, 20);
 
-    /// The colour of the `i`th of many series; none is black, which stands for references and for
-    /// our runs beside others.
+    /// The colour of the `i`th of many series; never black, the colour of references and of our runs among
+    /// others.
     pub fn cycle(i: usize) -> Self {
         const CYCLE: [Colour; 7] = [
             Colour::BLUE,

@@ -32,7 +32,7 @@ impl Counts {
         self.gates[outcome as usize]
     }
 
-    /// What came of all gates, failures first, and of the runs, in a sentence.
+    /// Counts of the verdicts of all gates, failures first, and of the runs, in a sentence.
     pub fn headline(self) -> String {
         let of =
             |count: usize, one: &str, many: &str| (count > 0).then(|| counted(count, one, many));
@@ -83,7 +83,7 @@ impl Counts {
         }
     }
 
-    /// What a reader must know of the verdicts, as a line that links to all of them.
+    /// A note on the verdicts, as a line with links to all of them.
     pub(super) fn line(self) -> Markup {
         if self.worst().is_none() {
             return html! { p.verdict { "Nothing was judged" } };

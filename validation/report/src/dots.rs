@@ -15,7 +15,7 @@ pub(super) struct Scaled<'a> {
 }
 
 impl<'a> Scaled<'a> {
-    /// Beside a bar so high, with so many CSS pixels for one of the units of x and y.
+    /// Dots next to a bar of this height, with these CSS pixels for a unit of x and y.
     pub fn new(dots: &'a Dots, height: f64, pixels: f64) -> Self {
         let data = dots.points.iter().map(|p| p.2);
         Self {

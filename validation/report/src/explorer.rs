@@ -7,9 +7,9 @@ use maud::{Markup, html};
 /// All verdicts of a page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Explorer {
-    /// One row a gate, in the order in which they are shown first. The script knows columns by their places:
-    /// verdict; name of the gate, which is also its anchor, and begins with that of the case and a dot; run,
-    /// with the variant first, or study; value; bound; margin; evidence; numbers of the reasons.
+    /// One row for each gate, in the initial order. The script addresses columns by position: verdict; name
+    /// of the gate, which is also its anchor, and begins with the case and a dot; run, with the variant
+    /// first, or study; value; bound; margin; evidence; numbers of the reasons.
     pub gates: Table,
     /// The reasons that rows refer to by number, from 1; inline markup.
     pub reasons: Vec<String>,

@@ -1,4 +1,4 @@
-//! The data model of a figure: what to draw, not how.
+//! The data model of a figure: content, not layout.
 
 use super::axis::Axis;
 use super::colour::{Colour, ColourMap};
@@ -8,7 +8,7 @@ use super::colour::{Colour, ColourMap};
 pub struct Figure {
     /// Unique on its page; also the name of its PNG file.
     pub id: String,
-    /// What is seen, with commit and settings; inline markup as in [`super::Block::Prose`].
+    /// Description, with commit and settings; inline markup as in [`super::Block::Prose`].
     pub caption: String,
     /// Panels, row by row.
     pub panels: Vec<Plot>,
@@ -58,7 +58,7 @@ pub struct Plot {
     pub y: Axis,
     /// Drawn in this order.
     pub layers: Vec<Layer>,
-    /// Whether the names of the layers stand below.
+    /// Whether the names of the layers are listed below.
     pub legend: bool,
 }
 
@@ -74,7 +74,7 @@ impl Plot {
         self
     }
 
-    /// Its dots, if it has any.
+    /// Its dots, if any.
     pub(super) fn dots(&self) -> Option<&Dots> {
         self.layers.iter().find_map(|layer| match layer {
             Layer::Dots(dots) => Some(dots),
@@ -82,7 +82,7 @@ impl Plot {
         })
     }
 
-    /// The same plot without a legend.
+    /// Removes the legend.
     pub fn without_legend(self) -> Self {
         Self { legend: false, ..self }
     }
@@ -189,9 +189,9 @@ pub struct Series {
     pub look: Look,
     /// (lower, upper) end of the bar in x for each point; empty for none.
     pub x_bars: Vec<(f64, f64)>,
-    /// A short text beside each point, left out where there is no room; empty for none.
+    /// A short label next to each point, omitted where there is no room; empty for none.
     pub labels: Vec<String>,
-    /// A name of each point, shown beside its value where a page is pointed at; empty for none.
+    /// A name of each point, shown with its value on hover in a page; empty for none.
     pub names: Vec<String>,
 }
 
@@ -225,8 +225,8 @@ impl Series {
         Self { look: Look { width, ..self.look }, ..self }
     }
 
-    /// Colour, marker and line of the `i`th of many curves that may lie on each other: of any three in a
-    /// row, one is solid with full markers, and the next two lie dashed and dotted with open ones on top.
+    /// Colour, marker and line of the `i`th of many curves that may coincide: of any three in sequence, one
+    /// is solid with full markers, and the next two are drawn over it dashed and dotted with open ones.
     pub fn cycle(self, i: usize) -> Self {
         let dash = [Dash::Solid, Dash::Dashed, Dash::Dotted][(i + 1) % 3];
         let (colour, marker) = (Colour::cycle(i), Some(Shape::cycle(i)));
@@ -234,7 +234,7 @@ impl Series {
         Self { look: Look { colour, line: Some(dash), marker, open, ..self.look }, ..self }
     }
 
-    /// A short text beside each point.
+    /// Sets a short label next to each point.
     pub fn labels(self, labels: impl IntoIterator<Item = String>) -> Self {
         Self { labels: labels.into_iter().collect(), ..self }
     }

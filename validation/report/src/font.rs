@@ -4,10 +4,10 @@ use super::colour::Colour;
 use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 use std::sync::OnceLock;
 
-/// The font file (licence beside it).
+/// The font file (licence in its folder).
 pub(super) static BYTES: &[u8] = include_bytes!("../assets/DejaVuSans-subset.ttf");
 
-/// Family list of the SVG; the first is what a page embeds, Verdana has nearly the same widths.
+/// Family list of the SVG; a page embeds the first, Verdana has nearly the same widths.
 pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, sans-serif";
 
 /// Ascent minus descent over the em: the rasteriser sizes text by this height.
@@ -19,7 +19,7 @@ pub(super) const DIGIT_HEIGHT: f64 = 1493.0 / 2048.0;
 /// Em of tick labels, in CSS pixels.
 pub(super) const TICK_EM: f64 = 11.0;
 
-/// Which end of a text sits at its point.
+/// The end of a text at its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Align {
     /// The text starts at the point.

@@ -1,4 +1,4 @@
-//! What all plots share: the room that they take, axes with ticks, titles and labels.
+//! Common parts of all plots: their room, axes with ticks, titles and labels.
 
 use super::axis::Ruler;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
@@ -10,7 +10,7 @@ const TITLE_EM: f64 = 12.5;
 const NOTE_EM: f64 = 9.5;
 const GRID: Colour = Colour(232, 232, 232);
 
-/// Room that a panel takes: what its axes enclose, and around it.
+/// Room of a panel: inside its axes, and around them.
 pub(super) struct Room {
     pub left: f64,
     pub width: f64,
@@ -20,23 +20,23 @@ pub(super) struct Room {
     pub bottom: f64,
 }
 
-/// Two axes, what they enclose, and the texts around them.
+/// Two axes, the area between them, and the texts around it.
 pub(super) struct Frame<'a> {
     pub area: Rect,
     pub x: Ruler,
     pub y: Ruler,
     pub title: &'a str,
-    /// What could not be drawn.
+    /// Note on points that could not be drawn.
     pub note: String,
 }
 
 impl Frame<'_> {
-    /// Where a point lies.
+    /// The position of a point.
     pub fn place(&self, (x, y): (f64, f64)) -> Option<Point> {
         Some(self.area.at((self.x.mapping.unit(x)?, self.y.mapping.unit(y)?)))
     }
 
-    /// The room that it takes, with so much on the right.
+    /// The room of the frame, with this width on the right.
     pub fn room(&self, right: f64) -> Room {
         let with = |text: &str, without: f64, extra: f64| {
             without + if text.is_empty() { 0.0 } else { extra }

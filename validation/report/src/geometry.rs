@@ -2,18 +2,18 @@
 
 use super::canvas::{Point, Rect};
 
-/// The places of the points, split where a point has none.
+/// The positions of the points, split where a point has none.
 pub(super) fn runs<P: Copy, T: Copy>(points: &[P], place: impl Fn(P) -> Option<T>) -> Vec<Vec<T>> {
     let places: Vec<Option<T>> = points.iter().map(|point| place(*point)).collect();
     let runs = places.split(Option::is_none).filter(|run| !run.is_empty());
     runs.map(|run| run.iter().copied().flatten().collect()).collect()
 }
 
-/// A distance that is not seen, in CSS pixels.
+/// An invisible distance in CSS pixels.
 const SEEN: f64 = 0.15;
 
-/// The same curve to the eye: no point of it is farther than [`SEEN`] from the line through what remains
-/// (Ramer, Douglas and Peucker).
+/// A visually equal curve with fewer points: no point of the original is farther than [`SEEN`] from the line
+/// through the remaining ones (Ramer, Douglas and Peucker).
 pub(super) fn thin(run: &[Point]) -> Vec<Point> {
     let mut is_kept = vec![false; run.len()];
     let mut pieces = vec![(0, run.len().saturating_sub(1))];

@@ -8,12 +8,12 @@ use touchstone_base::text::escaped;
 /// Characters that mean something.
 const MARKS: [char; 5] = ['*', '`', '[', ']', '\\'];
 
-/// A text that is shown as it is, whatever marks it has.
+/// A text without any markup, whatever characters it has.
 pub fn plain(text: &str) -> String {
     text.chars().flat_map(|c| MARKS.contains(&c).then_some('\\').into_iter().chain([c])).collect()
 }
 
-/// A text as a name in a command, whatever marks it has.
+/// A text as a name in a command, without any markup.
 pub fn code(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("`{}`", text.replace('`', "'")) }
 }
@@ -57,7 +57,7 @@ fn element(text: &str, out: &mut String) -> usize {
     link(text, out).unwrap_or(0)
 }
 
-/// Where a mark ends what it began: not behind a backslash, except in code, which has none.
+/// The end of the span of a mark: not after a backslash, except in code, which has no escapes.
 fn end_of(text: &str, mark: &str) -> Option<usize> {
     let backslashes = |at| text[..at].bytes().rev().take_while(|byte| *byte == b'\\').count();
     let is_mark = |at: &usize| mark == "`" || backslashes(*at).is_multiple_of(2);

@@ -1,4 +1,4 @@
-//! Legends: what stands for what, below what they explain.
+//! Legends: symbols and names, below their plots.
 
 use super::canvas::{Align, Canvas, Point, Type};
 use super::figure::Look;
@@ -23,7 +23,7 @@ pub(super) fn column(entries: &[Entry]) -> f64 {
     SAMPLE + 7.0 + font::widest(entries.iter().map(|entry| &entry.name), EM) + 2.0 * PADDING
 }
 
-/// Rows of the entries in as many columns as fit side by side.
+/// Rows of the entries in as many columns as fit.
 fn rows(entries: &[Entry], width: f64) -> usize {
     let columns = ((width - PADDING) / column(entries)) as usize;
     entries.len().div_ceil(columns.max(1)).max(1)

@@ -1,8 +1,8 @@
 //! Rendering: figures, tables and one self-contained page, from plain data.
 //!
-//! Nothing here knows particles, solvers or cases. Build a [`Figure`], [`Table`] or [`Page`] from
-//! numbers and text, then call [`svg`], [`png()`], [`Page::html`] or [`Page::write_html`].
-//! [`check_page`] reads a page back and says whether it can be trusted to open from disk.
+//! This crate does not depend on particles, solvers or cases. Build a [`Figure`], [`Table`] or [`Page`] from
+//! numbers and text, then call [`svg`], [`png()`], [`Page::html`] or [`Page::write_html`]. [`check_page`]
+//! reads a page back and checks that it opens from disk.
 
 #![allow(clippy::disallowed_methods, reason = "drawings are judged by eye, not by bits")]
 

@@ -24,7 +24,7 @@ pub struct Subject {
 /// Subjects side by side.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Overview {
-    /// Description of the table, for readers who hear it.
+    /// Description of the table for screen readers.
     pub caption: String,
     /// Columns behind picture and name.
     pub columns: Vec<Column>,

@@ -33,7 +33,7 @@ pub struct Page {
     pub opening: Vec<Block>,
     /// Sections in order.
     pub sections: Vec<Section>,
-    /// Folder of the figures' PNG files beside the page; empty writes and links none.
+    /// Folder of the figures' PNG files, in the folder of the page; an empty name writes and links none.
     pub png_folder: String,
     /// Names the records that the page shows, as [`made_from`] reads it.
     pub made_from: String,
@@ -46,8 +46,8 @@ pub struct Section {
     pub id: String,
     /// Heading; inline markup.
     pub title: String,
-    /// How its gates ended: said below the heading, with links to those in the table of all verdicts that
-    /// have its title, and the worst in the table of contents.
+    /// Counts of the verdicts of its gates: shown below the heading, with links to the rows of the table of
+    /// all verdicts with its title; the worst verdict is shown in the table of contents.
     pub counts: Counts,
     /// Content in order.
     pub blocks: Vec<Block>,
@@ -107,7 +107,7 @@ pub enum Block {
     Explorer(Explorer),
     /// Blocks behind a click.
     Details {
-        /// What is behind; inline markup.
+        /// The summary of folded content; inline markup.
         summary: String,
         /// The blocks.
         blocks: Vec<Block>,
@@ -180,12 +180,12 @@ impl Page {
         all
     }
 
-    /// Writes what [`Page::html`] has said, and the figures' PNG files into their folder beside it. Every
-    /// file appears whole or not at all.
+    /// Writes the output of [`Page::html`], and the figures' PNG files into their folder. Every file appears
+    /// complete or not at all.
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.png_folder.is_empty() {
-            // What a report that was killed left there goes, too.
+            // Also removes files left by a killed report.
             let images = OutputFolder::create_inside(&folder.join(&self.png_folder));
             write_images(&self.figures(), &images.map_err(io::Error::other)?)?;
         }
@@ -215,7 +215,7 @@ fn write_images(all: &[&Figure], folder: &OutputFolder) -> io::Result<()> {
     all.par_iter().try_for_each(write)
 }
 
-/// Adds the drawings of blocks, those behind a click with them.
+/// Adds the drawings of blocks, including folded ones.
 fn add_figures<'a>(blocks: &'a [Block], to: &mut Vec<&'a Figure>) {
     for block in blocks {
         match block {
@@ -274,7 +274,7 @@ impl Writer<'_> {
         match block {
             Block::Prose(paragraphs) => html! { @for p in paragraphs { (prose(p)) } },
             Block::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
-            // What is linked to is there all the same.
+            // The target of a link must exist.
             Block::Figure(figure) if figure.panels.is_empty() => {
                 html! { p id=(figure.id) { "No figure: none of the runs that it shows was completed." } }
             }
@@ -315,7 +315,7 @@ impl Writer<'_> {
 /// Words of a paragraph that is shown at once; of a longer one the first sentence is.
 const LONG: usize = 45;
 
-/// A paragraph; what follows the first sentence of a long one opens by a click.
+/// A paragraph; the part after the first sentence of a long one is folded.
 fn prose(text: &str) -> Markup {
     let (first, rest) = first_sentence(text);
     if rest.is_empty() || text.split_whitespace().count() <= LONG {

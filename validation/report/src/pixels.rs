@@ -1,4 +1,4 @@
-//! Figures in pixels inside the page: those that would be too large as SVG.
+//! Figures as pixels inside the page, for figures that are too large as SVG.
 
 use color_quant::NeuQuant;
 use maud::{Markup, PreEscaped};
@@ -10,14 +10,14 @@ use super::{figure::Figure, render};
 
 /// Bytes of an SVG beyond which a page has the figure in pixels: some thousand dots.
 const LARGEST_SVG: usize = 100_000;
-/// Pixels of an image per CSS pixel: half of what a file has, for the size of the page.
+/// Pixels of an image per CSS pixel: half of the density of a file, to limit the size of the page.
 const DENSITY: u32 = 1;
 /// Bits of a colour channel that are kept: edges stay smooth, and the file is a third smaller.
 const BITS: u8 = 4;
 
-/// Colours of an image: with 24 of them it takes two thirds of what it takes with 256.
+/// Colours of an image: 24 colours take two thirds of the bytes of 256.
 const COLOURS: usize = 24;
-/// One pixel of so many is looked at to choose them.
+/// One of this many pixels is sampled to choose them.
 const SAMPLED: i32 = 10;
 
 /// The figure as SVG, or as pixels where that would be too large.
@@ -42,7 +42,7 @@ fn image(caption: &str, png: &[u8]) -> Markup {
 /// Red, green and blue.
 type Rgb = [u8; 3];
 
-/// A PNG of three bytes a pixel, in the colours of a palette: a few that stand for all of them.
+/// A PNG of three bytes a pixel, reduced to a palette of a few colours.
 fn encode(pixels: &[u8], (width, height): (u32, u32)) -> io::Result<Vec<u8>> {
     let all = || coarse_colours(pixels);
     let opaque: Vec<u8> = all().flat_map(|[r, g, b]| [r, g, b, u8::MAX]).collect();

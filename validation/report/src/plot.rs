@@ -12,7 +12,7 @@ use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
 use super::legend::{Entry, MARKER};
 
 const MARK_EM: f64 = 9.0;
-/// How many points of lines, which lie a few pixels apart, the label of a point may hide.
+/// Number of points of lines, a few pixels apart, that the label of a point may hide.
 const MARK_HIDES: usize = 2;
 /// Opacity of bands.
 const BAND: f64 = 0.22;
@@ -40,7 +40,7 @@ impl<'a> Prepared<'a> {
         let (mut x, mut y) = (plot.x.mapping(xs), plot.y.mapping(ys));
         let mut area = Rect::of(size);
         let dots = plot.dots().map(|dots| {
-            // A dot on the border is seen whole.
+            // A dot on the border is completely visible.
             for axis in [&mut x, &mut y] {
                 axis.lo -= 0.5 * dots.diameter;
                 axis.hi += 0.5 * dots.diameter;
@@ -67,7 +67,7 @@ impl<'a> Prepared<'a> {
         this
     }
 
-    /// Its colour bar, if it has one.
+    /// Its colour bar, if any.
     pub fn bar(&mut self) -> Option<&mut Bar> {
         self.dots.as_mut().map(|dots| &mut dots.bar)
     }
@@ -77,7 +77,7 @@ impl<'a> Prepared<'a> {
         self.dots.as_ref().map(|dots| &dots.bar).filter(|bar| !bar.is_shared)
     }
 
-    /// What could not be drawn, in words.
+    /// Note on points that could not be drawn.
     fn dropped(&self) -> String {
         let is_lost = |dot: &&(f64, f64, f64)| !(dot.0.is_finite() && dot.1.is_finite());
         let dots = self.plot.dots().into_iter().flat_map(|dots| &dots.points);
@@ -207,8 +207,8 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// What the legend names, if there is one: series, and cells as squares. A series without a point would
-    /// have a symbol there and none in the plot.
+    /// Entries of the legend, if there is one: series, and cells as squares. A series without a point has no
+    /// symbol in the plot, and no entry.
     pub fn legend(&self) -> Vec<Entry> {
         let entry = |layer: &Layer| match layer {
             Layer::Series(series) if series.points.is_empty() => None,
@@ -237,7 +237,7 @@ impl<'a> Prepared<'a> {
     /// Draws the plot; the upper left corner of its axes is the canvas's.
     pub fn draw(&self, canvas: &mut Canvas) {
         let area = self.frame.area;
-        // Bands lie below the grid.
+        // Bands are below the grid.
         for layer in &self.plot.layers {
             if let Layer::Band { points, colour } = layer {
                 self.draw_band(canvas, points, *colour);

@@ -10,7 +10,7 @@ use plotters::prelude::{BitMapBackend, Color, DrawingBackend, RGBColor, ShapeSty
 use plotters::style::FontTransform;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// What is drawn into memory cannot fail; of a text this holds as long as the font is there.
+/// Drawing into memory cannot fail; drawing text cannot as long as the font exists.
 const DRAWN: &str = "the pixels are in memory, and the font is registered";
 
 pub(super) struct Raster<'a> {
@@ -113,7 +113,7 @@ fn rgb(colour: Colour) -> RGBColor {
     RGBColor(colour.0, colour.1, colour.2)
 }
 
-/// Of the type of strokes: the rasteriser is compiled once a type.
+/// Returns the type of strokes: the rasteriser is compiled once for each type.
 fn filled(colour: Colour) -> ShapeStyle {
     rgb(colour).filled()
 }

@@ -24,12 +24,12 @@ struct Layout<'a> {
     panels: Vec<(Prepared<'a>, Rect)>,
     /// The legend below all panels.
     legend: Vec<Entry>,
-    /// The colour bar of all panels, if they have one for all, and what it stands beside.
+    /// The common colour bar of all panels, if any, and the rectangle next to it.
     bar: Option<(Bar, Rect)>,
     size: (f64, f64),
 }
 
-/// What the panels name, each once.
+/// Entries of the panels, each once.
 fn legend(panels: &[Prepared]) -> Vec<Entry> {
     let mut all: Vec<Entry> = Vec::new();
     for entry in panels.iter().flat_map(Prepared::legend) {
@@ -40,7 +40,7 @@ fn legend(panels: &[Prepared]) -> Vec<Entry> {
     all
 }
 
-/// The colour bar of several panels that all have the same one, which they then leave to the figure.
+/// The common colour bar of several panels, if they are equal; the panels then have none.
 fn shared_bar(panels: &mut [Prepared]) -> Option<Bar> {
     let bars: Option<Vec<&mut Bar>> = panels.iter_mut().map(|panel| panel.bar()).collect();
     let is_one = |bars: &Vec<&mut Bar>| bars.iter().all(|bar| *bar == bars[0]);
@@ -55,7 +55,7 @@ fn layout(figure: &Figure) -> Layout<'_> {
     let columns = figure.columns.clamp(1, figure.panels.len().max(1));
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
     let mut extents: Vec<[Vec<f64>; 2]> = figure.panels.iter().map(extent).collect();
-    // Pictures side by side have the same axes.
+    // Adjacent pictures have equal axes.
     if figure.panels.iter().all(|plot| plot.dots().is_some()) {
         let all = [0, 1].map(|axis| extents.iter().flat_map(|of| of[axis].clone()).collect());
         extents.fill(all);
@@ -65,7 +65,7 @@ fn layout(figure: &Figure) -> Layout<'_> {
     let legend = legend(&panels);
     let bar = shared_bar(&mut panels);
     let rooms: Vec<Room> = panels.iter().map(|panel| panel.room()).collect();
-    // Left margin, inner width and right margin of each column; the same downwards for each row.
+    // Left margin, inner width and right margin of each column; top, height and bottom of each row.
     let mut across = vec![[0.0_f64; 3]; columns];
     let mut down = vec![[0.0_f64; 3]; panels.len().div_ceil(columns)];
     for (i, room) in rooms.iter().enumerate() {
@@ -163,7 +163,7 @@ fn downsample(fine: &[u8], width: usize, height: usize) -> Vec<u8> {
     out
 }
 
-/// Writes the figure as a PNG file of twice its natural size. The file appears whole or not at all.
+/// Writes the figure as a PNG file of twice its natural size. The file appears complete or not at all.
 pub fn png(figure: &Figure, path: &Path) -> io::Result<()> {
     files::write_atomically(path, &png_bytes(figure)?).map_err(io::Error::other)
 }
@@ -206,7 +206,7 @@ mod tests {
         assert!(svg(&with).contains(">ρ₀ [10⁻³]</text>"));
     }
 
-    /// Every kind of layer, from the same values.
+    /// Every kind of layer, from one set of values.
     fn all_layers(values: &[f64], x: Axis, y: Axis) -> Plot {
         let pairs: Vec<_> =
             values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b))).collect();
@@ -277,7 +277,7 @@ mod tests {
         assert!(svg(&figure(plot)).len() < 30_000);
     }
 
-    /// Panels that show the same have one legend, in which a name with two looks stands twice.
+    /// Panels with equal content have one legend, in which a name with two styles has two entries.
     #[test]
     fn a_legend_stands_below_what_it_explains() {
         let plot = |name: &str, colour| {

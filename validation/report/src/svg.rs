@@ -27,7 +27,7 @@ impl Svg {
         self.text
     }
 
-    /// Goes on in the last element if it has the same opening, else begins one.
+    /// Continues the last element if it has the same opening, else begins one.
     fn within(&mut self, opening: String, closing: &'static str) {
         if self.open.0 != opening {
             self.text.push_str(self.open.1);
@@ -126,7 +126,7 @@ impl Sheet for Svg {
     }
 }
 
-/// The opening tag of a drawing of a size in CSS pixels, which shrinks with what it is in.
+/// The opening tag of a drawing of a size in CSS pixels, which shrinks with its container.
 pub(super) fn opening(name: &str, (width, height): (f64, f64)) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \

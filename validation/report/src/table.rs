@@ -92,12 +92,12 @@ impl Cell {
         Self::text(status.to_string()).with(status)
     }
 
-    /// The same cell with a remark.
+    /// Adds a remark.
     pub fn because(self, remark: impl Into<String>) -> Self {
         Self { remark: remark.into(), ..self }
     }
 
-    /// The same cell with a verdict.
+    /// Adds a verdict.
     pub fn with(self, status: Verdict) -> Self {
         Self { status: Some(status), ..self }
     }
@@ -121,7 +121,7 @@ impl Cell {
     }
 
     fn markup(&self, numeric: bool, label: Option<&str>) -> Markup {
-        // What a column is sorted by: six digits. The style sheet shows a cell that has it as a number.
+        // The sort key of a column: six digits. The style sheet shows a cell with a key as a number.
         let six = |value: f64| format!("{value:.5e}").parse().unwrap_or(value);
         let value: Option<f64> = self.value.filter(|value| value.is_finite()).map(six);
         let number = (numeric && value.is_none()).then_some("number");
@@ -159,7 +159,7 @@ pub struct Column {
     pub head: String,
     /// Unit, shown in brackets; empty for none.
     pub unit: String,
-    /// Numbers stand on the right.
+    /// Numbers are aligned right.
     pub numeric: bool,
 }
 

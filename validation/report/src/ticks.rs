@@ -1,4 +1,4 @@
-//! Where ticks go and what they say.
+//! Positions and labels of ticks.
 
 use super::number::{exact, minus, power_of_ten, sci};
 

@@ -5,12 +5,12 @@ use touchstone_base::text::short;
 /// An array of three components of a particle has no more than these.
 pub const MOST_NUMBERS: usize = 3 * super::MOST_ROWS;
 
-/// What is said of a longer one.
+/// Message for a longer file.
 pub fn too_long() -> String {
     format!("it has more than {MOST_NUMBERS} numbers; expected fewer particles or times")
 }
 
-/// What a number is.
+/// Type of a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Of {
     Float,
@@ -18,7 +18,7 @@ pub enum Of {
     Unsigned,
 }
 
-/// What numbers are as bytes.
+/// Representation of numbers as bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     pub of: Of,

@@ -1,4 +1,4 @@
-//! Which column of ours each column of a file is: by the names of the caller, by ours, and by usual ones.
+//! Assignment of the columns of a file to ours: by the names of the caller, by our names, and by usual ones.
 
 use touchstone_base::text::{few, short};
 
@@ -53,7 +53,7 @@ pub const THIRD: [&str; 2] = ["z", "w"];
 
 /// The columns of a file that are read.
 pub struct Places {
-    /// Name of ours, and place among the heads; then those of the third components.
+    /// Our names with their positions in the heads; then the third components.
     pub of: Vec<(&'static str, usize)>,
     /// The heads that are not read.
     pub unread: Vec<usize>,
@@ -71,7 +71,7 @@ fn parts(head: &str) -> (&str, Option<&str>) {
     }
 }
 
-/// What a name is called without capitals and signs.
+/// A name without capitals and punctuation.
 fn plain(name: &str) -> String {
     let letters = name.chars().filter(|letter| !matches!(letter, '_' | '-' | '.' | ':' | ' '));
     letters.flat_map(char::to_lowercase).collect()
@@ -99,8 +99,8 @@ impl<'a> Heads<'a> {
         Self { names: all.iter().map(name).collect(), all, renamed, known }
     }
 
-    /// The places that a column of ours may have: those that the caller named; else those of its own name;
-    /// else those of usual names.
+    /// The possible positions of one of our columns: named by the caller; else by our name; else by usual
+    /// names.
     pub fn of(&self, ours: &str) -> Vec<usize> {
         type Name<'a> = (Option<&'a str>, &'a str, String);
         let usual = USUAL.iter().find(|(of, _)| *of == ours).map_or(&[][..], |(_, names)| names);
@@ -122,7 +122,7 @@ impl<'a> Heads<'a> {
 /// Where each column of ours is among the heads.
 ///
 /// # Errors
-/// Those that are missing, twice, or in another unit; names of the caller that are not there.
+/// Columns that are missing, ambiguous, or in another unit; missing names of the caller.
 pub fn places(file: &str, line: u64, heads: &Heads, columns: &[Head]) -> Result<Places, Vec<Flaw>> {
     let (mut of, mut flaws) = (Vec::new(), Vec::new());
     let flaw = |name: &str, what: String| Flaw::of(file, what).at(line).in_column(name);

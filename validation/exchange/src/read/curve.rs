@@ -1,6 +1,6 @@
-//! Results of a code of which there are no particles: a profile or a series, as the case declares it. The
-//! particles of the problem are put where the case says that they stand for it, and measured as always; what
-//! the curve does not determine is left out of the record by name.
+//! Results of a code without particles: a profile or a series, as the case declares it. The particles of the
+//! problem are placed so that they represent it, and measured as usual; metrics that the curve does not
+//! determine are removed from the record by name.
 
 use std::iter::once;
 
@@ -17,7 +17,7 @@ use crate::{
     problem::{CURVE, Problem},
 };
 
-/// The frames that a table stands for.
+/// The frames represented by a table.
 ///
 /// # Errors
 /// Everything that is wrong with it.
@@ -64,7 +64,7 @@ pub fn frames(
             flaws
                 .push(flaw(format!("expected fewer times: at most {}", results.frames.len()), "t"));
         }
-        // The start is that of the problem, unless it is a time of output.
+        // The start is the problem's, unless it is a time of output.
         if !flaws.is_empty() || time == 0.0 && !problem.outline.times.contains(&0.0) {
             continue;
         }

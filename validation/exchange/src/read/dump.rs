@@ -12,12 +12,12 @@ use crate::flaw::{CUT, Flaw};
 /// Names of places: unwrapped, as shares of the box, and both.
 const KNOWN: [(&str, &str); 6] =
     [("xu", "x"), ("yu", "y"), ("xs", "x"), ("ys", "y"), ("xsu", "x"), ("ysu", "y")];
-/// Those that are shares of the box, of each direction.
+/// Positions relative to the box, for each direction.
 const SCALED: [[&str; 2]; 3] = [["xs", "xsu"], ["ys", "ysu"], ["zs", "zsu"]];
 /// Systems of units in which numbers are SI, or have no units.
 const UNITS: [&str; 2] = ["si", "lj"];
 
-/// What a snapshot says of itself before its atoms.
+/// Header of a snapshot.
 #[derive(Default)]
 struct Head {
     time: Option<f64>,
@@ -60,7 +60,7 @@ pub fn rows(file: &str, text: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<
 }
 
 impl Head {
-    /// Reads an item; what is wrong with it, and how many lines below its own.
+    /// Reads an item; an error is the flaw, and its distance in lines from the item's line.
     fn read(
         &mut self,
         item: &str,
@@ -151,14 +151,14 @@ fn snapshot<'a>(
     }
     scale(&mut rows, &head, heads, &places)
         .map_err(|(name, what)| vec![flaw(what).in_column(name)])?;
-    // Numbers of atoms begin at 1; what the caller takes for them is as it is.
+    // Numbers of atoms begin at 1; a column named by the caller is used unchanged.
     let is_of_lammps = |(name, place): &(&str, usize)| *name == "id" && heads.all[*place] == "id";
     rows.first_id = if places.of.iter().any(is_of_lammps) { 1.0 } else { 0.0 };
     rows.columns.push(("t", vec![time; rows.len()]));
     if flaws.is_empty() { Ok(rows) } else { Err(flaws) }
 }
 
-/// Makes metres of shares of the box; a column and what it lacks.
+/// Converts positions relative to the box to metres; `None` for a missing column.
 fn scale<'a>(
     rows: &mut Rows,
     head: &Head,

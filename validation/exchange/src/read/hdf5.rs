@@ -10,7 +10,7 @@ use touchstone_base::{files, text::short};
 use super::{MOST_BYTES, MOST_ROWS, Renamed, Rows, columns::Heads, number_in, of_arrays, too_many};
 use crate::flaw::Flaw;
 
-/// A number has at most so many bytes.
+/// Largest size of a number in bytes.
 const WIDEST: usize = 8;
 
 /// The rows of the frames of a file.

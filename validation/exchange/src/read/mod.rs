@@ -1,5 +1,5 @@
-//! Reads particles at times from the formats of other codes. Each reader gives tables with the same columns,
-//! from which frames are made; a flaw says what is wrong, and where.
+//! Reads particles at times from the formats of other codes. Each reader returns tables with the same
+//! columns, from which frames are made; a flaw states its place.
 
 #[cfg(any(feature = "npz", feature = "vtk"))]
 mod binary;
@@ -36,7 +36,7 @@ pub const MOST_BYTES: u64 = 1 << 28;
 /// More rows than these would not fit into the memory of a laptop.
 const MOST_ROWS: usize = 3_000_000;
 
-/// Flaws that are told of one file.
+/// Printed flaws of one file.
 const MOST_FLAWS: usize = 20;
 
 /// A column: name, unit, and whether results may lack it.
@@ -73,7 +73,7 @@ pub struct Rows {
     first_line: u64,
     /// The least id: 0, or 1 in files whose format begins with it.
     first_id: f64,
-    /// Names, such as those of [`COLUMNS`], and values, all of one length.
+    /// Names, such as in [`COLUMNS`], and values, all of one length.
     columns: Vec<(&'static str, Vec<f64>)>,
     /// The columns that are not read, as the file has them.
     unread: Vec<String>,
@@ -103,7 +103,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// What was not taken from the files, and what was put in its place: a sentence each.
+    /// Sentences on parts of the files that were not used, and their replacements.
     pub fn notes(&self) -> Vec<String> {
         let unread = few(&self.unread, MOST_SHOWN);
         let unread = (!unread.is_empty()).then(|| format!("columns that are not read: {unread}"));
@@ -131,7 +131,7 @@ impl Results {
         self.columns.symmetric_difference(&columns).map(flaw).collect()
     }
 
-    /// Takes mass and role that a row states for a particle; what is wrong if they were others before.
+    /// Sets mass and role of a particle from a row; returns a flaw if they differ from earlier ones.
     fn state(&mut self, id: u32, mass: f64, role: Option<Role>) -> Option<(&'static str, String)> {
         if mass.is_nan() && role.is_none() {
             return None;
@@ -147,7 +147,7 @@ impl Results {
     }
 }
 
-/// Endings of files with results, beside the table.
+/// Extensions of result files other than tables.
 const ENDINGS: [&str; 6] = ["dump", "npz", "vtu", "vtp", "h5", "hdf5"];
 
 /// Reads all results of a folder: `results.csv`, or files with one of the other endings in the order of
@@ -305,7 +305,7 @@ impl Rows {
         THIRD.into_iter().zip([["x", "y"], ["u", "v"]]).filter_map(of)
     }
 
-    /// Adds a row: of each column the number that stands at its place, with a flaw where none does.
+    /// Adds a row: the number of each column at its position, or a flaw.
     fn add(&mut self, line: u64, places: &Places, cells: &[&str], flaws: &mut Vec<Flaw>) {
         for ((name, values), (_, place)) in self.columns.iter_mut().zip(&places.of) {
             let text = cells.get(*place).copied().unwrap_or_default();
@@ -348,7 +348,7 @@ impl Rows {
         self.checked(name, k, f64::is_finite, "a finite number")
     }
 
-    /// Time and particle of a row, and its role where one is stated; or what is wrong with it.
+    /// Time and particle of a row, with its role if stated; or a flaw.
     fn row(&self, k: usize) -> Result<(f64, Own, Option<Role>), Flaw> {
         let finite = |name| self.finite(name, k).map(|value| value.unwrap_or(f64::NAN));
         let is_positive = |value: f64| value.is_finite() && value > 0.0;

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::flaw::{CUT, Flaw};
 
-/// What other programs put between columns.
+/// Separators of columns in other programs.
 const SEPARATORS: [(char, &str); 3] = [(';', "semicolons"), ('\t', "tabs"), (' ', "blanks")];
 
 pub fn rows(
@@ -25,7 +25,7 @@ pub fn rows(
         vec![Flaw::of(file, error.to_string()).at(line)]
     };
     let heads = reader.headers().map_err(unread)?.clone();
-    // Of a byte order mark, which some programs put before a table, nothing is said.
+    // A byte order mark, which some programs put before a table, is ignored.
     let heads: Vec<&str> = heads.iter().map(|head| head.trim_start_matches('\u{feff}')).collect();
     if let [head] = heads[..]
         && let Some((_, by)) = SEPARATORS.iter().find(|(sign, _)| head.contains(*sign))

@@ -105,7 +105,7 @@ fn is_frugal(text: &str) -> Result<(), String> {
     }
 }
 
-/// Bytes, or the letters of base64 that stand for them.
+/// Bytes, or letters of base64.
 #[derive(Clone, Copy)]
 enum Stream<'a> {
     Raw(&'a [u8]),
@@ -113,7 +113,7 @@ enum Stream<'a> {
 }
 
 impl<'a> Stream<'a> {
-    /// What begins so many bytes or letters after the start.
+    /// The part from this number of bytes or letters after the start.
     fn after(self, offset: usize) -> Option<Self> {
         match self {
             Self::Raw(bytes) => bytes.get(offset..).map(Self::Raw),
@@ -121,7 +121,7 @@ impl<'a> Stream<'a> {
         }
     }
 
-    /// The first bytes, which are encoded together and may be followed by others, and what comes after them.
+    /// The first bytes, which are encoded together, and the rest.
     fn take(self, count: usize) -> Result<(Cow<'a, [u8]>, Self), String> {
         let cut = "it ends before the bytes of which its head says that they are there";
         match self {
@@ -149,7 +149,7 @@ impl<'a> Stream<'a> {
     }
 }
 
-/// What the arrays of a file have in common.
+/// Common data of the arrays of a file.
 struct Layout<'a> {
     /// Does the most significant byte come first?
     is_big: bool,
@@ -211,7 +211,7 @@ impl<'a> Layout<'a> {
         usize::try_from(number).map_err(|error| error.to_string())
     }
 
-    /// The bytes of an array, and what comes after them.
+    /// The bytes of an array, and the rest.
     fn bytes<'b>(&self, from: Stream<'b>) -> Result<(Vec<u8>, Stream<'b>), String> {
         match self.compressor {
             None => {
@@ -227,8 +227,8 @@ impl<'a> Layout<'a> {
         }
     }
 
-    /// Blocks that zlib compressed; before them their number, the size of each, that of the last one or 0 if
-    /// it is full, and the compressed sizes, encoded apart.
+    /// Blocks compressed by zlib, after a separately encoded header: their number, the size of each, the size
+    /// of the last one or 0 if it is full, and the compressed sizes.
     fn compressed<'b>(&self, from: Stream<'b>) -> Result<(Vec<u8>, Stream<'b>), String> {
         let (start, rest) = from.take(3 * self.width)?;
         let blocks = self.number(&start, 0)?;
@@ -251,7 +251,7 @@ impl<'a> Layout<'a> {
             if expected > 8 * MOST_NUMBERS - before {
                 return Err(too_long());
             }
-            // One byte more than was announced is enough to see that the head is wrong.
+            // One byte more than announced suffices to refuse the header.
             let mut reader =
                 flate2::read::ZlibDecoder::new(&data[at..at + length]).take(expected as u64 + 1);
             reader.read_to_end(&mut all).map_err(|error| error.to_string())?;
@@ -274,13 +274,13 @@ struct Array<'a> {
     count: Option<usize>,
 }
 
-/// What an array is an attribute of.
+/// The parent element of an array.
 fn parent<'a>(node: Node<'a, 'a>) -> &'a str {
     node.parent().map_or("", |parent| parent.tag_name().name())
 }
 
 impl<'a> Array<'a> {
-    /// None of what is no array of points, nor of the whole file.
+    /// `None` for arrays that are neither of points nor of the whole file.
     fn of(node: Node<'a, 'a>, name: &'a str) -> Result<Option<Self>, String> {
         let (counted, usual) = match parent(node) {
             "Points" => (node.parent().and_then(|of| of.parent()), 3),
@@ -308,12 +308,12 @@ impl<'a> Array<'a> {
         }
     }
 
-    /// What its numbers are.
+    /// Type of its numbers.
     fn kind(&self, is_big: bool) -> Result<Kind, String> {
         Kind::of_vtk(self.node.attribute("type").unwrap_or("not stated"), is_big)
     }
 
-    /// Its numbers.
+    /// Numbers.
     fn values(&self, layout: &Layout) -> Result<Vec<f64>, String> {
         let Self { node, components, .. } = self;
         if *components > 3 {

@@ -8,7 +8,7 @@ use touchstone_harness::outline::Outline;
 use super::{WriteError, check_fluid};
 use crate::problem::Problem;
 
-/// Boxes of open axes reach so many spacings beyond the particles.
+/// Margin of the box in open directions, in spacings.
 const MARGIN: f64 = 50.0;
 
 /// Courant number c0 dt/dx. With 0.3 columns of water lose particles, because forces take an extrapolated
@@ -21,10 +21,10 @@ pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteErro
     Ok(vec![("data.lmp", data), ("in.lmp", script), ("run_lammps.py", RUN.to_string())])
 }
 
-/// Runs the input script and writes what a submission says of method and machine.
+/// Runs the input script and writes method and machine of a submission.
 const RUN: &str = include_str!("run_lammps.py");
 
-/// Types of atoms: what moves, walls at rest, and walls that move along themselves.
+/// Types of atoms: moving, walls at rest, and walls that slide.
 fn kind(outline: &Outline, k: usize) -> usize {
     let of = |name: &str| outline.particles.column(name)[k];
     match (of("role") == 0.0, of("u") == 0.0 && of("v") == 0.0) {
@@ -77,7 +77,7 @@ fn data(outline: &Outline) -> String {
     text
 }
 
-/// The mass of the first particle \[kg/m\], which stands for all, and by how much of it others differ.
+/// The mass of the first particle \[kg/m\], used for all, and the largest deviation of the others.
 fn mass(outline: &Outline) -> (f64, f64) {
     let masses = outline.particles.column("mass");
     let first = masses.first().copied().unwrap_or_default();

@@ -87,7 +87,7 @@ pub fn files(problem: &Problem, format: Format) -> Result<Vec<File>, WriteError>
     Ok(files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect())
 }
 
-/// Refuses what a code of weakly compressible fluids with walls of particles cannot do.
+/// Refuses problems beyond a code of weakly compressible fluids with walls of particles.
 fn check_fluid(code: &'static str, problem: &Problem) -> Result<(), WriteError> {
     let refused = |why| {
         let (case, variant) = (problem.spec.case.clone(), problem.spec.variant.clone());
