@@ -18,7 +18,9 @@ use touchstone_tests::snapshot;
 use crate::tidy::{assert_none, root};
 
 /// Words that README may have outside of code blocks and comments.
-const README_WORDS: usize = 900;
+const README_WORDS: usize = 450;
+/// Words that all documents may have together, those of `references` apart.
+const ALL_WORDS: usize = 15_000;
 /// Folders whose paths, in backquotes, must exist.
 const FOLDERS: [&str; 7] =
     ["solver", "validation", "tests", "references", "docs", ".ci", ".github"];
@@ -131,26 +133,49 @@ fn the_summary_lists_every_page_once() {
     assert_eq!(listed.iter().map(|page| format!("docs/{page}")).collect::<Vec<_>>(), pages);
 }
 
-/// A word is a text between spaces with a letter or a digit.
+/// Words of a document: what is between spaces and has a letter or a digit, without code and comments.
+fn words(text: &str) -> usize {
+    let text = without(&prose(text), "<!--", "-->");
+    text.split_whitespace().filter(|word| word.chars().any(char::is_alphanumeric)).count()
+}
+
 #[test]
-fn readme_is_short() {
-    let text = without(&prose(&read("README.md")), "<!--", "-->");
-    let is_word = |word: &&str| word.chars().any(char::is_alphanumeric);
-    let words = text.split_whitespace().filter(is_word).count();
-    println!("README has {words} words");
-    assert!(words <= README_WORDS, "README has {words} words, allowed are {README_WORDS}");
+fn documents_are_short() {
+    let readme = words(&read("README.md"));
+    assert!(readme <= README_WORDS, "README has {readme} words, allowed are {README_WORDS}");
+    let of_project = documents().into_iter().filter(|(path, _)| !path.starts_with("references/"));
+    let all: usize = of_project.map(|(_, text)| words(&text)).sum();
+    assert!(all <= ALL_WORDS, "documents have {all} words, allowed are {ALL_WORDS}");
+}
+
+/// Splits a text at the number that ends it, such as `−9.1 %` or `6.0·10⁶`.
+fn before_number(text: &str) -> (&str, &str) {
+    const POWERS: &str = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+    let text = text.trim_end();
+    let mantissa = text.trim_end_matches('%').trim_end().trim_end_matches(|c| POWERS.contains(c));
+    let mantissa = mantissa.strip_suffix("·10").unwrap_or(mantissa);
+    let before = mantissa.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
+    (before, &text[before.len()..])
 }
 
 /// The number that ends a text, as `−9.1 %`, with the unit of its last digit; `None` if there is none.
 fn last_number(text: &str) -> Option<(f64, f64)> {
-    let text = text.trim_end();
-    let (text, scale) = text.strip_suffix('%').map_or((text, 1.0), |rest| (rest.trim_end(), 100.0));
-    let before = text.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
-    let digits = &text[before.len()..];
+    let (before, number) = before_number(text);
+    let (number, scale) = match number.split_once("·10") {
+        None => match number.strip_suffix('%') {
+            Some(percent) => (percent.trim_end(), 0.01),
+            None => (number, 1.0),
+        },
+        Some((mantissa, power)) => {
+            let digit = |c| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|of| of == c);
+            let power = power.chars().try_fold(0, |sum, c| Some(10 * sum + digit(c)? as i32))?;
+            (mantissa, 10_f64.powi(power))
+        }
+    };
     let sign = if before.ends_with(['−', '-']) { -1.0 } else { 1.0 };
-    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    let value: f64 = digits.parse().ok()?;
-    Some((sign * value / scale, 10_f64.powi(-(decimals as i32)) / scale))
+    let decimals = number.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    let value: f64 = number.parse().ok()?;
+    Some((sign * value * scale, 10_f64.powi(-(decimals as i32)) * scale))
 }
 
 /// The numbers behind the comment of a number in a document: `<!-- snapshot; run; metric -->` a result,
@@ -240,51 +265,47 @@ fn numbers_with_a_source_are_those_of_the_source() {
     assert_none("a number is that of the snapshot or gate that its comment names", wrong);
 }
 
-/// In README's table every number that is not part of a name has a comment with its source.
-#[test]
-fn errors_and_limits_in_readme_have_sources() {
-    let text = read("README.md");
-    let mut rows = text.lines().skip_while(|line| !line.contains("| Error |")).peekable();
-    let header: Vec<&str> = rows.next().expect("a table").split('|').map(str::trim).collect();
-    let columns: Vec<usize> =
-        ["Error", "Limit"].map(|name| header.iter().position(|cell| *cell == name).unwrap()).into();
-    let (mut bare, mut count) = (Vec::new(), 0);
-    for row in rows.skip(1).take_while(|line| line.starts_with('|')) {
-        count += 1;
-        let cells: Vec<&str> = row.split('|').collect();
-        for cell in columns.iter().map(|column| cells[*column]) {
-            let mut rest = cell;
-            while let Some((before, after)) = rest.split_once("<!-- ") {
-                let kept = before.trim_end().trim_end_matches('%').trim_end();
-                let kept = kept.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.');
-                bare.extend(numbers(kept));
-                rest = after.split_once("-->").map_or("", |(_, rest)| rest);
-            }
-            bare.extend(numbers(rest));
-        }
+/// The numbers of a text that no comment with a source follows.
+fn bare(text: &str, numbers: impl Fn(&str) -> Vec<String>) -> Vec<String> {
+    let (mut found, mut rest) = (Vec::new(), text);
+    while let Some((before, after)) = rest.split_once("<!-- ") {
+        found.extend(numbers(before_number(before).0));
+        rest = after.split_once("-->").map_or("", |(_, rest)| rest);
     }
-    assert!(count >= 6, "the five cases and the supporting ones: {count} rows");
-    assert_none("a number in README's table has a source", bare);
+    found.extend(numbers(rest));
+    found
+}
+
+/// In README's table a cell from the column of errors on has at most one number, before its source.
+#[test]
+fn results_in_readme_have_sources_and_cells_of_their_own() {
+    let text = read("README.md");
+    let mut rows = text.lines().skip_while(|line| !line.contains("| Error |"));
+    let header: Vec<&str> = rows.next().expect("a table").split('|').map(str::trim).collect();
+    let first = header.iter().position(|cell| *cell == "Error").expect("a column");
+    let rows: Vec<&str> = rows.skip(1).take_while(|line| line.starts_with('|')).collect();
+    let mut wrong = Vec::new();
+    for cell in rows.iter().flat_map(|row| row.split('|').skip(first)) {
+        wrong.extend(bare(cell, numbers));
+        wrong.extend((sourced(cell).len() > 1).then(|| cell.to_string()));
+    }
+    assert!(rows.len() >= 5, "the five cases: {} rows", rows.len());
+    assert_none("a number in README's table has a source and a cell of its own", wrong);
 }
 
 /// Shares and numbers with decimals in the reasons for the recommended variants come from runs or gates.
 #[test]
 fn numbers_of_recommended_variants_have_sources() {
-    let mut bare = Vec::new();
-    for (name, text) in reasons() {
-        let mut rest = &*text;
-        while let Some((before, after)) = rest.split_once("<!-- ") {
-            let kept = before.trim_end().trim_end_matches('%').trim_end();
-            bare.extend(stated(kept.trim_end_matches(|c: char| c.is_ascii_digit() || c == '.')));
-            rest = after.split_once("-->").map_or("", |(_, rest)| rest);
-        }
-        bare.extend(stated(rest).map(|number| format!("{name}: {number}")));
-    }
+    let named = |(name, text): (String, String)| {
+        let found = bare(&text, stated).into_iter();
+        found.map(move |number| format!("{name}: {number}"))
+    };
+    let bare = reasons().flat_map(named).collect();
     assert_none("a number of a reason has a source", bare);
 }
 
 /// The words of a text that are results: shares, and numbers with decimals.
-fn stated(text: &str) -> impl Iterator<Item = String> {
+fn stated(text: &str) -> Vec<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let is_result = |pair: &[&str]| {
         let word = pair[0].trim_end_matches([',', ';', ':']);
@@ -293,7 +314,7 @@ fn stated(text: &str) -> impl Iterator<Item = String> {
     };
     let last = words.len().saturating_sub(1);
     let found = (0..words.len()).filter(|k| is_result(&words[*k..=(*k + 1).min(last)]));
-    found.map(|k| words[k].to_string()).collect::<Vec<_>>().into_iter()
+    found.map(|k| words[k].to_string()).collect()
 }
 
 /// The words of a text that begin with a digit.
@@ -347,7 +368,9 @@ fn faults_of_a_document_are_seen() {
     assert_eq!(last_number("is −9.1 %"), Some((-0.091, 0.001)));
     assert_eq!(last_number("+1000"), Some((1000.0, 1.0)));
     assert_eq!(last_number("none"), None);
-    assert_eq!(stated("at T = 2 by 3 % or -0.5; 20 rows").collect::<Vec<_>>(), ["3", "-0.5;"]);
+    assert_eq!(last_number("6.0·10⁶"), Some((6e6, 1e5)));
+    assert_eq!(stated("at T = 2 by 3 % or -0.5; 20 rows"), ["3", "-0.5;"]);
+    assert_eq!(bare("1.5 %<!-- a --> of 2.5 and 3.0·10⁶<!-- b -->", numbers), ["2.5"]);
     assert_eq!(numbers("U_b at h0, +3 and 0.5"), ["3", "0.5"]);
     let name = "couette.plain.20.l2@0.1";
     let gates: Vec<Gate> = all_gates().into_iter().filter(|gate| gate.id == name).take(1).collect();

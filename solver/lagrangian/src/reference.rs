@@ -47,7 +47,8 @@ pub struct Four {
     pub who: [u32; LANES],
     /// g of each, 0 for the particle itself \[1\].
     pub weights: [f64; LANES],
-    /// g X, with X from the particle to the neighbour, along x and along y \[m\].
+    /// g X, with X from the particle to the neighbour, along x and along y \[m\]; kept so that a sweep reads
+    /// only the displacement of a neighbour.
     pub arms: [[f64; LANES]; 2],
 }
 

@@ -4,7 +4,8 @@
 //! The default build may use only the registers that every x86-64 processor has, which hold two numbers.
 //! Nearly all present processors have wider ones, which the program detects at run time: the pair sweep and
 //! the construction of neighbour lists are compiled a second and a third time, for registers of four numbers
-//! and of eight. `touchstone doctor --bench` measures the speed.
+//! and of eight. `touchstone doctor --bench` measures the speed. Registers of two numbers are types of this
+//! file, too: the crate `wide`, which has them, takes longer to compile than this one.
 
 #![allow(unsafe_code)]
 
