@@ -318,7 +318,7 @@ fn damage(name: &str, schema: &Value, document: &Value, at: &str, object: &Value
     let (is_refused, is_read) = changed(&|of| drop(of.insert("stranger".into(), json!(1))));
     expect("with a stranger".into(), is_refused[0], is_strict);
     expect("with a stranger, closed".into(), is_refused[1], true);
-    // Serde does not deny an unknown key beside the tag of a variant without fields.
+    // Serde does not deny an unknown key next to the tag of a variant without fields.
     let is_bare = object["properties"].as_object().unwrap().keys().eq(["kind"]);
     if let Some(is_read) = is_read.filter(|_| !is_bare) {
         expect("with a stranger, by the reader".into(), !is_read, is_strict);

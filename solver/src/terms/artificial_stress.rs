@@ -1,4 +1,4 @@
-//! Artificial stress against clumping where the material is in tension, and its place in the stress terms.
+//! Artificial stress against clumping in tension, (18), (19): Rᵢⱼ φᵢⱼⁿ in a pair stress (Monaghan 2000).
 
 use super::{In, Kernel, Lane, Numbers, Pair};
 
@@ -8,7 +8,7 @@ use super::{In, Kernel, Lane, Numbers, Pair};
 pub trait Tensile<S: Numbers>: Copy + Send + Sync + 'static {
     /// Derived numbers of a particle.
     type Derived: Numbers;
-    /// From p/ρ², σ/ρ² or σ of a particle; the result has the unit of that.
+    /// From p/ρ², σ/ρ² or σ of a particle, in its unit.
     fn derived(&self, stress: S) -> Self::Derived;
     /// Rᵢⱼ φᵢⱼⁿ, in the unit of [`Tensile::Derived`].
     fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>) -> In<S, V>;

@@ -1,4 +1,4 @@
-//! Artificial viscosity of pairs of particles that approach each other.
+//! Artificial viscosity, (14) to (17): −Σⱼ mⱼ Πᵢⱼ ∇ᵢWᵢⱼ between approaching particles (Monaghan 1992).
 
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Term, Vector2};
 

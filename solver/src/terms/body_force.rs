@@ -1,4 +1,4 @@
-//! A constant force per mass.
+//! Body force, f of (4): dvᵢ/dt += f.
 
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 

@@ -1,4 +1,4 @@
-//! The stress of an elastic solid, in the form that conserves linear momentum.
+//! Cauchy stress of an elastic solid, (9), (10): dvᵢ/dt = Σⱼ mⱼ (σᵢ/ρᵢ² + σⱼ/ρⱼ²)·∇ᵢWᵢⱼ.
 
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Symmetric, Tensile, Term, Vector2};
 

@@ -1,4 +1,4 @@
-//! Conservation of mass.
+//! Conservation of mass, (3): dρᵢ/dt = Σⱼ mⱼ vᵢⱼ·∇ᵢWᵢⱼ.
 
 use super::{Common, Kernel, Lane, Pair, Rate, Term};
 

@@ -1,4 +1,4 @@
-//! Diffusion of density, which damps noise of the pressure.
+//! Density diffusion: dρᵢ/dt += 2 δ h ⁰c Σⱼ Vⱼ F(dᵢⱼ) (ρⱼ − ρᵢ) (Molteni & Colagrossi 2009).
 
 use super::{Common, Kernel, Lane, Numbers, Pair, Rate, Term, Vector2};
 use crate::eos::Tait;

@@ -1,4 +1,4 @@
-//! A term restricted to pairs of fluid particles.
+//! A term restricted to pairs of fluid particles: Σⱼ without boundary particles.
 
 use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 

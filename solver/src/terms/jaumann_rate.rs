@@ -1,4 +1,4 @@
-//! The rate of the deviatoric stress of a hypoelastic solid.
+//! Jaumann rate of the deviatoric stress of a hypoelastic solid, (11): dS/dt = 2μ dev ε + S Ωᵀ + Ω S.
 
 use super::{Common, In, Kernel, Lane, Pair, Rate, Symmetric, Term, Vector2};
 

@@ -1,4 +1,4 @@
-//! The pressure gradient.
+//! Pressure gradient, (5): dvᵢ/dt = −Σⱼ mⱼ (pᵢ/ρᵢ² + pⱼ/ρⱼ²) ∇ᵢWᵢⱼ.
 
 use super::{Common, EquationOfState, Kernel, Lane, Pair, Rate, Tensile, Term, Vector2};
 

@@ -1,4 +1,4 @@
-//! The change of velocities that follows from shifted positions.
+//! Advection of the velocity by particle shifting: dvᵢ/dt += (δuᵢ·∇)v (Sun et al. 2019).
 
 use super::moments::{inverse, weights};
 use super::{Common, In, Kernel, Lane, Pair, Rate, Shifting, Symmetric, Term, Vector2};

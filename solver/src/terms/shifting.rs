@@ -1,4 +1,4 @@
-//! Particle shifting.
+//! Particle shifting: drᵢ/dt −= A v_max h Σⱼ Vⱼ \[1 + 0.2 (Wᵢⱼ/W(⁰r))⁴\] ∇ᵢWᵢⱼ (Lind et al. 2012).
 
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 

@@ -1,4 +1,4 @@
-//! Forces in two parts, of which one is stiff.
+//! The sum of two forces of which one is stiff: dv/dt = E + T(v), for super-time-stepping of T.
 
 /// The sum of the forces `E` and the stiff force `T`. [`crate::SuperSteps`] integrates `T` over steps longer
 /// than the limit of an explicit integrator.

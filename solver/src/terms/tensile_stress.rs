@@ -1,4 +1,4 @@
-//! Artificial stress in principal axes, or component by component.
+//! Artificial stress (20), R = −ξ σ/ρ² in tension: in principal axes (Gray et al. 2001) or by component.
 
 use std::marker::PhantomData;
 

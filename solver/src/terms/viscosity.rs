@@ -1,4 +1,4 @@
-//! Laminar viscosity.
+//! Laminar viscosity, (6): dvᵢ/dt = 2μ Σⱼ mⱼ/(ρᵢρⱼ) \[rᵢⱼ·∇ᵢWᵢⱼ/(dᵢⱼ² + η²)\] vᵢⱼ (Morris, Fox & Zhu 1997).
 
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 

@@ -1,4 +1,4 @@
-//! Smoothing of the velocity with which particles move (XSPH).
+//! XSPH, (22): drᵢ/dt = vᵢ − ε Σⱼ 2 mⱼ vᵢⱼ/(ρᵢ + ρⱼ) Wᵢⱼ (Monaghan 1989).
 
 use super::{Common, Kernel, Lane, Pair, Rate, Term, Vector2};
 

@@ -346,7 +346,7 @@ impl Gate {
         self.bounds_in(&four_digits)
     }
 
-    /// The same, with numbers as `number` writes them.
+    /// The allowed values in words, with numbers formatted by `number`.
     pub fn bounds_in(&self, number: &dyn Fn(f64) -> String) -> String {
         let fitted = if self.fitted { ", fitted to own runs" } else { "" };
         let known = |known: Bound| format!("; limitation{fitted}: {}", known.in_words(number));

@@ -229,18 +229,18 @@ pub mod as_json {
 
     use super::Settings;
 
-    /// Writes all of them.
+    /// Serialises all settings.
     ///
     /// # Errors
-    /// Those of `to`.
+    /// Errors of `to`.
     pub fn serialize<T: Settings, S: Serializer>(settings: &T, to: S) -> Result<S::Ok, S::Error> {
         super::to_json(settings).to_string().serialize(to)
     }
 
-    /// Reads them.
+    /// Deserialises all settings.
     ///
     /// # Errors
-    /// Those of `from`, and of settings that do not exist or are out of range.
+    /// Errors of `from`; unknown settings and settings out of range.
     pub fn deserialize<'a, T: Settings, D: Deserializer<'a>>(from: D) -> Result<T, D::Error> {
         let json = serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)?;
         super::of_json(&json).map_err(D::Error::custom)

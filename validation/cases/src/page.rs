@@ -62,7 +62,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     }
 }
 
-/// Names of cases that no number stands for, with the counts of their gates.
+/// Names of cases without a number, with the counts of their gates.
 fn without_a_row(others: &[&CaseResults]) -> Vec<String> {
     let none = others.iter().filter(|results| results.row.is_none());
     let link = |results: &&CaseResults| {
@@ -78,7 +78,7 @@ fn without_a_row(others: &[&CaseResults]) -> Vec<String> {
     }
 }
 
-/// What *recommended* means, with the largest error of a variant that is recommended elsewhere.
+/// Meaning of *recommended*, with the largest error of a variant that is recommended elsewhere.
 fn recommended(suite: &Suite) -> Vec<String> {
     let worst =
         suite.cases.iter().find(|results| results.case.name() == "taylor_green").and_then(|of| {

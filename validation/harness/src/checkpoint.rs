@@ -194,25 +194,25 @@ pub mod particles {
 
     use super::StoredParticle;
 
-    /// Writes all of them.
+    /// Serialises all particles.
     ///
     /// # Errors
-    /// Those of `to`.
+    /// Errors of `to`.
     pub fn serialize<S: Serializer>(all: &[Particle], to: S) -> Result<S::Ok, S::Error> {
         all.iter().map(StoredParticle::of).collect::<Vec<_>>().serialize(to)
     }
 
-    /// Reads them.
+    /// Deserialises all particles.
     ///
     /// # Errors
-    /// Those of `from`.
+    /// Errors of `from`.
     pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Vec<Particle>, D::Error> {
         let stored = Vec::<StoredParticle>::deserialize(from)?;
         Ok(stored.into_iter().map(StoredParticle::particle).collect())
     }
 }
 
-/// Reads a value from all of the bytes. A length that they state takes no more memory than they have.
+/// Reads a value from all of the bytes. A stated length allocates no more memory than the bytes have.
 ///
 /// # Errors
 /// If they hold something else, less or more.

@@ -189,7 +189,7 @@ mod tests {
         assert!(median(&parted, &[1, 1, 1]).is_nan(), "no pair");
     }
 
-    /// They diverge when they differ by more than the tolerance, not by the tolerance itself.
+    /// Histories diverge when they differ by more than the tolerance, not by the tolerance itself.
     #[test]
     fn a_difference_of_the_tolerance_is_none() {
         let [one, other] = [0.25, -0.25].map(|by| vec![(0.0, 0.0), (1.0, by), (2.0, 2.0 * by)]);

@@ -151,7 +151,7 @@ pub trait Problem: Sized {
     fn measure(&self, watch: Self::Watch, end: &Self::Simulation, record: &mut Record);
 }
 
-/// What a run has come to: everything that changes while it is observed.
+/// State of an observed run: everything that changes during it.
 #[derive(Serialize, Deserialize)]
 struct Watched<W> {
     watch: W,

@@ -165,7 +165,7 @@ pub struct Run {
     /// Run even if it is estimated to take more than 24 hours on one core or 4 GB of memory
     #[arg(long)]
     pub allow_long: bool,
-    /// Write a checkpoint into the folder of --out after every so many seconds of wall time (at least 1), and
+    /// Write a checkpoint into the folder of --out after every SECONDS of wall time (at least 1), and
     /// at an interrupt; it is removed at the end of the run
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
     pub checkpoint_every: Option<u32>,
@@ -246,7 +246,7 @@ pub struct Written {
     /// Name of the variant whose particles and walls are written; by default that of `touchstone run`
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
-    /// What is written beside problem.json, README.md and particles.csv
+    /// Files in addition to problem.json, README.md and particles.csv
     #[arg(long, value_parser = one_of(&FORMATS), default_value = "csv")]
     pub format: Format,
     /// The folder

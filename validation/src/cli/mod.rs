@@ -61,7 +61,7 @@ pub enum Exit {
     Pass = 0,
     /// A gate failed.
     GateFailed = 1,
-    /// The request cannot be met as it stands.
+    /// The request is invalid.
     Usage = 2,
     /// The simulation diverged.
     Diverged = 3,

@@ -57,7 +57,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
 /// Columns of the limits of each variant.
 const HEADS: [&str; 7] =
     ["variant", "step [s]", "limit/step", "bound by", "stiffness", "steps", "sweeps"];
-/// What these columns mean.
+/// Explanation of the columns.
 const READING: &str = "At default settings. Step: the time step that is taken. Limit/step: the largest \
     stable step of all waves together, by linear theory on the lattice at rest, over the step; at least 1.25 \
     is advised for particles that move. Bound by: the mechanism with the smallest limit of its own. \

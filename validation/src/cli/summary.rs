@@ -1,6 +1,5 @@
-//! What a suite comes to, as a person reads it in one screen: a line a case, then what needs attention. And
-//! what `run` says first, for a person who reads ten seconds: the headline error, its bound and its cost; and
-//! the command to go on with.
+//! Summary of a suite on one screen: a line for each case, then the gates that need attention. And the summary
+//! of `run`: the headline error, its bound and its cost first, and a next command.
 
 use touchstone_base::{
     gate::{Gate, Verdict, four_digits},
@@ -170,7 +169,7 @@ pub fn nearest(
 }
 
 impl Nearest {
-    /// What is judged there.
+    /// The judged quantity.
     pub fn in_words(&self, case: &dyn Case, declared: &Declaration) -> String {
         let Nearest { spec, gate } = self;
         let there = case::command(case, spec).replacen("touchstone run ", "", 1);

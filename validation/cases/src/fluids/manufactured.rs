@@ -173,7 +173,7 @@ fn table(tier: Tier) -> Table {
     let ladders = [SEED, MODERN, CONSISTENT].concat();
     let sides: &[usize] = &[12, 17, 24, 34, 48, 68];
     table.over(For::Strained, &ladders, [&sides[..3], sides], |s, n| s.n = n);
-    // The same time in units of L²/ν, and the speed of sound for Mach 0.05.
+    // An equal time in units of L²/ν, and the speed of sound for Mach 0.05.
     table.over(For::Mixed, &ladders, [&[], &sides[1..]], |s, n| {
         (s.n, s.re, s.end, s.c0) = (n, 10.0, 1.2, 20.0);
     });

@@ -63,7 +63,7 @@ pub fn rows(file: &str, bytes: Vec<u8>, renamed: &Renamed) -> Result<Rows, Vec<F
     without_ids(&arrays).map_err(|what| flaw("id", what))?;
     let count = match heads.of("x")[..] {
         [x] => read(x).map_err(|what| flaw("x", what))?.len(),
-        _ => 0, // which is told with the other columns
+        _ => 0, // reported with the other columns
     };
     names.push("id");
     let by_order = |place: usize| match place == all.len() {

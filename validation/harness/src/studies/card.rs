@@ -34,7 +34,7 @@ pub fn columns() -> Vec<Column> {
     [vec![Column::text("recommended")], numbers.into()].concat()
 }
 
-/// What a row is made of.
+/// Content of a row.
 struct Answer<'a> {
     case: &'static dyn Case,
     declared: &'a Declaration,
@@ -411,15 +411,15 @@ mod tests {
         let expected = ["`good`", "0.0050 a", "2.0", "0.50 a", "× 100", "× 32"];
         assert_eq!(texts(&good)[..6], expected);
         assert!(good[1].text.starts_with("**[") && !good[3].text.starts_with("**"), "{good:?}");
-        // An error that a finer level does not lower has no price, and the reason stands below the dash.
+        // An error that a finer level does not lower has no price; the reason is below the dash.
         let floor = cells([coarse, middle, middle], 0.01, 0.0);
         assert_eq!(texts(&floor)[2..6], ["–", "0.010 a", "–", "–"]);
         assert_eq!(floor[2].remark, "the ladder does not tell");
         assert!(floor[3].text.starts_with("**["), "the paper's is better: {:?}", floor[3]);
     }
 
-    /// The uncertainty beside an error is u_val, of which that of the reference is a part: here
-    /// (0.6² + 0.4²)^(1/2), for u_num is 3/2 of the range of the levels 0.6, 0.2 and 0.2.
+    /// The uncertainty of an error is u_val, of which the reference's is a part: here (0.6² + 0.4²)^(1/2),
+    /// because u_num is 3/2 of the range of the levels 0.6, 0.2 and 0.2.
     #[test]
     fn an_error_has_the_uncertainty_of_its_comparison() {
         let cells = cells([0.6, 0.2, 0.2], 0.5, 0.4);

@@ -62,7 +62,7 @@ pub struct Scales {
 
 /// Elastic bodies, stated by the settings of a case: the differences between cases of solids.
 pub trait Body: Values {
-    /// What measures a run.
+    /// Measures a run.
     type Watch: Watch;
     /// Material, h/dx and time step.
     fn common(&self) -> Common;

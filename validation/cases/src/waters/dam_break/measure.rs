@@ -398,7 +398,7 @@ mod tests {
         ] {
             let mut samples = Samples::new();
             for rows in [20, 5] {
-                // The same mass on fewer rows, or all over the floor.
+                // An equal mass on fewer rows, or all over the floor.
                 let mut all = water(&free, 0, 200 / rows, rows, Vector2::zeros());
                 all.iter_mut().for_each(|p| p.position.y = place(p.position.y));
                 samples.sample(&free, &*simulation(&free, all));
