@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 use touchstone_base::{functions::*, record::*};
-use touchstone_harness::{case::*, composed::*, declare::*, method::*, problem::Simple, table};
+use touchstone_harness::{case::*, composed::*, method::*, problem::Simple, studies::*, table};
 use touchstone_solver::*;
 
 touchstone_base::settings! {
@@ -42,20 +42,20 @@ fn pose(method: &Method, s: &Decay) -> Result<Simple, RunError> {
     Ok(Simple::new(method, (medium, rules), size, &[], scene, measure))
 }
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let mut table = table::Table::new(&DECAY, tier);
     table.over((), &["cubic", "quintic"], [&[8, 16, 32]; 2], |s, n| s.n = n);
-    let level = |s: &Decay| (1.0 / s.n as f64, Resolution::new(s.n, "n = {}"));
-    let ladders = ["cubic", "quintic"].map(|variant| table.ladder(&[()], variant, level)).into();
-    let accuracy = vec![Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") }];
+    let spacing = Spacing::count(|s: &mut Decay| &mut s.n, "n = {}");
+    let ladders = ["cubic", "quintic"].map(|variant| table.ladder(&[()], variant, spacing)).into();
+    let accuracy = Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") };
     let halved = Change::new("dt/2", "time", DECAY.spec("cubic", |s| s.step *= 0.5));
     let changes = vec![Change::new("none", "–", DECAY.spec("cubic", |_| {})), halved];
-    let budgets = Budgets { about: String::new(), of: vec![changes] };
+    let budgets = Budgets::new(&accuracy, "", vec![changes]);
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
     let rules = DECAY.rules(&long).unwrap_or(Rules::REFUSED);
     let limit = StepLimit::proportional("the wave", long, ("step", 1.0), &rules, None);
     let limits = StepLimits { about: "Stable is what reaches its end.".into(), of: vec![limit] };
-    Declaration { budgets, limits, accuracy, ..Declaration::default() }
+    Studies::default().with(accuracy).with(budgets).with(limits)
 }
 
 /// The case: add it to the list of cases.
@@ -70,6 +70,6 @@ pub const DECAY: Composed<Decay> = Composed {
             .with("quintic", "quintic spline", Method::of::<Flow<QuinticSpline>>(), |_| {})
             .all
     },
-    declaration,
-    plan: |_| Vec::new(),
+    facts: Facts::default,
+    studies,
 };

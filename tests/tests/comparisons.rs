@@ -22,8 +22,7 @@ use touchstone_base::record::Record;
 use touchstone_base::spec::RunSpec;
 use touchstone_harness::case::Tier;
 use touchstone_harness::convergence::{Level, convergence};
-use touchstone_harness::declare::Comparison;
-use touchstone_harness::studies::validation::{Numerical, numerical};
+use touchstone_harness::studies::validation::{Comparison, Comparisons, Numerical, numerical};
 
 /// The setting that is refined, and its value in the finer run.
 const FINER: [(&str, &str, f64); 5] = [
@@ -42,7 +41,10 @@ fn path() -> PathBuf {
 fn declared(tier: Tier) -> Vec<(&'static str, Comparison)> {
     let of = |case: &&'static dyn touchstone_harness::case::Case| {
         let name = case.name();
-        case.declaration(tier).comparisons.into_iter().map(move |of| (name, of))
+        let studies = case.studies(tier);
+        let all: Vec<Comparison> =
+            studies.of::<Comparisons>().flat_map(|of| of.0.clone()).collect();
+        all.into_iter().map(move |of| (name, of))
     };
     touchstone_cases::CASES.iter().flat_map(of).collect()
 }

@@ -34,7 +34,8 @@ fn a_solver_of_another_library_is_judged_and_has_a_section() {
         assert_eq!(failed.map(|judged| &judged.gate.id).collect::<Vec<_>>(), Vec::<&String>::new());
         let made = Made { submissions: vec![record(32)], ..Made::default() };
         let suite = suite::judge(vec![(case, Vec::new())], Tier::Quick, made);
-        let section = suite.cases[0].studies.iter().find(|s| s.id == format!("{name}-submissions"));
+        let section =
+            suite.cases[0].sections.iter().find(|s| s.id == format!("{name}-submissions"));
         assert!(section.is_some(), "{name} has a section of other codes");
     }
 }

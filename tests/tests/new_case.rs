@@ -1,9 +1,9 @@
 //! The examples that `CONTRIBUTING.md` names: the case gets every study that its declaration asks for.
 
 use crate::decay::DECAY;
-use touchstone_harness::case::Case;
 use touchstone_harness::case::Tier;
 use touchstone_harness::make::Making;
+use touchstone_harness::studies::Accuracy;
 use touchstone_harness::suite;
 use touchstone_solver::{Continuity, CubicSpline};
 use touchstone_tests::{assert_small, new_term::CentralViscosity, open_rates, patch, relative_sum};
@@ -33,7 +33,7 @@ fn a_new_case_has_order_cost_budget_and_step_limit() {
     let making = Making::new(Tier::Quick, &|_| "these".into());
     let suite = suite::run(&[&DECAY], &making);
     let [results] = &suite.cases[..] else { panic!("one case") };
-    let ids: Vec<&str> = results.studies.iter().map(|study| study.id.as_str()).collect();
+    let ids: Vec<&str> = results.sections.iter().map(|section| section.id.as_str()).collect();
     let expected = ["decay-work-precision", "decay-error-budget", "decay-time-step"];
     assert_eq!(ids, expected);
     for run in &results.runs.all {
@@ -41,7 +41,7 @@ fn a_new_case_has_order_cost_budget_and_step_limit() {
         assert!(!record.metrics.is_empty(), "{:?}: {:?}", record.run.settings, record.status);
     }
     // Every run of the ladder was timed alone, and the error falls by more than half from level to level.
-    let ladder = &DECAY.declaration(Tier::Quick).accuracy[0].ladders[1];
+    let ladder = &results.studies.first::<Accuracy>().expect("an accuracy").ladders[1];
     let errors: Vec<f64> = ladder
         .levels
         .iter()

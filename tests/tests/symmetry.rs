@@ -6,12 +6,12 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 use touchstone_base::spec::RunSpec;
 use touchstone_harness::{
-    case::{self, Case, Rules, RunError, Step},
+    case::{self, Case, Facts, Rules, RunError, Step},
     composed::*,
-    declare::Declaration,
     method::{FromMedium, Medium, Method, Parts, scene},
     problem::Simple,
     relation::Relation::{self, *},
+    studies::Studies,
     symmetry,
 };
 use touchstone_solver::{
@@ -212,8 +212,8 @@ const FLAWED: Composed<Decay> = Composed {
         };
         all.into_iter().fold(Variants::of(pose), add).all
     },
-    declaration: |_| Declaration::default(),
-    plan: |_| Vec::new(),
+    facts: Facts::default,
+    studies: |_| Studies::default(),
 };
 
 /// All relations are asked of each run, one run after the other, and the particles of all runs are kept.

@@ -936,7 +936,7 @@ fn a_short_run_says_what_it_did_not_reach_and_a_default_one_is_planned() {
     {
         let case = touchstone_cases::find(name).unwrap();
         let of_run = spec(case, variant, &[]).unwrap().settings;
-        let mut plan = case.plan(Tier::Quick).into_iter();
+        let mut plan = touchstone_harness::plan::of_case(case, Tier::Quick).into_iter();
         assert!(plan.any(|planned| planned.spec.settings == of_run), "{name} {variant}");
     }
 }

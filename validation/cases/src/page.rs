@@ -13,8 +13,8 @@ use touchstone_harness::{
     columns::Columns,
     notes::Notes,
     runs::{Judged, JudgedRun, counts},
-    studies::{self, against_run_time, headline},
-    study::Study,
+    section,
+    studies::{self, Card, card::headline, cost::against_run_time},
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use touchstone_report::{
@@ -27,10 +27,10 @@ use crate::{limitations, stiffness, time};
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
     let (main, others): (Vec<_>, Vec<_>) =
-        suite.cases.iter().partition(|results| results.declared.card.is_some());
+        suite.cases.iter().partition(|results| results.studies.first::<Card>().is_some());
     let overview = |of: &[&CaseResults], caption: &str| Overview {
         caption: caption.into(),
-        columns: studies::columns(),
+        columns: studies::card::columns(),
         rows: of.iter().filter_map(|results| results.row.clone()).collect(),
     };
     let mut opening = vec![Block::Prose(recommended(suite)), Block::Figure(errors(&main))];
@@ -85,10 +85,10 @@ fn recommended(suite: &Suite) -> Vec<String> {
             let is_shown = |record: &&Record| {
                 record.run.variant == "modern" && record.run.settings["perturb"] == 0.0
             };
-            let error = |record: &Record| record.value(of.declared.error()?.clone());
+            let error = |record: &Record| record.value(of.studies.error()?.clone());
             let all =
                 of.runs.simulations().filter(is_shown).filter_map(|record| {
-                    Some((error(record)?, headline(&of.declared, record).ok()?))
+                    Some((error(record)?, headline(&of.studies, record).ok()?))
                 });
             all.max_by(|a, b| a.0.total_cmp(&b.0))
         });
@@ -113,7 +113,7 @@ fn recommended(suite: &Suite) -> Vec<String> {
 /// Error against run time, a panel a main case.
 fn errors(main: &[&CaseResults]) -> Figure {
     let panel = |results: &&CaseResults| {
-        against_run_time(&title(results), results.case, &results.declared, &results.runs)
+        against_run_time(&title(results), results.case, &results.studies, &results.runs)
     };
     let caption = format!(
         "What accuracy costs: error against run time on one core. Points of a line are resolutions. Other \
@@ -156,7 +156,7 @@ fn about(suite: &Suite) -> Section {
 fn title(results: &CaseResults) -> String {
     let words = results.case.name().replace('_', " ");
     let (first, rest) = words.split_at(1);
-    let named = results.declared.card.as_ref().map(|card| card.title.to_string());
+    let named = results.studies.first::<Card>().map(|card| card.title.to_string());
     named.unwrap_or_else(|| first.to_uppercase() + rest)
 }
 
@@ -282,7 +282,7 @@ fn judged_on(row: &Row) -> String {
             let set = plain(&what(row.of.case, spec));
             format!("{} {set}", code(&spec.variant)).trim_end().to_string()
         }
-        Of::Study(study) => format!("[{}](#{})", study.title, anchor(study)),
+        Of::Section(of) => format!("[{}](#{})", of.title, anchor(of)),
     }
 }
 
@@ -297,7 +297,7 @@ fn case_section(results: &CaseResults) -> Section {
     let grades: Vec<String> =
         grades.map(|(name, grade)| format!("Reference `{name}`: {grade}.")).collect();
     let section = if grades.is_empty() { section } else { section.prose(grades.join(" ")) };
-    let section = results.studies.iter().map(study_section).fold(section, Section::child);
+    let section = results.sections.iter().map(study_section).fold(section, Section::child);
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
     section.block(Block::Details {
         summary: "Variants and all runs".into(),
@@ -306,13 +306,13 @@ fn case_section(results: &CaseResults) -> Section {
 }
 
 /// Sections and figures share a name space; figures are named by their study.
-fn anchor(study: &Study) -> String {
-    format!("study-{}", study.id)
+fn anchor(of: &section::Section) -> String {
+    format!("study-{}", of.id)
 }
 
-fn study_section(study: &Study) -> Section {
-    let section = Section::new(anchor(study), &study.title).counts(counts(&study.judged));
-    study.blocks.iter().cloned().fold(section, Section::block)
+fn study_section(of: &section::Section) -> Section {
+    let section = Section::new(anchor(of), &of.title).counts(counts(&of.judged));
+    of.blocks.iter().cloned().fold(section, Section::block)
 }
 
 /// A measured value: a whole number as such, any other with four digits.

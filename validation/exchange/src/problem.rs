@@ -10,8 +10,8 @@ use touchstone_base::{
     text::short,
 };
 use touchstone_harness::{
-    case::{self, Case, RunError, Tier},
-    declare::{Curve, Declaration, Fact},
+    case::{self, Case, RunError},
+    facts::{Curve, Facts, Parameter},
     method::{Knob, Medium, Properties},
     outline::Outline,
     plan,
@@ -51,7 +51,7 @@ pub struct Problem {
     /// The conditions at walls, clamps and surfaces in words.
     pub boundary: &'static str,
     /// Drives in addition to the acceleration.
-    pub further: Vec<Fact>,
+    pub further: Vec<Parameter>,
     /// Every metric that is measured of results.
     pub metrics: Vec<MetricName>,
     /// Profile or series that may be submitted in place of particles.
@@ -210,8 +210,7 @@ impl Problem {
         allow_long: bool,
     ) -> Result<Self, RunError> {
         let outline = case.pose(&spec)?.outline(&spec, relation, allow_long)?;
-        let Declaration { posed, curve, stepwise, of_methods, costly, .. } =
-            case.declaration(Tier::Quick);
+        let Facts { statement, curve, stepwise, of_methods, costly, .. } = case.facts();
         let ours = [stepwise, of_methods, costly].concat();
         let (mut gates, mut metrics) = (Vec::new(), Vec::new());
         let (mut further, mut fields, mut nearest) = (Vec::new(), Vec::new(), None);
@@ -220,9 +219,9 @@ impl Problem {
         if relation.is_none() {
             gates = plan::gates_of(case, &spec);
             gates.retain(|gate| !record::is_of(&ours, &gate.metric));
-            metrics = posed.metrics;
+            metrics = statement.metrics;
             metrics.retain(|metric| !record::is_of(&ours, &metric.name));
-            further = posed.further.map_or_else(Vec::new, |of| of(&spec.settings));
+            further = statement.further.map_or_else(Vec::new, |of| of(&spec.settings));
             fields = fields_read(case, &spec);
             if gates.is_empty() {
                 let judges = |gate: Gate| {
@@ -233,7 +232,7 @@ impl Problem {
                     .map(|(of, _)| case::command(case, &of));
             }
         }
-        let (about, boundary, sealed) = (case.about(), posed.boundary, None);
+        let (about, boundary, sealed) = (case.about(), statement.boundary, None);
         let curve = curve.filter(|_| relation.is_none());
         Ok(Self {
             spec,
@@ -348,7 +347,7 @@ impl Problem {
             all["value"] = value;
             all
         };
-        let fact = |of: &Fact| stated(of.name, json!(of.value), [of.unit, of.about]);
+        let fact = |of: &Parameter| stated(of.name, json!(of.value), [of.unit, of.about]);
         let setting = |(field, value): (&Field, &Value)| {
             stated(field.name, value.clone(), [field.unit, field.doc])
         };
@@ -424,8 +423,9 @@ impl Problem {
     /// A page that a person can work from.
     pub fn page(&self) -> String {
         let (case, variant) = (&self.spec.case, &self.spec.variant);
-        let further =
-            |of: &Fact| [of.name.into(), of.value.to_string(), of.unit.into(), of.about.into()];
+        let further = |of: &Parameter| {
+            [of.name.into(), of.value.to_string(), of.unit.into(), of.about.into()]
+        };
         let setting = |(field, value): (&Field, &Value)| {
             [field.name.into(), settings::text(value), field.unit.into(), field.doc.into()]
         };

@@ -19,7 +19,7 @@ use touchstone_base::{
     text::{first, number, short, unseen},
 };
 use touchstone_harness::{
-    case::{Case, RunError, Tier},
+    case::{Case, RunError},
     medium::Medium,
     outline::{Outline, role},
     playback::{self, Fill, Frame, Own, Placed, Playback},
@@ -324,7 +324,7 @@ impl Entry {
     /// If the case measures none, or everything that is wrong with the table.
     pub fn stand_for(&mut self, case: &dyn Case, problem: &Problem) -> Result<(), Vec<Flaw>> {
         let Some((text, renamed)) = &self.curve else { return Ok(()) };
-        let Some(curve) = case.declaration(Tier::Quick).curve else {
+        let Some(curve) = case.facts().curve else {
             let what = format!("{} is measured of particles alone; expected these", case.name());
             return Err(vec![Flaw::of(CURVE, what)]);
         };
@@ -339,7 +339,7 @@ impl Entry {
     /// # Errors
     /// As [`Problem::of`].
     pub fn scene(&self, case: &dyn Case, problem: &Problem) -> Result<Option<Problem>, RunError> {
-        let curve = self.curve.as_ref().and_then(|_| case.declaration(Tier::Quick).curve);
+        let curve = self.curve.as_ref().and_then(|_| case.facts().curve);
         let Some(coarsen) = curve.and_then(|curve| curve.coarsen) else { return Ok(None) };
         let mut spec = problem.spec.clone();
         coarsen(&mut spec.settings);
@@ -354,8 +354,7 @@ impl Entry {
     /// For a profile or series, removes metrics that need particles. Their number is known in the closed
     /// division, where it is the problem's.
     fn only_of_curve(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
-        let Some(curve) = case.declaration(Tier::Quick).curve.filter(|_| self.curve.is_some())
-        else {
+        let Some(curve) = case.facts().curve.filter(|_| self.curve.is_some()) else {
             return;
         };
         let why = Absent::OfParticles;
@@ -613,7 +612,7 @@ impl Entry {
     /// comparisons with round-off.
     fn leave_out_rounded(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
         let Some(few) = self.few_digits(problem) else { return };
-        let rates = case.declaration(Tier::Quick).of_all_digits;
+        let rates = case.facts().of_all_digits;
         let is_of_round_off =
             |of: &&Gate| of.bound.ends().iter().any(|end| *end != 0.0 && end.abs() <= ROUND_OFF);
         let of_round_off = problem.gates.iter().filter(is_of_round_off);

@@ -7,7 +7,7 @@ use touchstone_base::{
 };
 
 use crate::{
-    case::{self, Case, RunError, Tier},
+    case::{self, Case, RunError},
     context::Context,
 };
 
@@ -32,7 +32,7 @@ pub fn run(
     context: &Context,
 ) -> Result<Record, RunError> {
     let mut record = Record::of(spec, 1);
-    let criterion = case.declaration(Tier::Quick).is_stable;
+    let criterion = case.facts().is_stable;
     let is_stable = |x: f64| {
         let one = simulate(case, &at(spec, bisect, x), context, &mut record.cost)?;
         Ok(criterion.map_or(one.status == Status::Completed, |is_stable| is_stable(&one)))
@@ -187,8 +187,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Planned, Recommended, Tier, Variant},
-        declare::Declaration,
+        case::{Facts, Recommended, Tier, Variant},
+        study::Studies,
     };
 
     /// The bisection of a condition that cannot fail.
@@ -297,12 +297,12 @@ mod tests {
             };
             Ok(record)
         }
-        fn declaration(&self, _: Tier) -> Declaration {
+        fn facts(&self) -> Facts {
             let is_stable = |record: &Record| record.value(GREW) == Some(0.0);
-            Declaration { is_stable: Some(is_stable), ..Declaration::default() }
+            Facts { is_stable: Some(is_stable), ..Facts::default() }
         }
-        fn plan(&self, _: Tier) -> Vec<Planned> {
-            Vec::new()
+        fn studies(&self, _: Tier) -> Studies {
+            Studies::default()
         }
     }
 

@@ -1,5 +1,5 @@
-//! The interface of a benchmark case: description of the problem, settings, variants to compare, and a plan
-//! of judged runs.
+//! The interface of a benchmark case: description of the problem, settings, variants to compare, and
+//! studies.
 
 use serde_json::Value;
 use touchstone_base::{
@@ -8,12 +8,14 @@ use touchstone_base::{
     spec::{RunSpec, SpecError, Task},
 };
 
-use crate::{context::Context, declare::Declaration, problem::Posed};
+use crate::{context::Context, problem::Posed, study::Studies};
 pub use crate::{
     error::RunError,
+    facts::{Curve, Facts, Parameter, Statement},
     limits::Limits,
     rules::{PLANNED_DT, Rules, Step},
     runs::{Planned, Tier},
+    sealed::{Drawn, Draws},
 };
 
 /// One named composition of types with its default settings.
@@ -86,12 +88,12 @@ pub trait Case: Sync {
         let brief = self.pose(spec)?.brief();
         if brief.is_limited { Ok(brief.rules) } else { Err(RunError::NoRules(spec.case.clone())) }
     }
-    /// The declaration from which the studies common to all cases are made.
-    fn declaration(&self, _tier: Tier) -> Declaration {
-        Declaration::default()
+    /// The facts that depend on neither tier nor run.
+    fn facts(&self) -> Facts {
+        Facts::default()
     }
-    /// The runs of a tier and their gates, in addition to the declaration's.
-    fn plan(&self, tier: Tier) -> Vec<Planned>;
+    /// The studies of a tier: the one source of its runs, gates, tables and figures.
+    fn studies(&self, tier: Tier) -> Studies;
 }
 
 /// One simulation of a case. Settings that are refused give a record too, with the reason.

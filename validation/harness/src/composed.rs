@@ -1,5 +1,4 @@
-//! A case made of a table of compositions (variants with their methods), a declaration, a plan, and studies
-//! of its own.
+//! A case that consists of a table of compositions (variants with their methods), facts, and studies.
 
 use std::{fmt::Display, marker::PhantomData, rc::Rc};
 
@@ -12,13 +11,13 @@ use touchstone_base::{
 
 pub use crate::case::Recommended;
 use crate::{
-    case::{Case, Planned, RunError, Tier, Variant},
+    case::{Case, RunError, Tier, Variant},
     context::Context,
-    declare::Declaration,
-    deep::deepened,
+    facts::Facts,
     method::{Knob, Method},
     problem::{Posed, Problem},
     rules::state_steps,
+    study::Studies,
 };
 
 /// A method with settings, without their types.
@@ -202,10 +201,10 @@ pub struct Composed<T> {
     pub about: &'static str,
     /// The variants.
     pub variants: fn() -> Compositions<T>,
-    /// The declaration from which the studies common to all cases are made.
-    pub declaration: fn(Tier) -> Declaration,
-    /// The judged runs in addition to the declaration's.
-    pub plan: fn(Tier) -> Vec<Planned>,
+    /// The facts that depend on neither tier nor run.
+    pub facts: fn() -> Facts,
+    /// The studies of the quick or the full tier.
+    pub studies: fn(Tier) -> Studies,
 }
 
 impl<T: Settings> Composed<T> {
@@ -229,6 +228,14 @@ impl<T: Settings> Composed<T> {
             settings.put(&found.setup.settings().values());
         }
         settings
+    }
+
+    /// A run of this case with its settings changed; none if the result is out of range.
+    pub fn altered(&self, spec: &RunSpec, set: impl FnOnce(&mut T)) -> Option<RunSpec> {
+        let mut settings: T = settings::of_json(&spec.settings).ok()?;
+        set(&mut settings);
+        settings::validate(&settings).ok()?;
+        Some(RunSpec { settings: settings::to_json(&settings), ..spec.clone() })
     }
 
     /// The run of a variant with these settings.
@@ -294,12 +301,12 @@ impl<T: Settings> Case for Composed<T> {
         Composition::of_run(self.name, (self.variants)().all, spec)?.setup.pose()
     }
 
-    fn declaration(&self, tier: Tier) -> Declaration {
-        let declared = (self.declaration)(tier.declared());
-        if tier == Tier::Deep { deepened(declared, self) } else { declared }
+    fn facts(&self) -> Facts {
+        (self.facts)()
     }
 
-    fn plan(&self, tier: Tier) -> Vec<Planned> {
-        (self.plan)(tier.declared())
+    fn studies(&self, tier: Tier) -> Studies {
+        let studies = (self.studies)(tier.declared());
+        if tier == Tier::Deep { studies.deepened() } else { studies }
     }
 }

@@ -9,7 +9,7 @@ use touchstone_base::{
 
 use crate::{
     bisect::{self, Ended},
-    case::{Case, RunError, Tier},
+    case::{Case, RunError},
     context::Context,
     plan,
 };
@@ -54,7 +54,7 @@ pub fn run(
 ) -> Result<Record, RunError> {
     let mut wrong = RunSpec { task: Task::Simulate, ..spec.clone() }.allow_unstable();
     let gates = gates(case, &wrong, detect.of);
-    wrong.measure = case.declaration(Tier::Quick).measure_for(&gates);
+    wrong.measure = case.facts().measure_for(&gates);
     let mut record = Record::of(spec, 1);
     // The gates that the run fails with a constant multiplied by this factor.
     let failed_at = |factor: f64| {
@@ -131,8 +131,8 @@ mod tests {
 
     use super::*;
     use crate::{
-        case::{Planned, Recommended, Variant},
-        declare::Declaration,
+        case::{Facts, Planned, Recommended, Tier, Variant},
+        study::Studies,
     };
 
     touchstone_base::metrics! {
@@ -178,10 +178,10 @@ mod tests {
             Ok(record)
         }
         /// The force is measured only where gates read it.
-        fn declaration(&self, _: Tier) -> Declaration {
-            Declaration { costly: &[FORCE], ..Declaration::default() }
+        fn facts(&self) -> Facts {
+            Facts { costly: &[FORCE], ..Facts::default() }
         }
-        fn plan(&self, tier: Tier) -> Vec<Planned> {
+        fn studies(&self, tier: Tier) -> Studies {
             let gate = |id: &str, bound, evidence| Gate::new(id, FORCE, bound, evidence, "staged");
             let within = |d: f64| Bound::Within(1.0 - d, 1.0 + d);
             let mut gates = vec![
@@ -191,7 +191,7 @@ mod tests {
                 gate("balance.before", within(1e-9), Evidence::Regression),
             ];
             gates.retain(|gate| tier == Tier::Full || gate.id != "balance.exact");
-            vec![Planned::new(spec()).judged(gates)]
+            Studies::judging(vec![Planned::new(spec()).judged(gates)])
         }
     }
 

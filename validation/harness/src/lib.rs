@@ -1,11 +1,11 @@
-//! The harness: the declarations of cases, and the planning, making, storing and judging of their runs.
+//! The harness: the studies of cases, and the planning, making, storing and judging of their runs.
 //!
 //! ```text
-//! case declares ──▶ plan ──▶ make: spec → record ──▶ store ──▶ judge, study ──▶ page
+//! studies of a case ──▶ plan ──▶ make: spec → record ──▶ store ──▶ judge, evaluate ──▶ page
 //! ```
 //!
 //! The steps exchange plain data: [`touchstone_base::spec::RunSpec`], [`touchstone_base::record::Record`],
-//! [`study::Study`]. Only the step that makes runs calls the solver.
+//! [`section::Section`]. Only the step that makes runs calls the solver.
 
 pub mod bisect;
 pub mod case;
@@ -15,10 +15,9 @@ pub mod columns;
 pub mod composed;
 pub mod context;
 pub mod convergence;
-pub mod declare;
-pub mod deep;
 pub mod detect;
 pub mod error;
+pub mod facts;
 pub mod frames;
 pub mod horizon;
 pub mod limits;
@@ -39,6 +38,7 @@ pub mod rules;
 pub mod runner;
 pub mod runs;
 pub mod sealed;
+pub mod section;
 pub mod size;
 pub mod store;
 pub mod studies;

@@ -28,6 +28,7 @@ use crate::{
     runs::{Planned, Sorted, Tier, entry},
     size::Size,
     store::{Begun, Store},
+    studies::Card,
 };
 
 /// A planned run and the case that it is of.
@@ -262,7 +263,7 @@ fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
     for job in missing {
         entry(&mut cases, job.case.name(), || (job.case, 0.0)).1 += job.planned.seconds;
     }
-    cases.retain(|(_, (case, _))| case.declaration(tier).card.is_some());
+    cases.retain(|(_, (case, _))| case.studies(tier).first::<Card>().is_some());
     let least = cases.iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
     least.map(|(name, _)| *name)
 }
@@ -523,7 +524,7 @@ mod tests {
     use super::*;
     use crate::{
         case::{Recommended, Variant, spec},
-        declare::{Card, Declaration},
+        studies::Studies,
         suite,
     };
 
@@ -576,9 +577,9 @@ mod tests {
                 _ => Ok(record),
             }
         }
-        fn plan(&self, _: Tier) -> Vec<Planned> {
+        fn studies(&self, _: Tier) -> Studies {
             let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
-            vec![planned(1), planned(2), planned(3).timed()]
+            Studies::judging(vec![planned(1), planned(2), planned(3).timed()])
         }
     }
 
@@ -613,12 +614,9 @@ mod tests {
         fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
             Quick.run(spec, context)
         }
-        fn plan(&self, _: Tier) -> Vec<Planned> {
-            Vec::new()
-        }
-        fn declaration(&self, _: Tier) -> Declaration {
+        fn studies(&self, _: Tier) -> Studies {
             let card = || Card::made_up(ERROR, "k", Vec::new());
-            Declaration { card: self.1.then(card), ..Declaration::default() }
+            Studies::default().with_all(self.1.then(card))
         }
     }
 

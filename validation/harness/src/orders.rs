@@ -1,5 +1,5 @@
 //! The order at which an error falls under refinement: columns of a table and a panel of a figure for any
-//! study, and a whole study for orders of one case alone.
+//! study, and a whole section for orders of one case alone.
 
 use std::cmp::Ordering;
 
@@ -9,7 +9,7 @@ use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 use crate::{
     columns::Columns,
     convergence::{Convergence, Level, convergence},
-    study::Study,
+    section::Section,
 };
 
 /// An order, or why there is none.
@@ -39,13 +39,13 @@ pub struct Line {
     pub gate: Gate,
 }
 
-/// Adds the figure, the table and the judged orders to a study; lines that `is_drawn` refuses are not drawn.
-pub fn study(
-    study: Study,
+/// Adds the figure, the table and the judged orders to a section; lines that `is_drawn` refuses are not drawn.
+pub fn add(
+    section: Section,
     [figure, table]: [&str; 2],
     all: &[Refinement],
     is_drawn: fn(&Line) -> bool,
-) -> Study {
+) -> Section {
     let panel = |of: &Refinement| {
         let drawn = of.lines.iter().filter(|line| is_drawn(line));
         let lines = drawn.map(|line| (line.name, line.levels.as_slice()));
@@ -53,7 +53,7 @@ pub fn study(
     };
     let panels = all.iter().map(panel);
     let found = |line: &Line| convergence(&line.levels, Some(line.formal));
-    let figure = Figure::new(study.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
+    let figure = Figure::new(section.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
     type Row<'a> = (&'a str, &'a Line, Found);
     let rows: Vec<Row> = all
         .iter()
@@ -66,9 +66,9 @@ pub fn study(
         .text("errors, coarse to fine", errors)
         .order(|(.., found)| found)
         .table(table, &rows);
-    let study = study.block(panels.fold(figure, Figure::panel)).block(table);
-    rows.into_iter().fold(study, |study, (_, line, found)| {
-        study.judge(line.gate.clone(), found.map_or(f64::NAN, |found| found.order))
+    let section = section.block(panels.fold(figure, Figure::panel)).block(table);
+    rows.into_iter().fold(section, |section, (_, line, found)| {
+        section.judge(line.gate.clone(), found.map_or(f64::NAN, |found| found.order))
     })
 }
 
@@ -169,8 +169,8 @@ mod tests {
         };
         let lines = [("second", 2.0), ("first", 1.0)].map(line).into();
         let all = [Refinement { title: "dx", axes: ["dx", "error"], slopes: &[], lines }];
-        let study = study(Study::new("case-orders", "Orders"), ["", ""], &all, |_| true);
-        let [_, Block::Table(table)] = &study.blocks[..] else { panic!("a figure and a table") };
+        let section = add(Section::new("case-orders", "Orders"), ["", ""], &all, |_| true);
+        let [_, Block::Table(table)] = &section.blocks[..] else { panic!("a figure and a table") };
         let labels: Vec<&str> = table.rows.iter().map(|row| &*row[row.len() - 1].text).collect();
         assert_eq!(labels, ["asymptotic", "orders agree"]);
     }

@@ -1,4 +1,4 @@
-//! Turns the declarations of cases into a list of runs in which each run occurs once.
+//! Turns the studies of cases into a list of runs in which each run occurs once.
 
 use touchstone_base::{
     functions::log10,
@@ -11,16 +11,14 @@ use crate::{
     runs::{self, Planned, Tier},
 };
 
-/// The runs of a case in a tier: its own plan, then its declaration. Runs that occur several times are merged
-/// into one, with the gates of all. The measured metrics of each run include the metrics of its gates.
+/// The runs of a case in a tier: those of its studies, each once, with the gates of all. The measured
+/// metrics of each run include the metrics of its gates.
 pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
-    let (mut all, declared) = (case.plan(tier), case.declaration(tier));
-    all.extend(declared.runs());
-    let mut merged = merged(all);
-    for Planned { spec, gates, .. } in &mut merged {
-        spec.measure = spec.measure.max(declared.measure_for(gates));
+    let (mut runs, facts) = (case.studies(tier).runs(), case.facts());
+    for Planned { spec, gates, .. } in &mut runs {
+        spec.measure = spec.measure.max(facts.measure_for(gates));
     }
-    merged
+    runs
 }
 
 /// The gates that the plans of both tiers have for the simulation with the settings of this run, each once.
@@ -104,6 +102,7 @@ mod tests {
     use super::*;
     use crate::case::{Recommended, RunError, Variant};
     use crate::context::Context;
+    use crate::study::Studies;
 
     #[test]
     fn a_run_that_is_planned_twice_is_made_once_and_judged_by_all_gates() {
@@ -154,13 +153,14 @@ mod tests {
         fn run(&self, _: &RunSpec, _: &Context) -> Result<Record, RunError> {
             Err(RunError::NoScene("staged"))
         }
-        fn plan(&self, tier: Tier) -> Vec<Planned> {
+        fn studies(&self, tier: Tier) -> Studies {
             let gate = |id: &str| Gate::new(id, "l2", Bound::Below(1.0), Evidence::Theory, "why");
             let run = |disorder| Planned::new(RunSpec { disorder, ..spec() });
             let disorder = Some(Disorder { most: 1e-6, seed: 1 });
             let full = if tier == Tier::Full { vec![gate("c.full")] } else { Vec::new() };
             let ordered = [vec![gate("c.ordered")], full].concat();
-            vec![run(None).judged(ordered), run(disorder).judged(vec![gate("c.disordered")])]
+            let disordered = run(disorder).judged(vec![gate("c.disordered")]);
+            Studies::judging(vec![run(None).judged(ordered), disordered])
         }
     }
 

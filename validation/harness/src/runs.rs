@@ -1,7 +1,6 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
 use std::cmp::Reverse;
-use std::sync::Mutex;
 
 pub use touchstone_base::gate::Judged;
 use touchstone_base::{
@@ -19,7 +18,7 @@ pub enum Tier {
     /// About twenty minutes.
     Full,
     /// About fifteen hours on one core, for clusters. Cases declare two tiers; the harness extends the full
-    /// one, see [`crate::deep`].
+    /// one, see [`Study::deepen`](crate::study::Study::deepen).
     Deep,
 }
 
@@ -155,9 +154,9 @@ pub fn find<'a, K: Ord, V>(all: &'a Sorted<K, V>, key: &K) -> Option<&'a V> {
     all.binary_search_by(|(other, _)| other.cmp(key)).ok().map(|place| &all[place].1)
 }
 
-/// The judged runs of a case. A study looks a run up by its [`RunSpec`]; a lookup of a run that was not
-/// planned, or of which fewer metrics are measured than the study needs, is a fault of the study, which
-/// [`Runs::unplanned`] reports.
+/// The judged runs of a case. A study looks up by its [`RunSpec`] a run that is among its
+/// [`runs`](crate::study::Study::runs). To look up another run, or one of which less is measured, is a fault of
+/// the program: it panics where debug assertions are on, as in tests, and finds nothing elsewhere.
 #[derive(Debug, Default)]
 pub struct Runs {
     /// All runs in the order of the plan.
@@ -167,7 +166,6 @@ pub struct Runs {
     pub submissions: Vec<JudgedRun>,
     /// The runs that other codes made, as the program contains them: they are shown, and decide nothing.
     pub peers: Vec<JudgedRun>,
-    unplanned: Mutex<Sorted<String, ()>>,
 }
 
 impl Runs {
@@ -180,6 +178,15 @@ impl Runs {
         Self { all, by_key, ..Self::default() }
     }
 
+    /// The runs of a plan, none of which was made: each is refused.
+    pub fn of_none(plan: Vec<Planned>) -> Self {
+        let refused = |planned: Planned| {
+            let record = Record::refused(&planned.spec, "it was not made".into());
+            JudgedRun::new(planned, record)
+        };
+        Self::new(plan.into_iter().map(refused).collect())
+    }
+
     /// All runs that other codes made.
     pub fn of_others(&self) -> impl Iterator<Item = &JudgedRun> {
         self.submissions.iter().chain(&self.peers)
@@ -189,10 +196,7 @@ impl Runs {
     pub fn judged(&self, spec: &RunSpec) -> Option<&JudgedRun> {
         let found = find(&self.by_key, &spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
-        if found.is_none() {
-            let mut unplanned = touchstone_base::lock(&self.unplanned);
-            entry(&mut unplanned, spec.canonical(), || ());
-        }
+        debug_assert!(found.is_some(), "a study reads what it does not plan: {}", spec.canonical());
         found
     }
 
@@ -220,12 +224,6 @@ impl Runs {
     pub fn value(&self, spec: &RunSpec, metric: impl Into<MetricName>) -> f64 {
         let record = self.completed(spec);
         record.and_then(|record| record.value(metric)).unwrap_or(f64::NAN)
-    }
-
-    /// Runs that were looked up and not planned, in their canonical form.
-    pub fn unplanned(&self) -> Vec<String> {
-        let unplanned = touchstone_base::lock(&self.unplanned);
-        unplanned.iter().map(|(asked, ())| asked.clone()).collect()
     }
 }
 
@@ -259,14 +257,13 @@ mod tests {
 
     /// A study showed gaps, and no gate failed.
     #[test]
+    #[should_panic(expected = "a study reads what it does not plan")]
     fn a_run_of_which_less_is_measured_than_a_study_reads_is_not_planned() {
         let spec = RunSpec::new("made_up", "plain", serde_json::json!({}));
         let record = Record::new("made_up", "plain", spec.settings.clone(), 1);
         let runs = Runs::new(vec![JudgedRun::new(Planned::new(spec.clone()), record)]);
-        assert!(runs.record(&spec).is_some() && runs.unplanned().is_empty());
-        let all = spec.measure_all();
-        assert!(runs.record(&all).is_none());
-        assert_eq!(runs.unplanned(), [all.canonical()]);
+        assert!(runs.record(&spec).is_some());
+        runs.record(&spec.measure_all());
     }
 
     /// A study would measure a state that is not a result.

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 use touchstone_base::{
     absent::Absent,
-    gate::{Bound, Evidence, Gate},
     record::{self, Record, Status},
     spec::{RunSpec, Task},
     submission::SESSION,
@@ -11,27 +10,27 @@ use touchstone_base::{
 use touchstone_report::{Counts, Subject};
 
 use crate::{
-    case::{Case, Planned, Tier},
-    declare::Declaration,
+    case::{Case, Facts, Planned, Tier},
     make::{self, Made, Making},
     plan,
     runs::{Judged, JudgedRun, Runs, counts},
-    sealed, studies,
-    study::Study,
+    sealed,
+    section::Section,
+    studies::{self, Studies},
 };
 
-/// The runs and studies of one case.
+/// The runs and sections of one case.
 pub struct CaseResults {
     /// The case.
     pub case: &'static dyn Case,
     /// Runs, in the order of the plan.
     pub runs: Runs,
     /// Studies.
-    pub studies: Vec<Study>,
+    pub studies: Studies,
+    /// The sections of its studies, in their order.
+    pub sections: Vec<Section>,
     /// Its row on the first screen of the report.
     pub row: Option<Subject>,
-    /// Declaration.
-    pub declared: Declaration,
 }
 
 impl CaseResults {
@@ -54,15 +53,15 @@ impl CaseResults {
     /// Every judgement on the case and on our own runs of it.
     pub fn judged(&self) -> impl Iterator<Item = JudgedOf<'_>> {
         let runs = self.runs.all.iter().map(|run| (Of::Run(run), &run.judged));
-        let studies = self.studies.iter().map(|study| (Of::Study(study), &study.judged));
+        let sections = self.sections.iter().map(|section| (Of::Section(section), &section.judged));
         let case = self.case;
-        runs.chain(studies)
+        runs.chain(sections)
             .flat_map(move |(of, all)| all.iter().map(move |judged| JudgedOf { case, of, judged }))
     }
 
     /// The run of the recommended variant on its card, if it has one.
     pub fn recommended(&self) -> Option<&Record> {
-        self.runs.record(self.declared.card.as_ref()?.runs.first()?)
+        self.runs.record(self.studies.first::<studies::Card>()?.runs.first()?)
     }
 }
 
@@ -71,8 +70,8 @@ impl CaseResults {
 pub enum Of<'a> {
     /// One run.
     Run(&'a JudgedRun),
-    /// A result of many runs.
-    Study(&'a Study),
+    /// The section of a study.
+    Section(&'a Section),
 }
 
 /// A judgement with its owner.
@@ -80,7 +79,7 @@ pub enum Of<'a> {
 pub struct JudgedOf<'a> {
     /// The case.
     pub case: &'static dyn Case,
-    /// The run that was judged, or the study.
+    /// The run that was judged, or the section.
     pub of: Of<'a>,
     /// The judgement.
     pub judged: &'a Judged,
@@ -167,14 +166,14 @@ pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
             (case, runs)
         })
         .collect();
-    let study = |(case, runs): (&'static dyn Case, Runs)| {
-        let declared = case.declaration(tier);
-        let mut studies = studies::of(case.name(), &declared, &runs);
-        let row = studies::row(case, &declared, &studies, &runs);
-        studies.extend(unplanned(case, &runs));
-        CaseResults { case, runs, studies, row, declared }
+    let evaluated = |(case, runs): (&'static dyn Case, Runs)| {
+        let (name, studies) = (case.name(), case.studies(tier));
+        let mut sections = studies.evaluate(name, &runs);
+        sections.extend(studies::submissions::section(name, &studies, &runs));
+        let row = studies::card::row(case, &studies, &sections, &runs);
+        CaseResults { case, runs, studies, sections, row }
     };
-    let cases = of_plans.into_par_iter().map(study).collect();
+    let cases = of_plans.into_par_iter().map(evaluated).collect();
     Suite { tier, cases, made }
 }
 
@@ -205,7 +204,7 @@ pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
 /// Removes metrics that only our own runs have, such as `impulse` and `impulse@phase1`, from a run of another
 /// code.
 pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
-    let Declaration { costly, stepwise, of_methods, .. } = case.declaration(Tier::Quick);
+    let Facts { costly, stepwise, of_methods, .. } = case.facts();
     for (metrics, why) in
         [(costly, Absent::OwnTerms), (stepwise, Absent::EveryStep), (of_methods, Absent::OwnTheory)]
     {
@@ -218,19 +217,4 @@ pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
             record.absent.entry(name).or_insert_with(|| why.clone());
         }
     }
-}
-
-/// A failing gate if a study looked up a run that the case did not plan.
-fn unplanned(case: &dyn Case, runs: &Runs) -> Option<Study> {
-    let asked = runs.unplanned();
-    if asked.is_empty() {
-        return None;
-    }
-    let name = case.name();
-    let because = "a study may only speak of runs that its case plans";
-    let id = format!("{name}.unplanned");
-    let gate = Gate::new(id, "runs", Bound::Equals(0.0), Evidence::Invariant, because);
-    let study = Study::new(&studies::anchor(name, "unplanned"), "Runs not planned");
-    let count = asked.len() as f64;
-    Some(study.prose(format!("Asked for, not planned: {}", asked.join("; "))).judge(gate, count))
 }

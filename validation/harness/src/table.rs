@@ -6,13 +6,13 @@
 use touchstone_base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
 use touchstone_report::ColourMap;
 
-use std::ops::RangeInclusive;
+use std::{ops::RangeInclusive, sync::Arc};
 
 use crate::{
     composed::Composed,
-    declare::{Ladder, Picture, PicturePanel, Resolution},
-    pictures,
+    pictures::{self, Picture, PicturePanel},
     runs::{Planned, Tier},
+    studies::{Ladder, Spacing},
 };
 
 /// By how much the starts of an ensemble differ \[dx\]: less than any method or experiment knows, and more
@@ -127,18 +127,18 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         self.of(group).map(|row| row.run.spec.clone())
     }
 
-    /// The ladder of a variant over the runs of some groups, from coarse to fine, whose order is not judged;
-    /// `level` gives the spacing of a run and its resolution in words.
-    pub fn ladder(
-        &self,
-        groups: &[G],
-        variant: &'static str,
-        level: impl Fn(&T) -> (f64, Resolution),
-    ) -> Ladder {
-        let mut ladder = Ladder { variant, levels: Vec::new(), order: None };
+    /// The runs of a group with their gates.
+    pub fn planned(&self, group: G) -> Vec<Planned> {
+        self.of(group).map(|row| row.run.clone()).collect()
+    }
+
+    /// The ladder of a variant over the runs of some groups, from coarse to fine, whose order is not judged.
+    pub fn ladder(&self, groups: &[G], variant: &'static str, spacing: Spacing<T>) -> Ladder {
+        let refine = Arc::new(move |run: &RunSpec, factor| spacing.refined(run, factor));
+        let mut ladder = Ladder { variant, levels: Vec::new(), order: None, refine };
         for row in &self.rows {
             if row.variant == variant && groups.contains(&row.group) {
-                ladder.add(&row.run, level(&row.settings));
+                ladder.add(spacing.level(row.run.clone(), &row.settings));
             }
         }
         ladder
@@ -162,9 +162,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
     }
 
     /// The plan: every run with its gates.
-    pub fn plan(self) -> Vec<Planned> {
-        let mut plan = Vec::new();
-        self.rows.into_iter().for_each(|row| plan.push(row.run));
-        plan
+    pub fn plan(&self) -> Vec<Planned> {
+        self.rows.iter().map(|row| row.run.clone()).collect()
     }
 }

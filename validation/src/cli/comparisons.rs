@@ -1,8 +1,7 @@
 //! Comparisons with references for other programs: a part of the verdicts.
 
 use serde::{Deserialize, Serialize};
-use touchstone_harness::declare::Comparison;
-use touchstone_harness::studies::validation::Found;
+use touchstone_harness::studies::validation::{Comparison, Comparisons, Found};
 use touchstone_harness::suite::{CaseResults, Suite};
 
 /// A comparison with a reference. A number that is not known, or has no meaning, is missing.
@@ -51,7 +50,8 @@ fn all<const N: usize>(values: [f64; N]) -> Option<[f64; N]> {
 /// The comparisons of all cases.
 pub fn of(suite: &Suite) -> Vec<ComparisonVerdict> {
     let pairs = suite.cases.iter().flat_map(|results| {
-        results.declared.comparisons.iter().map(move |comparison| (results, comparison))
+        let of_case = results.studies.of::<Comparisons>().flat_map(|of| &of.0);
+        of_case.map(move |comparison| (results, comparison))
     });
     let one = |(results, comparison): (&CaseResults, &Comparison)| {
         let found = Found::of(comparison, &results.runs);

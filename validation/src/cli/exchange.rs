@@ -22,7 +22,7 @@ use touchstone_exchange::{
     write,
 };
 use touchstone_harness::{
-    case::{self, Case, Tier},
+    case::{self, Case},
     context::Context,
     problem::Steps,
     relation::Relation,
@@ -194,7 +194,7 @@ fn solve(
 
 /// The series from which a case measures more than from particles at its few times, if it has one.
 fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
-    let curve = case.declaration(Tier::Quick).curve.filter(|curve| curve.coarsen.is_some())?;
+    let curve = case.facts().curve.filter(|curve| curve.coarsen.is_some())?;
     let (name, columns) = curve.shown;
     let mut series = record.profiles.get(name)?.clone();
     series.columns.retain(|column| columns.contains(&&*column.name));

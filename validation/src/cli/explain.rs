@@ -93,7 +93,7 @@ fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Ve
 pub fn in_full(JudgedOf { case, of, judged }: &JudgedOf) -> String {
     let (on, status) = match of {
         Of::Run(run) => (case::command(*case, &run.planned.spec), Some(run.record.status.clone())),
-        Of::Study(study) => (of_study(&study.title, case.name()), None),
+        Of::Section(section) => (of_study(&section.title, case.name()), None),
     };
     let last = Some(Judged::clone(judged));
     words(&Known { last, status, ..Known::new(judged.gate.clone(), on) })

@@ -13,7 +13,7 @@ use touchstone_base::text::escaped;
 use touchstone_harness::case::{self, Case, Tier};
 use touchstone_harness::notes::Notes;
 use touchstone_harness::runs::{Judged, JudgedRun};
-use touchstone_harness::study::Study;
+use touchstone_harness::section::Section;
 use touchstone_harness::suite::{CaseResults, Suite};
 use touchstone_report::Counts;
 
@@ -204,14 +204,14 @@ impl Verdicts {
             wall_s: run.record.cost.wall_s,
             judged: run.judged.clone(),
         };
-        let of_study = |case: &str, study: &Study| StudyVerdicts {
+        let of_study = |case: &str, section: &Section| StudyVerdicts {
             case: case.into(),
-            id: study.id.clone(),
-            title: study.title.clone(),
-            judged: study.judged.clone(),
+            id: section.id.clone(),
+            title: section.title.clone(),
+            judged: section.judged.clone(),
         };
         let of_cases = suite.cases.iter().flat_map(|results| {
-            results.studies.iter().map(|study| of_study(results.case.name(), study))
+            results.sections.iter().map(|section| of_study(results.case.name(), section))
         });
         let of_others = suite.cases.iter().flat_map(|of| {
             let all = [(&of.runs.submissions, false), (&of.runs.peers, true)].into_iter();

@@ -8,8 +8,8 @@ use touchstone_harness::{
     case::{self, Tier},
     make::{self, Job, Made, Stored},
     runs,
+    section::Section,
     store::{Pending, Store},
-    study::Study,
     suite::{self, Plans, Suite},
 };
 use touchstone_report::counted;
@@ -64,14 +64,14 @@ fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, La
             continue;
         }
         let open: usize =
-            results.studies.iter_mut().map(|study| study.judged.drain(..).len()).sum();
+            results.sections.iter_mut().map(|section| section.judged.drain(..).len()).sum();
         let words = format!(
             "This report is not complete. Of the runs of this case are without a record: {}. They are not \
              judged. The {open} gates of its studies are open until every run has a record.",
             counts(&of_case)
         );
         let id = format!("{}-lacking", name.replace('_', "-"));
-        results.studies.insert(0, Study::new(&id, "Runs without a record").prose(words));
+        results.sections.insert(0, Section::new(&id, "Runs without a record").prose(words));
     }
     suite
 }

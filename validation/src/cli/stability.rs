@@ -3,11 +3,10 @@
 use serde_json::{Value, json};
 use touchstone_harness::{
     case::Case,
-    declare::StepLimit,
     limits::{ADVISED_SHARE, Mechanism},
     make::Job,
     runs::{JudgedRun, Planned, Runs},
-    studies::limit_of_theory,
+    studies::{StepLimit, StepLimits, limit::of_theory as limit_of_theory},
 };
 
 use touchstone_cases::stiffness::Row;
@@ -28,7 +27,9 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
     }
     let mut declared = Vec::new();
     for case in cases {
-        let limits = case.declaration(arguments.tier).limits.of;
+        let studies = case.studies(arguments.tier);
+        let limits: Vec<StepLimit> =
+            studies.of::<StepLimits>().flat_map(|of| of.of.clone()).collect();
         if limits.is_empty() && !arguments.cases.is_empty() {
             let words = format!("{} declares no largest stable time step", case.name());
             return Err(Failure::usage(words));

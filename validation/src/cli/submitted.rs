@@ -4,9 +4,8 @@
 use touchstone_base::{gate::Gate, record::Status, spec::RunSpec};
 use touchstone_harness::{
     case::{self, Case, Tier},
-    declare::Declaration,
     runs::{Judged, JudgedRun},
-    studies::cost_in_words,
+    studies::{Studies, card::cost as cost_in_words},
 };
 use touchstone_report::Counts;
 
@@ -35,12 +34,11 @@ pub fn verdict(case: &dyn Case, run: &JudgedRun, all: bool) -> (String, Exit) {
 /// The lines after the tables of a submission, and its exit code.
 fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit) {
     let record = &run.record;
-    let declared = case.declaration(Tier::Quick);
-    let (mut error, mut metric) = error_of(&declared, record);
+    let studies = case.studies(Tier::Quick);
+    let (mut error, mut metric) = error_of(&studies, record);
     let states = record.run.submission.as_ref().is_some_and(|of| of.states_our_method);
     let judges = |gate: Gate| gate.for_submission(states);
-    let nearest =
-        if verdicts.is_empty() { nearest(case, &declared, record, &judges) } else { None };
+    let nearest = if verdicts.is_empty() { nearest(case, &studies, record, &judges) } else { None };
     let judged = worst(verdicts.iter()).map(|judged| &judged.gate);
     let other = judged.or(nearest.as_ref().map(|nearest| &nearest.gate));
     let has_error = record.metrics.contains_key(&metric) || record.status != Status::Completed;
@@ -49,11 +47,11 @@ fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit
     {
         (error, metric) = (in_words(&gate.metric, found), gate.metric.clone());
     }
-    let (mut bound, mut gates) = (bound(&declared, record, verdicts, &metric), counted(verdicts));
+    let (mut bound, mut gates) = (bound(&studies, record, verdicts, &metric), counted(verdicts));
     if verdicts.is_empty() {
         gates = "Nothing was judged: no gate applies to this submission.".into();
         bound = match &nearest {
-            Some(nearest) => nearest.in_words(case, &declared),
+            Some(nearest) => nearest.in_words(case, &studies),
             None => "none for this variant with these settings".into(),
         };
     }
@@ -61,7 +59,7 @@ fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit
         Status::Completed => String::new(),
         status => format!("{status}; nothing after it is measured"),
     };
-    let next = next(case, &declared, run, verdicts, nearest.map(|nearest| nearest.spec));
+    let next = next(case, &studies, run, verdicts, nearest.map(|nearest| nearest.spec));
     let cost = cost_in_words(record);
     let lines = [ended, error, bound, gates, cost, next];
     let heads = ["ended", "error", "bound", "gates", "cost", "next"];
@@ -81,7 +79,7 @@ fn counted(verdicts: &[Judged]) -> String {
 /// The command that is of use to a submitter.
 fn next(
     case: &dyn Case,
-    declared: &Declaration,
+    studies: &Studies,
     run: &JudgedRun,
     verdicts: &[Judged],
     nearest: Option<RunSpec>,
@@ -98,7 +96,7 @@ fn next(
         (None, Some(of)) => {
             export(&case::command(case, &of)) + " --out DIR (a problem that is judged)"
         }
-        (None, None) => finer(case, declared, spec)
+        (None, None) => finer(case, studies, spec)
             .map(|finer| export(&finer) + " --out DIR")
             .unwrap_or_default(),
     }

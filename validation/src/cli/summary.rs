@@ -8,10 +8,12 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{self, Case, Tier},
-    declare::{Breaks, Declaration},
     plan,
     runs::{Judged, counts},
-    studies::{Resolution, cost_in_words, headline},
+    studies::{
+        Accuracy, Breaks, Card, StepLimits, Studies,
+        card::{cost as cost_in_words, headline},
+    },
     suite::{CaseResults, JudgedOf, Suite},
 };
 use touchstone_report::Counts;
@@ -69,7 +71,7 @@ fn row(results: &CaseResults) -> Vec<String> {
     }));
     row.extend(match results.recommended() {
         Some(record) => [
-            headline(&results.declared, record).unwrap_or_else(|_| "none".into()),
+            headline(&results.studies, record).unwrap_or_else(|_| "none".into()),
             record.run.variant.clone(),
             touchstone_report::seconds(record.cost.alone_median().unwrap_or(record.cost.cpu_s)),
         ],
@@ -117,26 +119,26 @@ pub fn outcome(
     record: &Record,
     verdicts: &[Judged],
 ) -> [String; 2] {
-    let declared = case.declaration(Tier::Quick);
-    let (error, metric) = error_of(&declared, record);
-    let card = declared.card.as_ref();
+    let studies = case.studies(Tier::Quick);
+    let (error, metric) = error_of(&studies, record);
+    let card = studies.first::<Card>();
     let beside = card.and_then(|card| card.beside).and_then(|beside| beside(record));
-    let nearest = if verdicts.is_empty() { nearest(case, &declared, record, &Some) } else { None };
+    let nearest = if verdicts.is_empty() { nearest(case, &studies, record, &Some) } else { None };
     let (bound, gates) = match &nearest {
-        Some(nearest) => (nearest.in_words(case, &declared), String::new()),
-        None => (bound(&declared, record, verdicts, &metric), counts(verdicts).headline()),
+        Some(nearest) => (nearest.in_words(case, &studies), String::new()),
+        None => (bound(&studies, record, verdicts, &metric), counts(verdicts).headline()),
     };
     let lines = [
         ("error", error),
         ("also", beside.unwrap_or_default()),
-        ("breaks", broken(&declared, record).unwrap_or_default()),
+        ("breaks", card.and_then(|card| broken(&card.breaks, record)).unwrap_or_default()),
         ("bound", bound),
         ("gates", gates),
         ("cost", cost_in_words(record)),
     ];
     let told = lines.iter().filter(|(_, words)| !words.is_empty());
     let nearest = nearest.map(|nearest| nearest.spec);
-    let next = next(case, &declared, spec, record, verdicts, nearest.as_ref());
+    let next = next(case, &studies, spec, record, verdicts, nearest.as_ref());
     let next = if next.is_empty() { next } else { output::hanging("next", 7, &next) };
     [told.map(|(head, words)| output::hanging(head, 7, words)).collect(), next]
 }
@@ -151,13 +153,13 @@ pub struct Nearest {
 /// case, if there is such a gate of the same variant.
 pub fn nearest(
     case: &dyn Case,
-    declared: &Declaration,
+    studies: &Studies,
     record: &Record,
     judges: &dyn Fn(Gate) -> Option<Gate>,
 ) -> Option<Nearest> {
     let measured =
         |gate: Gate| judges(gate).filter(|gate| record.metrics.contains_key(&gate.metric));
-    let card = declared.card.as_ref().map(|card| &card.metric.name);
+    let card = studies.first::<Card>().map(|card| &card.metric.name);
     let of_card = |gate: Gate| measured(gate).filter(|gate| Some(&gate.metric) == card);
     let spec = record.spec();
     let of_card = plan::nearest_judged(case, &spec, &of_card);
@@ -170,10 +172,10 @@ pub fn nearest(
 
 impl Nearest {
     /// The judged quantity.
-    pub fn in_words(&self, case: &dyn Case, declared: &Declaration) -> String {
+    pub fn in_words(&self, case: &dyn Case, studies: &Studies) -> String {
         let Nearest { spec, gate } = self;
         let there = case::command(case, spec).replacen("touchstone run ", "", 1);
-        let bound = gate.bound.in_words(&in_unit(declared, &gate.metric, spec));
+        let bound = gate.bound.in_words(&in_unit(studies, &gate.metric, spec));
         let Gate { id, metric, .. } = gate;
         format!(
             "none for these settings; the nearest run with a bound is {there}: {metric} {bound} ({id})"
@@ -183,8 +185,8 @@ impl Nearest {
 
 /// Writes a value of a metric of this run in the unit in which the error of the case is stated, if the metric
 /// is that error.
-fn in_unit(declared: &Declaration, metric: &str, spec: &RunSpec) -> impl Fn(f64) -> String + use<> {
-    let card = declared.card.as_ref().filter(|card| card.metric.name == metric);
+fn in_unit(studies: &Studies, metric: &str, spec: &RunSpec) -> impl Fn(f64) -> String + use<> {
+    let card = studies.first::<Card>().filter(|card| card.metric.name == metric);
     let unit = card.map(|card| (card.stated)(&spec.settings).unit);
     move |value| match unit {
         None => four_digits(value),
@@ -204,12 +206,12 @@ pub fn in_words(name: &str, metric: &record::Metric) -> String {
 }
 
 /// The error of the case, from its card or its first ladder, in words; and the name of its metric.
-pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
-    let Some(metric) = declared.error() else {
+pub fn error_of(studies: &Studies, record: &Record) -> (String, String) {
+    let Some(metric) = studies.error() else {
         return Default::default();
     };
     let measured = record.metrics.get(&metric.name);
-    let words = match (&declared.card, measured) {
+    let words = match (studies.first::<Card>(), measured) {
         // The name includes a time that the run did not reach.
         _ if record.status != Status::Completed => format!("none: {}", record.status),
         (_, None) => {
@@ -228,8 +230,7 @@ pub fn error_of(declared: &Declaration, record: &Record) -> (String, String) {
 }
 
 /// The setting at which the run broke, if it did.
-fn broken(declared: &Declaration, record: &Record) -> Option<String> {
-    let breaks = &declared.card.as_ref()?.breaks;
+fn broken(breaks: &Breaks, record: &Record) -> Option<String> {
     let Breaks { setting, words: [before, after], has_broken, sign } = breaks;
     has_broken(record).filter(|broken| *broken)?;
     let value = touchstone_report::exact(record.run.settings[*setting].as_f64()?);
@@ -238,7 +239,7 @@ fn broken(declared: &Declaration, record: &Record) -> Option<String> {
 
 /// The bound of that metric in the unit of the error, with the verdict; of the gate nearest to its bound if
 /// this metric has none.
-pub fn bound(declared: &Declaration, record: &Record, verdicts: &[Judged], metric: &str) -> String {
+pub fn bound(studies: &Studies, record: &Record, verdicts: &[Judged], metric: &str) -> String {
     let of_metric = worst(verdicts.iter().filter(|judged| judged.gate.metric == metric));
     let Some(Judged { gate, judgement, .. }) = of_metric.or_else(|| worst(verdicts.iter())) else {
         return String::new();
@@ -247,7 +248,7 @@ pub fn bound(declared: &Declaration, record: &Record, verdicts: &[Judged], metri
         judgement.margin.map(|m| format!(", {} of it left", touchstone_report::percent(m, 2)));
     let (verdict, margin) = (judgement.verdict, margin.unwrap_or_default());
     let verdict = output::painted(verdict, &verdict.to_string());
-    let bound = gate.bounds_in(&in_unit(declared, &gate.metric, &record.spec()));
+    let bound = gate.bounds_in(&in_unit(studies, &gate.metric, &record.spec()));
     let other = match of_metric {
         Some(_) => String::new(),
         None => format!("none on this error; of {} ", gate.metric),
@@ -258,18 +259,19 @@ pub fn bound(declared: &Declaration, record: &Record, verdicts: &[Judged], metri
 /// The command to try next.
 fn next(
     case: &dyn Case,
-    declared: &Declaration,
+    studies: &Studies,
     spec: &RunSpec,
     record: &Record,
     verdicts: &[Judged],
     nearest: Option<&RunSpec>,
 ) -> String {
     let name = case.name();
+    let has_limits = studies.of::<StepLimits>().any(|limits| !limits.of.is_empty());
     let worst = worst(verdicts.iter())
         .filter(|judged| matches!(judged.judgement.verdict, Verdict::Fail | Verdict::Limitation));
     match (worst, &record.status) {
         (Some(judged), _) => format!("touchstone explain {}", judged.gate.id),
-        (None, record::Status::Diverged { .. }) if !declared.limits.of.is_empty() => {
+        (None, record::Status::Diverged { .. }) if has_limits => {
             format!("touchstone stability {name}")
         }
         (None, record::Status::Diverged { .. }) => format!("touchstone list {name}"),
@@ -277,17 +279,14 @@ fn next(
             Some(spec) => format!("{} (the nearest run with a bound)", case::command(case, spec)),
             None => format!("touchstone verify {name} (makes and judges the runs that have gates)"),
         },
-        (None, _) => finer(case, declared, spec).unwrap_or_default(),
+        (None, _) => finer(case, studies, spec).unwrap_or_default(),
     }
 }
 
-/// The run with half the spacing.
-pub fn finer(case: &dyn Case, declared: &Declaration, spec: &RunSpec) -> Option<String> {
-    let Resolution { setting, is_count } = Resolution::of(case, declared)?;
-    let now = spec.settings[setting].as_f64()?;
-    let half_the_spacing = if is_count { 2.0 * now } else { 0.5 * now };
-    let mut set = case::changed(case, spec);
-    set.retain(|assignment| assignment.split('=').next() != Some(setting));
-    set.push(format!("{setting}={half_the_spacing}"));
-    Some(case::command(case, &case::spec(case, &spec.variant, &set).ok()?))
+/// The run with half the spacing, as the ladders of its case are refined.
+pub fn finer(case: &dyn Case, studies: &Studies, spec: &RunSpec) -> Option<String> {
+    let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
+    let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
+    let finer = (ladder.refine)(spec, 0.5)?.run.spec;
+    Some(case::command(case, &finer))
 }

@@ -12,10 +12,9 @@ use touchstone_base::{
 use touchstone_harness::{
     case::{Case, Tier},
     make::Stored,
-    plan,
+    plan, section,
     store::Store,
-    studies,
-    study::Study,
+    studies::sweep,
     suite::Plans,
 };
 use touchstone_report::{Block, Page, Section, Table, counted};
@@ -76,10 +75,10 @@ fn read(path: &Path) -> (Vec<Record>, Vec<FileError>) {
 pub fn page(cases: &[(&'static dyn Case, Vec<Record>)], made: &str) -> Result<Page, Failure> {
     let mut sections = Vec::new();
     for (case, records) in cases {
-        let study = studies::sweep(*case, records);
-        output::print(&format!("{}\n{}\n", case.name(), text(&study)))?;
-        let section = Section::new(&study.id, &study.title);
-        sections.push(study.blocks.into_iter().fold(section, Section::block));
+        let of_case = sweep::section(*case, records);
+        output::print(&format!("{}\n{}\n", case.name(), text(&of_case)))?;
+        let section = Section::new(&of_case.id, &of_case.title);
+        sections.push(of_case.blocks.into_iter().fold(section, Section::block));
     }
     let runs = cases.iter().map(|(_, records)| records.len()).sum();
     let runs = counted(runs, "run", "runs");
@@ -95,13 +94,13 @@ pub fn page(cases: &[(&'static dyn Case, Vec<Record>)], made: &str) -> Result<Pa
     })
 }
 
-/// The tables of a study for a terminal.
-fn text(study: &Study) -> String {
+/// The tables of a section for a terminal.
+fn text(section: &section::Section) -> String {
     let table = |block: &Block| match block {
         Block::Table(table) => Some(lines(table)),
         _ => None,
     };
-    study.blocks.iter().filter_map(table).collect()
+    section.blocks.iter().filter_map(table).collect()
 }
 
 fn lines(table: &Table) -> String {

@@ -20,11 +20,11 @@ use touchstone_cases::page;
 use touchstone_harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
-    declare::{Card, Declaration},
     make::{self, Made, Making},
     runs::{Judged, Runs},
+    section::Section,
     store::Store,
-    study::Study,
+    studies::{Card, CustomStudy, Studies},
     suite::{self, Suite},
 };
 use touchstone_report::{Page, check_page};
@@ -103,26 +103,24 @@ impl Case for Staged {
         Ok(record)
     }
 
-    fn plan(&self, _: Tier) -> Vec<Planned> {
+    fn studies(&self, _: Tier) -> Studies {
         let set = ["re=1".to_string()];
         let spec = |variant: &str| case::spec(self, variant, &set).expect("staged settings");
         let planned = |variant: &&str| {
             let name = format!("{}.{variant}", self.name);
             Planned::new(spec(variant)).judged(vec![gate(&name, "error")])
         };
-        self.planned.iter().map(planned).collect()
-    }
-
-    fn declaration(&self, _: Tier) -> Declaration {
-        let run = || case::spec(self, "right", &["re=1".to_string()]).expect("staged settings");
-        let card = || Card::made_up(ERROR, "re", vec![run()]);
+        let runs: Vec<Planned> = self.planned.iter().map(planned).collect();
+        let card = || Card::made_up(ERROR, "re", vec![spec("right")]);
         let (name, card) = (self.name, (self.name == "main").then(card));
-        let studies = move |runs: &Runs| {
+        let section = move |runs: &Runs| {
             let count = runs.all.len() as f64;
-            let study = Study::new(&format!("{name}-count"), "How many").prose("Runs are counted.");
-            vec![study.judge(gate(name, "count"), count)]
+            let id = format!("{name}-count");
+            let section = Section::new(&id, "How many").prose("Runs are counted.");
+            section.judge(gate(name, "count"), count)
         };
-        Declaration { card, studies: Some(Box::new(studies)), ..Declaration::default() }
+        let count = CustomStudy { runs: runs.clone(), section };
+        Studies::judging(runs).with(count).with_all(card)
     }
 }
 
@@ -656,7 +654,8 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
         let because = "staged";
         Gate::new("couette.staged", metric, Bound::Below(most), Evidence::Theory, because)
     };
-    let card = couette.declaration(Tier::Quick).card.expect("a card");
+    let studies = couette.studies(Tier::Quick);
+    let card: &Card = studies.first().expect("a card");
     record.put(card.metric.clone(), 0.0123);
     let end = |gates: Vec<Gate>| {
         let judged = gates.into_iter().map(|gate| Judged::of_record(gate, &record));
@@ -696,9 +695,10 @@ fn a_run_states_the_error_by_its_own_settings() {
         let case = touchstone_cases::find(name).expect("a case");
         let set: Vec<String> = set.iter().map(|text| text.to_string()).collect();
         let spec = case::spec(case, case.recommended().variant, &set).expect("settings");
-        let card = case.declaration(Tier::Quick).card.expect("a card");
+        let studies = case.studies(Tier::Quick);
+        let card: &Card = studies.first().expect("a card");
         let mut record = Record::new(name, &spec.variant, spec.settings.clone(), 1);
-        record.put(card.metric, 0.0123);
+        record.put(card.metric.clone(), 0.0123);
         let [text, _] = super::summary::outcome(case, &spec, &record, &[]);
         let text = text.split("bound ").next().unwrap_or_default().replace('\n', " ");
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ").replace(" H", "\u{a0}H");
@@ -715,16 +715,17 @@ fn a_run_states_the_error_by_its_own_settings() {
 fn page_list_run_and_readme_state_the_same_number_of_a_case() {
     let readme = include_str!("../../../README.md");
     for &case in touchstone_cases::CASES {
-        let (name, declared) = (case.name(), case.declaration(Tier::Quick));
-        let Some(metric) = declared.error() else { continue };
+        let (name, studies) = (case.name(), case.studies(Tier::Quick));
+        let Some(metric) = studies.error() else { continue };
         let recommended = case.recommended();
         let spec = case::spec(case, recommended.variant, &[]).expect("settings");
         let mut record = Record::new(name, &spec.variant, spec.settings.clone(), 1);
         record.put(metric.clone(), 0.0123);
-        let page = touchstone_harness::studies::headline(&declared, &record).expect("an error");
-        let (run, named) = super::summary::error_of(&declared, &record);
+        let page =
+            touchstone_harness::studies::card::headline(&studies, &record).expect("an error");
+        let (run, named) = super::summary::error_of(&studies, &record);
         assert_eq!(named, metric.name, "{name}");
-        if declared.card.is_some() {
+        if studies.first::<Card>().is_some() {
             assert!(run.starts_with(&page), "{name}: `run` states {run}, the page {page}");
             let of = format!("{name}.{};", recommended.variant);
             let end = format!("; {} ", metric.name);
@@ -766,9 +767,9 @@ fn the_picture_of_a_card_is_of_the_run_that_it_states() {
     for (case, tier) in
         touchstone_cases::CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)])
     {
-        let declared = case.declaration(tier);
-        let Some(card) = &declared.card else { continue };
-        assert!(declared.pictured(card).is_some(), "{} in {tier:?}: {}", case.name(), card.picture);
+        let studies = case.studies(tier);
+        let Some(card) = studies.first::<Card>() else { continue };
+        assert!(card.pictured(&studies).is_some(), "{} in {tier:?}: {}", case.name(), card.picture);
     }
 }
 
@@ -777,9 +778,8 @@ fn the_picture_of_a_card_is_of_the_run_that_it_states() {
 fn the_next_run_has_half_the_spacing() {
     for (name, finer) in [("rubber_rings", "spacing=0.05"), ("dam_break", "n=40")] {
         let case = touchstone_cases::find(name).expect("a case");
-        let declared = case.declaration(Tier::Quick);
         let spec = case::spec(case, case.recommended().variant, &[]).expect("settings");
-        let words = super::summary::finer(case, &declared, &spec);
+        let words = super::summary::finer(case, &case.studies(Tier::Quick), &spec);
         assert!(words.as_ref().is_some_and(|words| words.ends_with(finer)), "{name}: {words:?}");
     }
 }
@@ -798,9 +798,9 @@ fn a_plain_run_is_of_the_recommended_variant_and_list_says_why() {
             "why it is recommended of {name}: {:?}",
             recommended.because
         );
-        let card = case.declaration(Tier::Quick).card;
-        let shown = card.map(|card| card.runs.into_iter().map(|spec| spec.variant));
-        let shown: Vec<String> = shown.into_iter().flatten().collect();
+        let studies = case.studies(Tier::Quick);
+        let shown = studies.of::<Card>().flat_map(|card| &card.runs);
+        let shown: Vec<&str> = shown.map(|spec| &*spec.variant).collect();
         let named: Vec<&str> =
             [Some(recommended.variant), recommended.papers].into_iter().flatten().collect();
         assert!(shown.is_empty() || shown == named, "{name}: {shown:?} on the card, not {named:?}");

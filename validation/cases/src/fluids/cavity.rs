@@ -7,10 +7,10 @@ use touchstone_base::{gate::*, mutation::Constant, record::*, reference::*};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::*,
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
+    studies::*,
     table,
 };
 use touchstone_maths::metrics::norms::rms;
@@ -85,8 +85,8 @@ pub static CASE: Composed<Cavity> = Composed {
             fills the box, so that a density that drifts has nowhere to go. Both mid-lines are compared with \
             finite differences of this project and with Ghia, Ghia & Shin 1982, which these judge too.",
     variants,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 /// The numbers of one run.
@@ -332,14 +332,14 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
-    let level = |s: &Cavity| (1.0 / s.n as f64, Resolution::new(s.n, "{} spacings a side"));
+    let spacing = Spacing::count(|s: &mut Cavity| &mut s.n, "{} spacings a side");
     let accuracy = |re: f64| Accuracy {
         about: format!(
             "The lid-driven cavity at Re {re}, steady, against finite differences of this project."
         ),
-        ladders: ["carried", RECOMMENDED].map(|of| table.ladder(&[re], of, level)).into(),
+        ladders: ["carried", RECOMMENDED].map(|of| table.ladder(&[re], of, spacing)).into(),
         ..Accuracy::new(&format!("{NAME}-{re}"), U_RMS, "rms error of u on x = L/2 [U]")
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
@@ -348,18 +348,19 @@ fn declaration(tier: Tier) -> Declaration {
     let panel = |r: &Row| vec![r.panel(format!("Re {}", r.group), 1.0 / r.settings.n as f64)];
     let picture = table.picture(texts, ("speed [U]", ColourMap::Sequential), size, panel);
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
+    let coarse = CASE.spec(RECOMMENDED, |s| s.n = 16);
+    Studies::judging(table.plan())
+        .with(curves(&table))
+        .with(picture)
+        .with_all(accuracy.filter(|of| !of.ladders[0].levels.is_empty()))
+        .with(Sensitivity::new(tier, [coarse], [speed]))
+}
+
+fn facts() -> Facts {
     let boundary = "No slip: at floor and sides the velocity is 0, at the lid it is (U, 0), U = 1 m/s. \
                     Nothing passes a wall. The lid is a plate that slides along on the sides, so that \
                     particles of walls above y = L move with it, those above the sides too.";
-    Declaration {
-        posed: Posed::new(boundary, &[ALL]),
-        curves: vec![curves(&table)],
-        pictures: vec![picture],
-        accuracy: accuracy.filter(|of| !of.ladders[0].levels.is_empty()).collect(),
-        sensitivity: Some(Sensitivity::new(tier, [CASE.spec(RECOMMENDED, |s| s.n = 16)], [speed])),
-        sealed: Some(SEALED),
-        ..Declaration::default()
-    }
+    Facts { statement: Statement::new(boundary, &[ALL]), sealed: Some(SEALED), ..Facts::default() }
 }
 
 /// Both mid-lines of the finest runs.

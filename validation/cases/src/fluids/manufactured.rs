@@ -5,8 +5,15 @@ use nalgebra::Vector2;
 use touchstone_base::{gate::*, record::*};
 use touchstone_harness::orders::{self, Line, Refinement};
 use touchstone_harness::{
-    case::*, composed::*, convergence::Level, declare::Declaration, method::*, problem::Simple,
-    runs::Runs, study::Study, table,
+    case::*,
+    composed::*,
+    convergence::Level,
+    method::*,
+    problem::Simple,
+    runs::Runs,
+    section::Section,
+    studies::{CustomStudy, Studies},
+    table,
 };
 use touchstone_maths::{exact::manufactured, metrics::norms::rms};
 use touchstone_schemes::flow;
@@ -78,11 +85,8 @@ pub static CASE: Composed<ManufacturedSettings> = Composed {
             less than 0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 \
             it is mixed.",
     variants,
-    declaration: |tier| Declaration {
-        studies: Some(Box::new(move |runs| studies(tier, runs))),
-        ..Declaration::default()
-    },
-    plan: |tier| table(tier).plan(),
+    facts: Facts::default,
+    studies,
 };
 
 touchstone_base::metrics! {
@@ -222,8 +226,15 @@ fn gate(of: For, variant: &str) -> Gate {
 }
 
 /// Studies of the case.
-fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
+    let runs = table.plan();
+    let orders =
+        CustomStudy { runs: runs.clone(), section: move |runs: &Runs| orders(&table, runs) };
+    Studies::judging(runs).with(orders)
+}
+
+fn orders(table: &Table, runs: &Runs) -> Section {
     let refinement = |(of, title): (For, &'static str)| {
         let line = |name: &'static str| {
             let level = |row: &table::Row<ManufacturedSettings, For>| Level {
@@ -242,13 +253,15 @@ fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         }
     };
     let mut all = vec![refinement((For::Strained, "Re 0.5: strained"))];
-    all.extend((tier == Tier::Full).then(|| refinement((For::Mixed, "Re 10: mixed"))));
+    let is_mixed = table.of(For::Mixed).next().is_some();
+    all.extend(is_mixed.then(|| refinement((For::Mixed, "Re 10: mixed"))));
     let figure = "Relative L2 error of the velocity of a manufactured steady flow between walls over the \
                   spacing: at Re 0.5, where the lattice is strained and not mixed, and in the full tier at \
                   Re 10.";
     let caption = "Errors of the velocity, and their order by method and walls.";
-    let study = Study::new("manufactured-orders", "Orders of whole methods by a manufactured flow");
-    vec![orders::study(study, [figure, caption], &all, |_| true)]
+    let title = "Orders of whole methods by a manufactured flow";
+    let section = Section::new("manufactured-orders", title);
+    orders::add(section, [figure, caption], &all, |_| true)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use touchstone_base::{gate::*, record::*};
 use touchstone_harness::table::{Row, Table};
-use touchstone_harness::{case::*, composed::*, declare::*, method::*, problem::Simple};
+use touchstone_harness::{case::*, composed::*, method::*, problem::Simple, studies::*};
 use touchstone_maths::exact::TaylorCouette;
 use touchstone_maths::geometry::{Curve, Row as Particles};
 use touchstone_maths::metrics::norms::l2;
@@ -172,8 +172,8 @@ pub static CASE: Composed<CylinderSettings> = Composed {
             and the outer one concave, and made of rows of particles that are spaced by their own arc \
             length.",
     variants,
-    declaration,
-    plan: |_| Vec::new(),
+    facts,
+    studies,
 };
 
 /// The runs: both walls, over the spacings across the gap.
@@ -212,18 +212,16 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
+    Studies::judging(table.plan()).with(profiles(&table)).with(accuracy(&table))
+}
+
+fn facts() -> Facts {
     let boundary = "No slip: at both cylinders the velocity is that of the cylinder. The outer one rests; \
                     the inner one turns, with the velocities that its particles have at the start, however \
                     long it turns.";
-    Declaration {
-        posed: Posed::new(boundary, &[ALL]),
-        curves: vec![profiles(&table)],
-        accuracy: vec![accuracy(&table)],
-        sealed: Some(SEALED),
-        ..Declaration::default()
-    }
+    Facts { statement: Statement::new(boundary, &[ALL]), sealed: Some(SEALED), ..Facts::default() }
 }
 
 /// Both walls with the order that they should have.
@@ -232,14 +230,12 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
                    which carry the velocity of the wall, are of first order, and walls that extrapolate \
                    linearly of second. A tolerance of 0.3 tells one from the other, whatever the number of \
                    levels, but not an order that falls slowly.";
-    let level = |s: &CylinderSettings| {
-        (1.0 / s.layers as f64, Resolution::new(s.layers, "{} spacings across"))
-    };
+    let spacing = Spacing::count(|s: &mut CylinderSettings| &mut s.layers, "{} spacings across");
     let ladder = |(variant, expected): (&'static str, f64)| {
         let bound = Bound::Within(expected - 0.3, expected + 0.3);
         let id = format!("{NAME}.{variant}.order");
         let order = Gate::new(id, "order", bound, Evidence::Theory, because);
-        Ladder { order: Some(order), ..table.ladder(&[()], variant, level) }
+        Ladder { order: Some(order), ..table.ladder(&[()], variant, spacing) }
     };
     let about = "Flow between cylinders, steady after t = d²/ν, at Re = V d/ν = 0.5; the gap d equals the \
                  inner radius.";

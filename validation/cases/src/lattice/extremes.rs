@@ -10,9 +10,9 @@ use touchstone_base::{gate::*, random::Random, record::*, settings::Settings};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::Declaration,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
+    studies::Studies,
     table::{Row, Table},
 };
 use touchstone_maths::metrics::{momentum::momentum, norms::largest};
@@ -53,8 +53,8 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
             on top of each other, and a block at a thousand times the speed of sound. Each variant is an \
             experiment of its own.",
     variants,
-    declaration: |_| Declaration::default(),
-    plan,
+    facts: Facts::default,
+    studies,
 };
 
 touchstone_base::metrics! {
@@ -242,7 +242,7 @@ fn blocks(method: &Method, s: &ExtremeSettings) -> Parts {
 }
 
 /// The runs of a tier.
-fn plan(tier: Tier) -> Vec<Planned> {
+fn studies(tier: Tier) -> Studies {
     let mut table = Table::new(&EXTREMES, tier);
     table.one((), REST, |_| ());
     table.over((), &[PRESSED], [&[10_000], &[1_000_000]], |s, steps| s.steps = steps);
@@ -250,7 +250,7 @@ fn plan(tier: Tier) -> Vec<Planned> {
     // Steps for sound, and steps for the speed of the block.
     table.over((), &[BULLET], [&[(0.3, 200), (1e-4, 2000)]; 2], |s, of| (s.dt, s.steps) = of);
     table.judge(gates);
-    table.plan()
+    Studies::judging(table.plan())
 }
 
 /// Gates of a run, with reasons.

@@ -14,11 +14,11 @@ use touchstone_harness::{
     bisect::Growth,
     case::*,
     composed::*,
-    declare::*,
     limits,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
     rules::PLANNED_DT_OVER_LIMIT,
+    studies::*,
     table::{Row, Table},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
@@ -66,8 +66,8 @@ pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     about: "Velocity noise of 1e-8 c0 excites every wave of a periodic lattice at rest. Its energy grows \
             if the time step is beyond the limit that linear theory of the same box predicts.",
     variants,
-    declaration,
-    plan,
+    facts: || Facts { is_stable: Some(is_stable), ..Facts::default() },
+    studies,
 };
 
 fn is_stable(record: &Record) -> bool {
@@ -320,17 +320,16 @@ fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
     }
 }
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let about = "A box at rest is stable if the energy of its noise does not grow. Theory is linear \
                  stability of the same box, with every wave vector and with sound and damping together. The \
                  predictor-corrector has no limit without damping, because it grows at every step.";
     let of = table(tier).rows.into_iter().map(bisected).collect();
-    let limits = StepLimits { about: about.into(), of };
-    Declaration { limits, is_stable: Some(is_stable), ..Declaration::default() }
+    Studies::judging(vec![at_limit_of_both()]).with(StepLimits { about: about.into(), of })
 }
 
 /// Super-time-stepping at its limit, in a larger box.
-fn plan(_: Tier) -> Vec<Planned> {
+fn at_limit_of_both() -> Planned {
     let because = "Up to the limit of sound and viscosity together no wave grows.";
     let (id, none) = ("extremes.step.super-leapfrog.10.1", Bound::Equals(0.0));
     let gate = Gate::new(id, String::from(GREW), none, Evidence::Theory, because);
@@ -338,7 +337,7 @@ fn plan(_: Tier) -> Vec<Planned> {
         s.n = 20;
         at_limit(SUPER)(s, [10.0, 0.0, 0.0]);
     });
-    vec![Planned::new(spec.allow_unstable()).judged(vec![gate])]
+    Planned::new(spec.allow_unstable()).judged(vec![gate])
 }
 
 #[cfg(test)]

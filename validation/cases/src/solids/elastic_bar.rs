@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 use touchstone_base::{functions::*, gate::*, record::*};
-use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_harness::{case::*, composed::*, studies::*, table::*};
 use touchstone_maths::{
     exact::impact::Impact, metrics::history::passes, theory::lattice::SquareLattice,
 };
@@ -55,8 +55,8 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
             bars meet at speeds V and -V: the contact bears rho c_p V (the jump conditions at finite V) \
             for 2 L/c_p, and then both have exchanged their velocities.",
     variants: || solid::variants(touchstone_schemes::solid::free()).all,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 touchstone_base::metrics! {
@@ -461,10 +461,10 @@ fn meeting(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
     gates
 }
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
-    let level = |s: &BarSettings| (1.0 / s.n as f64, Resolution::new(s.n, "n = {}"));
-    let ladder = |variant| table.ladder(&[For::Pulse, For::Order], variant, level);
+    let spacing = Spacing::count(|s: &mut BarSettings| &mut s.n, "n = {}");
+    let ladder = |variant| table.ladder(&[For::Pulse, For::Order], variant, spacing);
     let accuracy = Accuracy {
         about:
             "A pulse of a standard deviation of L/16 runs through a bar by 0.6 L. The error is its \
@@ -475,11 +475,14 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: ["seed", "bare"].map(ladder).into(),
         ..Accuracy::new("elastic-bar", PULSE_RMS, "rms distance from the exact pulse [-]")
     };
+    Studies::judging(table.plan()).with(accuracy)
+}
+
+fn facts() -> Facts {
     let free = "y is periodic, so that strain is along x alone. No force acts on the ends of a bar but that \
                 of a bar that it touches: there ends have one place and one velocity while they press on \
                 each other.";
-    let posed = Posed::new(free, &[ALL]);
-    Declaration { posed, accuracy: vec![accuracy], stepwise: STEPWISE, ..Declaration::default() }
+    Facts { statement: Statement::new(free, &[ALL]), stepwise: STEPWISE, ..Facts::default() }
 }
 
 #[cfg(test)]

@@ -11,10 +11,10 @@ use touchstone_base::{functions::*, gate::*, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
     rules::PLANNED_DT,
+    studies::Studies,
     table::*,
 };
 use touchstone_solver::*;
@@ -44,12 +44,12 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
             from the gradient symbol of the kernel. The shear modulus is 0.22 K, the wave has 16 \
             particles, and the effect of the time step is divided out.",
     variants,
-    declaration: |_| Declaration {
-        posed: Posed::new("There is no surface: x and y are periodic.", &[ALL]),
+    facts: || Facts {
+        statement: Statement::new("There is no surface: x and y are periodic.", &[ALL]),
         stepwise: &[FREQUENCY_ERROR],
-        ..Declaration::default()
+        ..Facts::default()
     },
-    plan: |tier| table(tier).plan(),
+    studies: |tier| Studies::judging(table(tier).plan()),
 };
 
 const NAME: &str = "elastic_wave";

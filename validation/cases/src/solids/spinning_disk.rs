@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use touchstone_base::{gate::*, record::*};
-use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_harness::{case::*, composed::*, studies::*, table::*};
 use touchstone_maths::metrics::history;
 use touchstone_solver::*;
 
@@ -41,8 +41,8 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
             stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
             for strain.",
     variants: || solid::variants(touchstone_schemes::solid::free()).all,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 touchstone_base::metrics! {
@@ -302,11 +302,11 @@ fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
     gates
 }
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let error = ANGULAR_MOMENTUM_DRIFT;
-    let level = |s: &DiskSettings| (1.0 / s.n as f64, Resolution::new(s.n, "n = {}"));
-    let ladder = |variant| table.ladder(&[For::Braked, For::Order], variant, level);
+    let spacing = Spacing::count(|s: &mut DiskSettings| &mut s.n, "n = {}");
+    let ladder = |variant| table.ladder(&[For::Braked, For::Order], variant, spacing);
     let accuracy = Accuracy {
         about:
             "A free disk, rim at 0.05 c0, makes one revolution; exactly, angular momentum stays."
@@ -318,13 +318,17 @@ fn declaration(tier: Tier) -> Declaration {
     };
     let changes = ["none", "dt/4", "2 dt"].into_iter().zip(table.specs(For::Steps));
     let changes = changes.map(|(what, spec)| Change::new(what, "time", spec)).collect();
-    let budgets = Budgets {
-        about: "A free disk, rim at 0.05 c0, makes a tenth of a revolution.".into(),
-        of: vec![changes],
-    };
-    let stepwise = &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS];
-    let posed = Posed::new("No force acts on the rim.", &[ALL]);
-    Declaration { posed, accuracy: vec![accuracy], budgets, stepwise, ..Declaration::default() }
+    let about = "A free disk, rim at 0.05 c0, makes a tenth of a revolution.";
+    let budgets = Budgets::new(&accuracy, about, vec![changes]);
+    Studies::judging(table.plan()).with(accuracy).with(budgets)
+}
+
+fn facts() -> Facts {
+    Facts {
+        statement: Statement::new("No force acts on the rim.", &[ALL]),
+        stepwise: &[INTERIOR_STRAIN, RIM_STRAIN, ANGULAR_MOMENTUM_TENTH, LARGEST_STRESS],
+        ..Facts::default()
+    }
 }
 
 #[cfg(test)]

@@ -8,11 +8,12 @@ use touchstone_base::{gate::*, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::*,
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
-    rules, table,
+    rules,
+    studies::*,
+    table,
 };
 use touchstone_maths::{
     exact::EllipticDrop as Exact,
@@ -296,8 +297,8 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
             follow an ordinary differential equation exactly. Gravity, in which it falls freely, must \
             change nothing.",
     variants,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 /// Purpose of a run.
@@ -347,10 +348,10 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
-    let level = |s: &DropSettings| (2.0 / s.n as f64, Resolution::new(s.n, "{} across"));
-    let ladder = |variant| table.ladder(&[Group::Judged, Group::Ladder], variant, level);
+    let spacing = Spacing::count(|s: &mut DropSettings| &mut s.n, "{} across").over(|_| 2.0);
+    let ladder = |variant| table.ladder(&[Group::Judged, Group::Ladder], variant, spacing);
     let accuracy = Accuracy {
         about: "A free drop until A t = 0.8, when it is four times as long as wide. The errors of the \
                 semi-axes change their signs over the resolutions, that of a near 40 particles across; \
@@ -365,22 +366,17 @@ fn declaration(tier: Tier) -> Declaration {
                    initial pressure at its centre; its rows are two initial spacings apart.";
     let texts = ["elliptic-drop-picture", "A free drop at the end", caption];
     let colours = ("p/p(0) [-]", ColourMap::Sequential);
-    let pictures = vec![
-        table.picture(texts, colours, [360.0, 320.0], |row| vec![row.panel("A t = 0.8", 0.05)]),
-    ];
-    let costly = &ledger::METRICS;
+    let picture =
+        table.picture(texts, colours, [360.0, 320.0], |row| vec![row.panel("A t = 0.8", 0.05)]);
+    Studies::judging(table.plan()).with(picture).with(accuracy)
+}
+
+fn facts() -> Facts {
     let boundary = "There is no wall. The surface is free: no pressure acts on it.";
-    let mut posed = Posed::new(boundary, &[ALL]);
+    let mut statement = Statement::new(boundary, &[ALL]);
     let energies = ledger::METRICS.iter().map(|metric| metric.of("initial kinetic energy"));
-    posed.metrics.extend(energies);
-    Declaration {
-        posed,
-        accuracy: vec![accuracy],
-        pictures,
-        costly,
-        sealed: Some(SEALED),
-        ..Declaration::default()
-    }
+    statement.metrics.extend(energies);
+    Facts { statement, costly: &ledger::METRICS, sealed: Some(SEALED), ..Facts::default() }
 }
 
 fn gates(row: &Row) -> Vec<Gate> {

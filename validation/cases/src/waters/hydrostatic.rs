@@ -7,9 +7,9 @@ use touchstone_base::{gate::*, mutation::Constant, random::Random, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
+    studies::*,
     table,
 };
 use touchstone_maths::{
@@ -118,8 +118,8 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
             moves. After 20 acoustic periods 4 H/c0 the pressure, the level, the kinetic energy, the gap \
             between water and bottom, and the particles outside of the tank are compared with it.",
     variants,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 /// Spacings from the surface of the water to the rim of the tank.
@@ -397,13 +397,14 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
-    let level = |s: &HydrostaticSettings| (1.0 / s.rows as f64, Resolution::new(s.rows, "{} rows"));
+    let spacing = Spacing::count(|s: &mut HydrostaticSettings| &mut s.rows, "{} rows")
+        .beside(|s| &mut s.columns);
     let about = "Water at rest after 20 acoustic periods, g H/c0² = 0.01. Errors are rms, over the rms of \
                  the pressure.";
-    let ladders =
-        ["seed", "ghosts", "modern"].map(|variant| table.ladder(&[Group::Ladder], variant, level));
+    let ladders = ["seed", "ghosts", "modern"]
+        .map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
     let accuracy = Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
@@ -417,17 +418,14 @@ fn declaration(tier: Tier) -> Declaration {
         Watched::new(Constant::Height),
     ];
     let run = HYDROSTATIC.spec("modern", |_| ());
-    let sensitivity = Some(Sensitivity::new(tier, [run], watched));
+    let sensitivity = Sensitivity::new(tier, [run], watched);
+    Studies::judging(table.plan()).with(accuracy).with(sensitivity)
+}
+
+fn facts() -> Facts {
     let boundary = "Nothing passes floor and sides, along which water is free to slip. The surface is free: \
                     no pressure acts on it. The exact solution is at rest.";
-    let posed = Posed::new(boundary, &[ALL]);
-    Declaration {
-        posed,
-        accuracy: vec![accuracy],
-        sensitivity,
-        sealed: Some(SEALED),
-        ..Declaration::default()
-    }
+    Facts { statement: Statement::new(boundary, &[ALL]), sealed: Some(SEALED), ..Facts::default() }
 }
 
 fn gates(row: &Row) -> Vec<Gate> {

@@ -6,10 +6,10 @@ use touchstone_base::{gate::*, mutation::Constant, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::*,
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
+    studies::*,
     table,
 };
 use touchstone_maths::metrics::{budget::Metered, norms::rms};
@@ -76,8 +76,8 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
             columns are stretched to fill the tank, so that their particles are not those of a lattice and \
             must first find their places. The exact pressure is that of the depth, and nothing moves.",
     variants,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 /// Half of the width of the tank \[H\].
@@ -325,10 +325,10 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
-    let level = |s: &Wedge| (1.0 / s.n as f64, Resolution::new(s.n, "{} spacings deep"));
-    let ladder = |variant| table.ladder(&[()], variant, level);
+    let spacing = Spacing::count(|s: &mut Wedge| &mut s.n, "{} spacings deep");
+    let ladder = |variant| table.ladder(&[()], variant, spacing);
     let accuracy = Accuracy {
         about: "Water at rest over a wedge, mean over the last five of 20 acoustic periods.".into(),
         spacing: "dx/H [-]",
@@ -338,25 +338,20 @@ fn declaration(tier: Tier) -> Declaration {
     };
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});
-    let sensitivity = Some(Sensitivity::new(tier, [run], watched));
+    let sensitivity = Sensitivity::new(tier, [run], watched);
     let caption = "Mean error of the pressure of each particle over the last quarter of the run, with 20 \
                    spacings along the depth.";
     let texts = ["still-wedge-errors", "Errors of still water over a wedge", caption];
     let colours = ("p − p_exact [ρ g H]", ColourMap::Diverging);
-    let pictures = vec![
-        table.picture(texts, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]),
-    ];
+    let picture =
+        table.picture(texts, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]);
+    Studies::judging(table.plan()).with(picture).with(accuracy).with(sensitivity)
+}
+
+fn facts() -> Facts {
     let boundary = "Nothing passes floor, sides and wedge, along which water is free to slip. The surface is \
                     free: no pressure acts on it. The exact solution is at rest.";
-    let posed = Posed::new(boundary, &[ALL]);
-    Declaration {
-        posed,
-        accuracy: vec![accuracy],
-        pictures,
-        sensitivity,
-        sealed: Some(SEALED),
-        ..Declaration::default()
-    }
+    Facts { statement: Statement::new(boundary, &[ALL]), sealed: Some(SEALED), ..Facts::default() }
 }
 
 #[cfg(test)]

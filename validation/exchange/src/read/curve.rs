@@ -7,7 +7,7 @@ use std::iter::once;
 use nalgebra::Vector2;
 use touchstone_base::text::number;
 use touchstone_harness::{
-    declare::Curve,
+    facts::Curve,
     playback::{self, Frame, Placed},
 };
 

@@ -1,64 +1,109 @@
 //! The error budget: one run with one thing changed at a time.
 
+use touchstone_base::{record::MetricName, spec::RunSpec};
 use touchstone_report::Cell;
 
+use super::{Accuracy, cost::error_of};
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Budgets, Change, error_of},
-    runs::Runs,
+    runs::{Planned, Runs},
+    section::Section,
     study::Study,
 };
 
-pub fn study(accuracy: &Accuracy, budgets: &Budgets, runs: &Runs) -> Study {
-    let caption = format!(
-        "Error budget with one thing changed at a time: {}. {} \
-         Where the error rises as dt falls, errors of time and spacing cancel at the default dt, and the row \
-         with the least dt is the better measure of the spacing.",
-        accuracy.label, budgets.about
-    );
-    let mut rows = Vec::new();
-    for changes in &budgets.of {
-        let error = |change: &Change| {
-            let record = runs.record(&change.spec);
-            record.and_then(|record| error_of(&accuracy.error, record)).unwrap_or(f64::NAN)
-        };
-        let errors: Vec<f64> = changes.iter().map(error).collect();
-        for (change, error) in changes.iter().zip(&errors) {
-            rows.push((&*changes[0].spec.variant, change, *error, error - errors[change.against]));
-        }
+/// Error budgets: one run with one thing changed at a time.
+pub struct Budgets {
+    /// Anchor of its section in the report.
+    id: String,
+    /// The error.
+    error: MetricName,
+    /// Name of the error with its unit.
+    label: String,
+    /// The runs in words, one or two sentences.
+    about: String,
+    /// The changes of each variant; the first one is none.
+    pub of: Vec<Vec<Change>>,
+}
+
+impl Budgets {
+    /// Budgets of the error of ladders: the runs in one or two sentences, and the changes of each variant, of
+    /// which the first one is none.
+    pub fn new(accuracy: &Accuracy, about: impl Into<String>, of: Vec<Vec<Change>>) -> Self {
+        let (id, error) = (format!("{}-error-budget", accuracy.id), accuracy.error.clone());
+        Self { id, error, label: accuracy.label.clone(), about: about.into(), of }
     }
-    let table = Columns::<(&str, &Change, f64, f64)>::default()
-        .code("variant", |(variant, ..)| *variant)
-        .text("change", |(_, change, ..)| &change.what)
-        .text("part of the error", |(_, change, ..)| change.part)
-        .num(["error", "-"], |(.., error, _)| Cell::percent(*error, 3))
-        .num(["change of error", "-"], |(.., change)| Cell::percent(*change, 2))
-        .table(caption, rows);
-    Study::new(&format!("{}-error-budget", accuracy.id), "Error budget").block(table)
+}
+
+/// A run with one thing changed.
+pub struct Change {
+    /// The change, such as `dt/2`.
+    pub what: String,
+    /// The part of the error that this changes; `time` is the time step.
+    pub part: &'static str,
+    /// The run.
+    pub spec: RunSpec,
+    /// Index of the change that it is compared with; mostly 0.
+    pub against: usize,
+}
+
+impl Change {
+    /// A change that is compared with the unchanged run.
+    pub fn new(what: impl Into<String>, part: &'static str, spec: RunSpec) -> Self {
+        Self { what: what.into(), part, spec, against: 0 }
+    }
+}
+
+impl Study for Budgets {
+    fn runs(&self) -> Vec<Planned> {
+        self.of.iter().flatten().map(|change| Planned::new(change.spec.clone())).collect()
+    }
+
+    fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
+        let caption = format!(
+            "Error budget with one thing changed at a time: {}. {} \
+             Where the error rises as dt falls, errors of time and spacing cancel at the default dt, and the \
+             row with the least dt is the better measure of the spacing.",
+            self.label, self.about
+        );
+        let mut rows = Vec::new();
+        for changes in &self.of {
+            let error = |change: &Change| {
+                let record = runs.record(&change.spec);
+                record.and_then(|record| error_of(&self.error, record)).unwrap_or(f64::NAN)
+            };
+            let errors: Vec<f64> = changes.iter().map(error).collect();
+            for (change, error) in changes.iter().zip(&errors) {
+                let variant = &*changes[0].spec.variant;
+                rows.push((variant, change, *error, error - errors[change.against]));
+            }
+        }
+        let table = Columns::<(&str, &Change, f64, f64)>::default()
+            .code("variant", |(variant, ..)| *variant)
+            .text("change", |(_, change, ..)| &change.what)
+            .text("part of the error", |(_, change, ..)| change.part)
+            .num(["error", "-"], |(.., error, _)| Cell::percent(*error, 3))
+            .num(["change of error", "-"], |(.., change)| Cell::percent(*change, 2))
+            .table(caption, rows);
+        (!self.of.is_empty()).then(|| Section::new(&self.id, "Error budget").block(table))
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use touchstone_base::spec::RunSpec;
-
     use super::*;
-    use crate::studies::tests::{ERROR, column, runs, spec, tables};
+    use crate::studies::tests::{ERROR, column, evaluate, runs, spec, tables};
 
     /// Changes of the run at n = 0, 1, and so on: their names, parts, runs of comparison, and errors.
-    fn study_of(changes: &[(&str, &'static str, usize, f64)]) -> Study {
-        let of = |n: usize| -> RunSpec { spec("seed", n) };
+    fn study_of(changes: &[(&str, &'static str, usize, f64)]) -> Section {
         let change =
             |(n, &(what, part, against, _)): (usize, &(&str, &'static str, usize, f64))| Change {
                 against,
-                ..Change::new(what, part, of(n))
+                ..Change::new(what, part, spec("seed", n))
             };
-        let budgets = Budgets {
-            about: "Made up.".into(),
-            of: vec![changes.iter().enumerate().map(change).collect()],
-        };
-        let errors = changes.iter().enumerate().map(|(n, (.., error))| (of(n), *error));
-        let runs = runs(errors.filter(|(_, error)| error.is_finite()));
-        study(&Accuracy::new("case", ERROR, "error"), &budgets, &runs)
+        let of = vec![changes.iter().enumerate().map(change).collect()];
+        let budgets = Budgets::new(&Accuracy::new("case", ERROR, "error"), "Made up.", of);
+        let errors = changes.iter().enumerate().map(|(n, (.., error))| (spec("seed", n), *error));
+        evaluate(&budgets, runs(errors.filter(|(_, error)| error.is_finite())))
     }
 
     /// 8 % less 5 % are 3 %: compared with the unchanged run it would be 15 %.

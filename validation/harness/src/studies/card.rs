@@ -1,23 +1,174 @@
 //! The row of a case on the first screen of the report: the errors of the recommended variant and of the
 //! paper's, the order of the error, the price of a tenth of it, and the setting at which runs break.
 
+use serde_json::Value;
 use touchstone_base::{
     functions::{ln, powf},
-    record::{MetricName, Record, Status},
+    record::{MetricKey, MetricName, Record, Status},
     spec::RunSpec,
 };
 use touchstone_report::{
     Block, Cell, Column, Figure, Subject, code, exact, plain, sci, seconds, sig,
 };
 
-use super::{cost, validation::Found};
+use super::{
+    Accuracy, Comparison, Comparisons, CurvePanel, Curves, Ladder, Map, cost, validation::Found,
+};
 use crate::{
     case::Case,
     convergence::{Label, convergence, slope},
-    declare::{self, Accuracy, Breaks, Comparison, Declaration, Ladder},
-    runs::Runs,
-    study::Study,
+    pictures::Picture,
+    runs::{Planned, Runs},
+    section::Section,
+    study::{Studies, Study},
 };
+
+/// Summary of a case at the top of the report: its error with the recommended variant and with the paper's.
+pub struct Card {
+    /// Name of the problem.
+    pub title: &'static str,
+    /// The figure with the picture: its first panel that shows the first of the runs, at any resolution
+    /// ([`Card::pictured`]).
+    pub picture: &'static str,
+    /// The error.
+    pub metric: MetricName,
+    /// Name of its magnitude with its unit, for axes.
+    pub axis: &'static str,
+    /// The words for the error of a run with these settings.
+    pub stated: fn(&Value) -> Stated,
+    /// Further numbers of a run in a sentence, if it has them.
+    pub beside: Option<fn(&Record) -> Option<String>>,
+    /// The run of the recommended variant and the run of the paper's.
+    pub runs: Vec<RunSpec>,
+    /// Where runs of these variants break.
+    pub breaks: Breaks,
+}
+
+impl Card {
+    /// The panel of the figure on the card: the first that shows the first run of the card, at any resolution
+    /// of the ladders of the case.
+    pub fn pictured(&self, studies: &Studies) -> Option<usize> {
+        let wanted = self.runs.first()?;
+        let levels = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
+        let levels: Vec<&RunSpec> =
+            levels.flat_map(|ladder| &ladder.levels).map(|level| &level.run.spec).collect();
+        let is_resolution = |name: &str| {
+            let values = levels.iter().filter(|spec| spec.variant == wanted.variant);
+            let mut values = values.map(|spec| &spec.settings[name]);
+            values.next().is_some_and(|first| values.any(|value| value != first))
+        };
+        let is_shown = |spec: &RunSpec| {
+            let (Some(a), Some(b)) = (spec.settings.as_object(), wanted.settings.as_object())
+            else {
+                return false;
+            };
+            let differ = a.iter().filter(|(name, value)| b.get(*name) != Some(*value));
+            spec.variant == wanted.variant
+                && differ.into_iter().all(|(name, _)| is_resolution(name))
+        };
+        let curves =
+            studies.of::<Curves>().find(|curves| curves.id == self.picture).map(|curves| {
+                let shows =
+                    |panel: &CurvePanel| panel.lines.iter().any(|line| is_shown(&line.spec));
+                curves.panels.iter().position(shows)
+            });
+        let mut pictures = studies.of::<Picture>();
+        let picture = pictures.find(|picture| picture.texts[0] == self.picture);
+        let place = |of: &Picture| of.panels.iter().position(|panel| is_shown(&panel.spec));
+        curves.unwrap_or_else(|| picture.and_then(place))
+    }
+
+    /// The card of a case that a test makes up, which breaks nowhere.
+    #[doc(hidden)]
+    pub fn made_up(metric: MetricKey, setting: &'static str, runs: Vec<RunSpec>) -> Self {
+        let stated = |_: &Value| Stated {
+            name: "made up".into(),
+            against: "nothing",
+            uncertainty: None,
+            unit: "",
+        };
+        let breaks = Breaks { setting, words: ["", ""], has_broken: |_| Some(false), sign: "" };
+        let (title, picture, metric) = ("Main", "none", metric.into());
+        Card { title, picture, metric, axis: "error [-]", stated, beside: None, runs, breaks }
+    }
+}
+
+impl Studies {
+    /// The error of the case: of its card, or else of its first ladder.
+    pub fn error(&self) -> Option<&MetricName> {
+        let ladder = self.first::<Accuracy>().map(|accuracy| &accuracy.error);
+        self.first::<Card>().map(|card| &card.metric).or(ladder)
+    }
+
+    /// A value of this error, of a run, in its unit.
+    pub fn number(&self, record: &Record, value: f64) -> String {
+        if let Some(card) = self.first::<Card>() {
+            return (card.stated)(&record.run.settings).number(value);
+        }
+        let metric = self.error().and_then(|metric| record.metrics.get(&metric.name));
+        match metric.map_or("-", |metric| &*metric.unit) {
+            "-" | "1" => touchstone_report::percent(value, 2),
+            unit => format!("{}\u{a0}{unit}", touchstone_report::sig(value, 2)),
+        }
+    }
+}
+
+/// The card stands for itself before all sections.
+impl Study for Card {
+    fn runs(&self) -> Vec<Planned> {
+        self.runs.iter().cloned().map(Planned::new).collect()
+    }
+
+    fn evaluate(&self, _: &str, _: &Runs) -> Option<Section> {
+        None
+    }
+}
+
+/// The words for an error, which depend on the settings of the run.
+pub struct Stated {
+    /// Name, with the conditions of the run.
+    pub name: String,
+    /// The reference.
+    pub against: &'static str,
+    /// Standard uncertainty of the reference, in the unit of the error; none if it is exact.
+    pub uncertainty: Option<f64>,
+    /// Unit of the error; empty for a share, which is shown in per cent.
+    pub unit: &'static str,
+}
+
+impl Stated {
+    /// A setting as it is written in the words.
+    pub fn setting(settings: &Value, name: &str) -> String {
+        settings[name].as_f64().map_or_else(|| settings[name].to_string(), touchstone_report::exact)
+    }
+
+    /// A number in the unit of the error.
+    pub fn number(&self, value: f64) -> String {
+        if self.unit.is_empty() {
+            return touchstone_report::percent(value, 2);
+        }
+        format!("{}\u{a0}{}", touchstone_report::sig(value, 2), self.unit)
+    }
+
+    /// The name and the reference.
+    pub fn in_words(&self) -> String {
+        let uncertainty = self.uncertainty.map(|u| format!(" (± {})", self.number(u)));
+        format!("{}, against {}{}", self.name, self.against, uncertainty.unwrap_or_default())
+    }
+}
+
+/// The setting over which a case looks for the value at which runs break.
+pub struct Breaks {
+    /// The setting.
+    pub setting: &'static str,
+    /// The words before and after its values.
+    pub words: [&'static str; 2],
+    /// Whether the result of a run is broken although it may have reached its end; none if the run does not
+    /// answer the question, such as a control.
+    pub has_broken: fn(&Record) -> Option<bool>,
+    /// The sign of that in words.
+    pub sign: &'static str,
+}
 
 /// The columns of the table on the first screen.
 pub fn columns() -> Vec<Column> {
@@ -37,7 +188,7 @@ pub fn columns() -> Vec<Column> {
 /// Content of a row.
 struct Answer<'a> {
     case: &'static dyn Case,
-    declared: &'a Declaration,
+    studies: &'a Studies,
     runs: &'a Runs,
     metric: &'a MetricName,
     /// The run of the recommended variant, and that of the paper's if there is one.
@@ -47,17 +198,17 @@ struct Answer<'a> {
 /// The row of a case; none if no number is the error of the case.
 pub fn row(
     case: &'static dyn Case,
-    declared: &Declaration,
-    studies: &[Study],
+    studies: &Studies,
+    sections: &[Section],
     runs: &Runs,
 ) -> Option<Subject> {
-    let card = declared.card.as_ref();
+    let card = studies.first::<Card>();
     let shown = match card {
         Some(card) => card.runs.clone(),
         None => {
             let recommended = case.recommended();
             let named = [Some(recommended.variant), recommended.papers];
-            declared.accuracy.first()?.finest(&named.into_iter().flatten().collect::<Vec<_>>())
+            studies.first::<Accuracy>()?.finest(&named.into_iter().flatten().collect::<Vec<_>>())
         }
     };
     let first = shown.first()?;
@@ -65,12 +216,12 @@ pub fn row(
         Some(card) => (card.stated)(&first.settings).name,
         None => case.problem().into(),
     };
-    let answer = Answer { case, declared, runs, metric: declared.error()?, shown };
+    let answer = Answer { case, studies, runs, metric: studies.error()?, shown };
     Some(Subject {
         id: case.name().into(),
         title: card.map_or(case.name().replace('_', " "), |card| card.title.into()),
         about,
-        picture: card.and_then(|card| picture(card, declared, studies)),
+        picture: card.and_then(|card| picture(card, studies, sections)),
         cells: answer.cells(),
     })
 }
@@ -104,14 +255,14 @@ impl Answer<'_> {
     /// judges the number, else to the study that shows the run.
     fn error(&self, spec: &RunSpec, wins: bool) -> Cell {
         let Some(run) = self.runs.judged(spec) else { return Cell::text("not run") };
-        let error = match headline(self.declared, &run.record) {
+        let error = match headline(self.studies, &run.record) {
             Ok(error) => error,
             Err(status) => return Cell::text(status),
         };
         let gate = run.judged.iter().find(|judged| judged.gate.metric == self.metric.name);
         let target = gate.map_or_else(|| self.study(), |judged| judged.gate.id.clone());
         let link = format!("[{error}](#{target})");
-        let words = |value| format!("± {}", self.declared.number(&run.record, value));
+        let words = |value| format!("± {}", self.studies.number(&run.record, value));
         let uncertainty = self.compared(spec).map(|found| found.uncertainty());
         let remark = uncertainty.filter(|u| u.is_finite()).map(words).unwrap_or_default();
         Cell::marked(if wins { format!("**{link}**") } else { link }).because(remark)
@@ -123,21 +274,21 @@ impl Answer<'_> {
             let finest = of.levels.last().map(|level| level.run.spec.key());
             of.reference > 0.0 && of.metric == *self.metric && finest == Some(spec.key())
         };
-        let compared = self.declared.comparisons.iter().find(is_this);
+        let compared = self.studies.of::<Comparisons>().flat_map(|of| &of.0).find(is_this);
         compared.map(|of| Found::of(of, self.runs))
     }
 
     /// The anchor of the errors over resolutions of the case, or of the case.
     fn study(&self) -> String {
         let has_ladder = |of: &&Accuracy| of.ladders.iter().any(|ladder| ladder.levels.len() > 1);
-        let accuracy = self.declared.accuracy.first().filter(has_ladder);
+        let accuracy = self.studies.first::<Accuracy>().filter(has_ladder);
         accuracy.map_or(self.case.name().into(), |of| format!("study-{}-work-precision", of.id))
     }
 
     /// The ladder of the recommended variant, if the run of the table is its finest.
     fn ladder(&self) -> Result<(&Accuracy, &Ladder), String> {
         let first = self.shown.first().ok_or("not run")?;
-        let accuracy = self.declared.accuracy.first().ok_or("one resolution")?;
+        let accuracy = self.studies.first::<Accuracy>().ok_or("one resolution")?;
         let ladder = accuracy.ladders.iter().find(|ladder| ladder.variant == first.variant);
         let ladder = ladder.filter(|ladder| ladder.levels.len() > 1).ok_or("one resolution")?;
         let finest = ladder.levels.last().map(|level| level.run.spec.key());
@@ -189,9 +340,9 @@ impl Answer<'_> {
 
     /// The smallest value of a setting at which a run of the variant broke, or the largest at which none did.
     fn breaks(&self, spec: &RunSpec) -> Cell {
-        let Some(card) = &self.declared.card else { return Cell::text("–") };
+        let Some(card) = self.studies.first::<Card>() else { return Cell::text("–") };
         let Breaks { words: [before, after], sign, .. } = card.breaks;
-        let map = self.declared.maps.first();
+        let map = self.studies.first::<Map>();
         let target = map.map_or_else(|| self.study(), |map| format!("study-{}", map.id));
         let link = |words: &str, value: f64| {
             Cell::marked(format!("[{words}{before}{}{after}](#{target})", exact(value)))
@@ -211,10 +362,10 @@ impl Answer<'_> {
 ///
 /// # Errors
 /// How the run ended, if the error was not measured.
-pub fn headline(declared: &Declaration, record: &Record) -> Result<String, String> {
-    let value = declared.error().and_then(|metric| record.value(metric.clone()));
+pub fn headline(studies: &Studies, record: &Record) -> Result<String, String> {
+    let value = studies.error().and_then(|metric| record.value(metric.clone()));
     value
-        .map(|value| declared.number(record, value))
+        .map(|value| studies.number(record, value))
         .ok_or_else(|| plain(&record.status.to_string()))
 }
 
@@ -239,7 +390,7 @@ enum Broken {
 }
 
 /// Where the simulations of a variant break; none if no run answers the question.
-fn broken_at(card: &declare::Card, variant: &str, runs: &Runs) -> Option<Broken> {
+fn broken_at(card: &Card, variant: &str, runs: &Runs) -> Option<Broken> {
     let own = runs.simulations().filter(|record| {
         let is_plain = record.run.mutation.is_none() && record.run.disorder.is_none();
         record.run.variant == variant && is_plain
@@ -258,12 +409,13 @@ fn broken_at(card: &declare::Card, variant: &str, runs: &Runs) -> Option<Broken>
 }
 
 /// The panel that shows the first run of the card, as small as a row is.
-fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> Option<Figure> {
-    let (id, panel) = (card.picture, declared.pictured(card)?);
-    let figures = studies.iter().flat_map(|study| &study.blocks).filter_map(|block| match block {
-        Block::Figure(figure) => Some(figure),
-        _ => None,
-    });
+fn picture(card: &Card, studies: &Studies, sections: &[Section]) -> Option<Figure> {
+    let (id, panel) = (card.picture, card.pictured(studies)?);
+    let figures =
+        sections.iter().flat_map(|section| &section.blocks).filter_map(|block| match block {
+            Block::Figure(figure) => Some(figure),
+            _ => None,
+        });
     let figure = figures.into_iter().find(|figure| figure.id == id)?;
     let mut plot = figure.panels.get(panel)?.clone().without_legend();
     plot.title.clear();
@@ -275,13 +427,10 @@ fn picture(card: &declare::Card, declared: &Declaration, studies: &[Study]) -> O
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        declare::Stated,
-        studies::tests::{ERROR, comparison, run, spec},
-    };
+    use crate::studies::tests::{ERROR, comparison, run, spec};
 
-    fn made_up() -> declare::Card {
-        declare::Card {
+    fn made_up() -> Card {
+        Card {
             title: "Made up",
             picture: "none",
             metric: ERROR.into(),
@@ -362,8 +511,8 @@ mod tests {
         ) -> Result<Record, crate::case::RunError> {
             Err(crate::case::RunError::NoRules("case".into()))
         }
-        fn plan(&self, _: crate::case::Tier) -> Vec<crate::case::Planned> {
-            Vec::new()
+        fn studies(&self, _: crate::case::Tier) -> Studies {
+            Studies::default()
         }
     }
 
@@ -382,17 +531,15 @@ mod tests {
         all.push(of("bad", 40, of_bad));
         let runs = Runs::new(all);
         let compared = Comparison { reference, ..comparison("good", &levels) };
-        let ladder = Ladder { variant: "good", levels: compared.levels.clone(), order: None };
+        let levels = compared.levels.clone();
+        let refine = std::sync::Arc::new(|_: &RunSpec, _| None);
+        let ladder = Ladder { variant: "good", levels, order: None, refine };
         let accuracy =
             Accuracy { ladders: vec![ladder], ..Accuracy::new("case", ERROR, "Error [-]") };
-        let card = declare::Card { runs: vec![spec("good", 40), spec("bad", 40)], ..made_up() };
-        let declared = Declaration {
-            card: Some(card),
-            comparisons: vec![compared],
-            accuracy: vec![accuracy],
-            ..Declaration::default()
-        };
-        row(&MadeUp, &declared, &[], &runs).expect("a row").cells
+        let card = Card { runs: vec![spec("good", 40), spec("bad", 40)], ..made_up() };
+        let comparisons = Comparisons(vec![compared]);
+        let studies = Studies::default().with(accuracy).with(comparisons).with(card);
+        row(&MadeUp, &studies, &[], &runs).expect("a row").cells
     }
 
     fn texts(cells: &[Cell]) -> Vec<String> {
@@ -432,8 +579,8 @@ mod tests {
     #[test]
     fn an_error_is_stated_with_the_settings_of_its_run() {
         let judged = run(spec("good", 3), |r| r.put(ERROR, -0.0576));
-        let declared = Declaration { card: Some(made_up()), ..Declaration::default() };
-        assert_eq!(headline(&declared, &judged.record), Ok("−0.058\u{a0}a".into()));
+        let studies = Studies::default().with(made_up());
+        assert_eq!(headline(&studies, &judged.record), Ok("−0.058\u{a0}a".into()));
         let stated = (made_up().stated)(&judged.record.run.settings).in_words();
         assert_eq!(stated, "distance at n = 3, against nothing (± 0.50\u{a0}a)");
     }

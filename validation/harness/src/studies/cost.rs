@@ -3,22 +3,69 @@
 //! which do not depend on the machine or on other programs.
 
 use touchstone_base::{
-    record::{MetricName, median},
+    record::{MetricName, Record, Status, median},
+    spec::RunSpec,
     submission::OURS,
 };
 use touchstone_report::{
     Axis, Cell, Colour, Figure, Plot, Series, Shape, Table, exact, first_sentence, percent,
 };
 
+use super::{Card, Ladder};
 use crate::{
     case::Case,
     columns::Columns,
     convergence::{Level, convergence},
-    declare::{Accuracy, Declaration, Ladder, error_of},
     orders::{self, Found},
-    runs::Runs,
-    study::Study,
+    runs::{Planned, Runs},
+    section::Section,
+    study::{Studies, Study},
 };
+
+/// Error against spacing and against cost.
+pub struct Accuracy {
+    /// Anchor of its studies in the report: the case in letters, digits and hyphens, and a suffix if the case
+    /// has several.
+    pub id: String,
+    /// The error: the distance from an exact solution or a reference. For a metric with a sign, its
+    /// magnitude.
+    pub error: MetricName,
+    /// Name of the error with its unit, for axes.
+    pub label: String,
+    /// Runs and comparison, in one or two sentences.
+    pub about: String,
+    /// Name of the spacing with its unit, for axes.
+    pub spacing: &'static str,
+    /// The formal order of the method, drawn as a grey line; none if nothing is known. Errors with one order
+    /// are called asymptotic only if it is this one.
+    pub slope: Option<f64>,
+    /// One ladder of resolutions per variant, coarse to fine.
+    pub ladders: Vec<Ladder>,
+}
+
+/// The magnitude of this metric of a run that reached its end, which is its error.
+pub fn error_of(metric: &MetricName, record: &Record) -> Option<f64> {
+    let value = record.value(metric.clone()).filter(|_| record.status == Status::Completed);
+    value.map(f64::abs).filter(|value| value.is_finite())
+}
+
+impl Accuracy {
+    /// No ladders yet. Arguments: id of the studies, the error metric, and the name of the error with its
+    /// unit. Spacings are in units of a length of the problem; the expected order is 2.
+    pub fn new(id: &str, error: impl Into<MetricName>, label: &str) -> Self {
+        let (id, label, about) = (id.to_string(), label.to_string(), String::new());
+        let error = error.into();
+        let (spacing, slope) = ("Δx [-]", Some(2.0));
+        Self { id, error, label, about, spacing, slope, ladders: Vec::new() }
+    }
+
+    /// The runs of these variants with the finest spacing of their ladders.
+    pub fn finest(&self, variants: &[&str]) -> Vec<RunSpec> {
+        let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
+        let finest = variants.iter().filter_map(ladder).filter_map(|ladder| ladder.levels.last());
+        finest.map(|level| level.run.spec.clone()).collect()
+    }
+}
 
 /// One run of a ladder.
 #[derive(Clone, Debug)]
@@ -117,22 +164,38 @@ struct Row<'a> {
     found: Found,
 }
 
-/// The study of the errors of all ladders.
-pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
-    let row = |of| {
-        let points = points(&accuracy.error, of, runs);
-        let levels: Vec<Level> = points.iter().map(Point::level).collect();
-        let found = convergence(&levels, accuracy.slope);
-        Row { of, points, levels, found }
-    };
-    let rows: Vec<Row> = accuracy.ladders.iter().map(row).collect();
-    let id = format!("{}-work-precision", accuracy.id);
-    let study = Study::new(&id, "Error against spacing and run time");
-    let judged = rows.iter().filter_map(|row| Some((row.of.order.clone()?, &row.found)));
-    let study = judged.fold(study, |study, (gate, found)| {
-        study.judge(gate, found.as_ref().map_or(f64::NAN, |found| found.order))
-    });
-    study.block(figure(&id, accuracy, &rows)).block(table(accuracy, &rows))
+impl Study for Accuracy {
+    /// All levels, timed.
+    fn runs(&self) -> Vec<Planned> {
+        let levels = self.ladders.iter().flat_map(|ladder| &ladder.levels);
+        levels.map(|level| level.run.clone().timed()).collect()
+    }
+
+    /// The errors of all ladders, if one of them has several levels.
+    fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
+        let row = |of| {
+            let points = points(&self.error, of, runs);
+            let levels: Vec<Level> = points.iter().map(Point::level).collect();
+            let found = convergence(&levels, self.slope);
+            Row { of, points, levels, found }
+        };
+        let rows: Vec<Row> = self.ladders.iter().map(row).collect();
+        let id = format!("{}-work-precision", self.id);
+        let section = Section::new(&id, "Error against spacing and run time");
+        let judged = rows.iter().filter_map(|row| Some((row.of.order.clone()?, &row.found)));
+        let section = judged.fold(section, |section, (gate, found)| {
+            section.judge(gate, found.as_ref().map_or(f64::NAN, |found| found.order))
+        });
+        let has_levels = rows.iter().any(|row| row.points.len() > 1);
+        has_levels.then(|| section.block(figure(&id, self, &rows)).block(table(self, &rows)))
+    }
+
+    /// Ladders go on by their last ratio.
+    fn deepen(&mut self, _: &[Planned]) {
+        self.ladders.iter_mut().for_each(Ladder::deepen);
+        self.about +=
+            " In the deep tier each ladder goes two levels further by the ratio of its last two.";
+    }
 }
 
 /// The error of a case over run time: the recommended variant, the paper's, and other codes at the settings
@@ -140,11 +203,11 @@ pub fn study(accuracy: &Accuracy, runs: &Runs) -> Study {
 pub fn against_run_time(
     title: &str,
     case: &dyn Case,
-    declared: &Declaration,
+    studies: &Studies,
     runs: &Runs,
 ) -> Option<Plot> {
-    let (metric, accuracy) = (declared.error()?, declared.accuracy.first()?);
-    let card = declared.card.as_ref()?;
+    let (metric, accuracy) = (studies.error()?, studies.first::<Accuracy>()?);
+    let card = studies.first::<Card>()?;
     let plot = Plot::new(title, Axis::log("run time [s]"), Axis::log(card.axis));
     let peers = runs.peers.iter().filter_map(|run| {
         let of = run.record.run.submission.as_ref().filter(|of| of.code != OURS)?;
@@ -247,14 +310,13 @@ fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
 
 #[cfg(test)]
 mod tests {
-    use touchstone_base::{
-        gate::{Bound, Evidence, Gate, Verdict},
-        record::Record,
-    };
+    use std::sync::Arc;
+
+    use touchstone_base::gate::{Bound, Evidence, Gate, Verdict};
     use touchstone_report::Block;
 
     use super::*;
-    use crate::studies::tests::{ERROR, column, comparison, records, spec, tables};
+    use crate::studies::tests::{ERROR, column, comparison, evaluate, records, spec, tables};
 
     fn point(name: &str, error: f64, seconds: &[f64]) -> Point {
         let (label, seconds) = (name.to_string(), seconds.to_vec());
@@ -321,13 +383,13 @@ mod tests {
 
     /// Ladders of `seed` and `best` at n = 10, 20, 40, 80, of which the order of the second is judged; runs
     /// with these errors, a function of variant and n, each of which took n/20 s, n/40 s and n/10 s.
-    fn study_of(error: impl Fn(&str, f64) -> f64) -> Study {
+    fn study_of(error: impl Fn(&str, f64) -> f64) -> Section {
         let bound = Bound::Within(2.9, 3.1);
         let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");
         let levels = [10, 20, 40, 80];
         let ladder = |(variant, order)| {
             let levels = comparison(variant, &levels).levels;
-            Ladder { variant, levels, order }
+            Ladder { variant, levels, order, refine: Arc::new(|_, _| None) }
         };
         let ladders = [("seed", None), ("best", Some(gate))].map(ladder).into();
         let accuracy = Accuracy { ladders, ..Accuracy::new("case", ERROR, "Error [-]") };
@@ -340,7 +402,7 @@ mod tests {
             };
             (spec(variant, n), fill)
         });
-        study(&accuracy, &records(made))
+        evaluate(&accuracy, records(made))
     }
 
     #[test]

@@ -1,25 +1,104 @@
 //! Profiles or histories, plotted together with their reference.
 
-use touchstone_report::{Colour, Figure, Plot, Series, Shape};
+use touchstone_base::{record::Record, spec::RunSpec};
+use touchstone_report::{Axis, Colour, Figure, Plot, Series, Shape};
 
 use crate::{
-    declare::{CurvePanel, Curves},
-    runs::Runs,
+    runs::{Planned, Runs},
+    section::Section,
     study::Study,
 };
 
-pub fn study(curves: &Curves, runs: &Runs) -> Study {
-    let columns = (curves.panels.len() as f64).sqrt().ceil() as usize;
-    let figure = Figure::new(&curves.id, &curves.caption).columns(columns.max(1));
-    let mut names: Vec<&str> = Vec::new();
-    for line in curves.panels.iter().flat_map(|panel| &panel.lines) {
-        if !names.contains(&line.name.as_str()) {
-            names.push(&line.name);
-        }
+/// Curves over their reference.
+pub struct Curves {
+    /// Anchor of the study and of its figure.
+    pub id: String,
+    /// Title of the section.
+    pub title: String,
+    /// Caption of the figure.
+    pub caption: String,
+    /// The panels, row by row.
+    pub panels: Vec<CurvePanel>,
+}
+
+/// One panel of curves.
+pub struct CurvePanel {
+    /// Title of the panel.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Curves of runs.
+    pub lines: Vec<CurveOf>,
+    /// Curves of references: name and points. A curve without name is drawn as a guide.
+    pub references: Vec<(String, Vec<(f64, f64)>)>,
+    /// Are curves of runs drawn as symbols?
+    pub symbols: bool,
+}
+
+/// A curve of a run.
+pub struct CurveOf {
+    /// Name in the legend.
+    pub name: String,
+    /// The run.
+    pub spec: RunSpec,
+    /// Points of a record.
+    pub points: PointsOf,
+}
+
+/// Points of a curve from a record.
+pub type PointsOf = Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>;
+
+impl CurveOf {
+    /// Two columns of a profile of a run.
+    pub fn columns(
+        name: impl Into<String>,
+        spec: RunSpec,
+        profile: &'static str,
+        [x, y]: [&'static str; 2],
+    ) -> Self {
+        let points = move |record: &Record| {
+            let [x, y] = [x, y].map(|name| record.column(profile, name).iter().copied());
+            x.zip(y).collect()
+        };
+        Self { name: name.into(), spec, points: Box::new(points) }
     }
-    let panels = curves.panels.iter().map(|of| panel(of, &names, runs));
-    let figure = panels.fold(figure, Figure::panel);
-    Study::new(&curves.id, &curves.title).block(figure.panel_size(360.0, 270.0))
+}
+
+impl CurvePanel {
+    /// Lines over one reference, on linear axes.
+    pub fn linear(
+        title: &str,
+        [x, y]: [&str; 2],
+        lines: Vec<CurveOf>,
+        (name, points): (&str, Vec<(f64, f64)>),
+    ) -> Self {
+        let (title, references) = (title.into(), vec![(name.into(), points)]);
+        let (x, y) = (Axis::linear(x), Axis::linear(y));
+        Self { title, x, y, lines, references, symbols: false }
+    }
+}
+
+impl Study for Curves {
+    fn runs(&self) -> Vec<Planned> {
+        let lines = self.panels.iter().flat_map(|panel| &panel.lines);
+        lines.map(|line| Planned::new(line.spec.clone())).collect()
+    }
+
+    fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
+        let columns = (self.panels.len() as f64).sqrt().ceil() as usize;
+        let figure = Figure::new(&self.id, &self.caption).columns(columns.max(1));
+        let mut names: Vec<&str> = Vec::new();
+        for line in self.panels.iter().flat_map(|panel| &panel.lines) {
+            if !names.contains(&line.name.as_str()) {
+                names.push(&line.name);
+            }
+        }
+        let panels = self.panels.iter().map(|of| panel(of, &names, runs));
+        let figure = panels.fold(figure, Figure::panel);
+        Some(Section::new(&self.id, &self.title).block(figure.panel_size(360.0, 270.0)))
+    }
 }
 
 /// A name has one colour in all panels, by its position among `names`.
@@ -48,10 +127,7 @@ mod tests {
     use touchstone_report::{Axis, Block, Layer};
 
     use super::*;
-    use crate::{
-        declare::CurveOf,
-        studies::tests::{ERROR, runs, spec},
-    };
+    use crate::studies::tests::{ERROR, evaluate, runs, spec};
 
     fn line(name: &str, variant: &str, n: usize) -> CurveOf {
         let points = |record: &touchstone_base::record::Record| {
@@ -77,9 +153,8 @@ mod tests {
             caption: "Made up.".into(),
             panels,
         };
-        let runs = runs([(spec("seed", 1), 1.5), (spec("best", 1), 2.5)]);
-        let study = study(&curves, &runs);
-        let [Block::Figure(figure)] = study.blocks.as_slice() else { panic!("one figure") };
+        let section = evaluate(&curves, runs([(spec("seed", 1), 1.5), (spec("best", 1), 2.5)]));
+        let [Block::Figure(figure)] = section.blocks.as_slice() else { panic!("one figure") };
         let of = |plot: &Plot| -> Vec<Drawn> {
             let series = plot.layers.iter().map(|layer| match layer {
                 Layer::Series(s) => {
@@ -96,8 +171,7 @@ mod tests {
     fn a_name_keeps_its_colour_from_panel_to_panel() {
         let panels = drawn(vec![
             panel_of(vec![line("a", "seed", 1), line("b", "best", 1)], &["exact", ""], false),
-            // The run of `c` was not made.
-            panel_of(vec![line("b", "best", 1), line("c", "seed", 2)], &[], false),
+            panel_of(vec![line("b", "best", 1)], &[], false),
         ]);
         let reference = |name: &str, colour| (name.to_string(), (0.0, 7.0), colour, false);
         let run = |name: &str, y: f64, k| (name.to_string(), (1.0, y), Colour::cycle(k), false);

@@ -3,22 +3,83 @@
 use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     record::Record,
+    spec::RunSpec,
 };
 use touchstone_report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig};
 
-use super::anchor;
+use super::{PointsOf, anchor};
 use crate::{
     columns::Columns,
-    declare::{Ensemble, Ensembles, History, Number},
     horizon::{Curve, Horizon},
     quantiles::{CONFIDENCE, Quantile},
-    runs::{Judged, Runs},
+    runs::{Judged, Planned, Runs},
+    section::Section,
     study::Study,
 };
 
 /// Points of a curve that are drawn.
 const DRAWN: usize = 160;
 const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// The ensembles of a case: runs that differ only by a small disorder of their start. Before their horizon
+/// all members agree; after it each is one sample of a distribution.
+pub struct Ensembles {
+    /// The runs, in one or two sentences.
+    pub about: String,
+    /// Name of the time, and its unit.
+    pub time: [&'static str; 2],
+    /// The ensembles.
+    pub of: Vec<Ensemble>,
+}
+
+/// The runs of one variant that differ in the seed of their disorder.
+pub struct Ensemble {
+    /// Name with which its gates begin.
+    pub id: String,
+    /// Name of the variant.
+    pub variant: &'static str,
+    /// The resolution in words, such as `H/dx = 20`.
+    pub label: String,
+    /// Its runs.
+    pub members: Vec<RunSpec>,
+    /// Quantities over time.
+    pub histories: Vec<History>,
+    /// The numbers whose distribution is shown.
+    pub numbers: Vec<Number>,
+    /// Is it drawn?
+    pub is_drawn: bool,
+}
+
+/// A history, by which members part.
+pub struct History {
+    /// Name with its unit, as for an axis.
+    pub name: String,
+    /// Points of a record.
+    pub points: PointsOf,
+    /// Members part where they differ by more than this, the standard uncertainty of the experiment.
+    pub tolerance: f64,
+    /// Points of each experiment.
+    pub measured: Vec<Vec<(f64, f64)>>,
+    /// Is it drawn?
+    pub is_drawn: bool,
+    /// A gate on the time until which all members agree.
+    pub gate: Option<Gate>,
+}
+
+/// A number of a record.
+pub type NumberOf = Box<dyn Fn(&Record) -> Option<f64> + Send + Sync>;
+
+/// A number that each member gives, and which has a distribution.
+pub struct Number {
+    /// Name, and unit.
+    pub name: [&'static str; 2],
+    /// Value of a record, if measured.
+    pub value: NumberOf,
+    /// Value of each experiment.
+    pub measured: Vec<f64>,
+    /// A gate on the median.
+    pub gate: Option<Gate>,
+}
 
 /// An ensemble, and the records of the members that reached their end.
 struct Made<'a> {
@@ -65,8 +126,18 @@ impl<'a> Followed<'a> {
     }
 }
 
-/// The study.
-pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
+impl Study for Ensembles {
+    fn runs(&self) -> Vec<Planned> {
+        let members = self.of.iter().flat_map(|ensemble| &ensemble.members);
+        members.map(|spec| Planned::new(spec.clone())).collect()
+    }
+
+    fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
+        Some(evaluate(case, self, runs))
+    }
+}
+
+fn evaluate(case: &str, ensembles: &Ensembles, runs: &Runs) -> Section {
     let made = |of| -> Made {
         Made { of, records: of.members.iter().filter_map(|spec| runs.completed(spec)).collect() }
     };
@@ -80,20 +151,20 @@ pub fn study(case: &str, ensembles: &Ensembles, runs: &Runs) -> Study {
         numbers.extend(made.of.numbers.iter().map(|of| (made, of, values(of))));
     }
     let id = anchor(case, "ensembles");
-    let mut study = Study::new(&id, "Ensembles: what a run predicts and what is a draw")
+    let mut section = Section::new(&id, "Ensembles: what a run predicts and what is a draw")
         .prose(&*ensembles.about)
         .block(figure(&id, &ensembles.time, &followed))
         .block(horizons(ensembles.time[1], &followed))
         .block(distributions(&numbers));
-    study.judged.extend(all.iter().map(complete));
-    study.judged.extend(followed.iter().filter_map(|(_, followed)| {
+    section.judged.extend(all.iter().map(complete));
+    section.judged.extend(followed.iter().filter_map(|(_, followed)| {
         followed.of.gate.clone().map(|gate| Judged::new(gate, followed.agree()))
     }));
-    study.judged.extend(numbers.iter().filter_map(|(_, number, values)| {
+    section.judged.extend(numbers.iter().filter_map(|(_, number, values)| {
         let median = Quantile::of_sample(values, 0.5).value;
         number.gate.clone().map(|gate| Judged::new(gate, Some(median).filter(|m| m.is_finite())))
     }));
-    study
+    section
 }
 
 /// A distribution without the members that ended early would be biased.
@@ -237,7 +308,7 @@ mod tests {
     use super::*;
     use crate::{
         runs::JudgedRun,
-        studies::tests::{ERROR, column, run, spec, tables},
+        studies::tests::{ERROR, column, evaluate, run, spec, tables},
     };
 
     const ALL: usize = 20;
@@ -283,9 +354,8 @@ mod tests {
     }
 
     /// The names of the gates that fail, and the study.
-    fn judged(members: Vec<JudgedRun>) -> (Vec<String>, Study) {
-        let runs = Runs::new(members);
-        let study = study("case", &ensembles(), &runs);
+    fn judged(members: Vec<JudgedRun>) -> (Vec<String>, Section) {
+        let study = evaluate(&ensembles(), Runs::new(members));
         let failed = study.judged.iter().filter(|of| of.judgement.verdict.is_failure());
         (failed.map(|of| of.gate.id.clone()).collect(), study)
     }
@@ -294,7 +364,7 @@ mod tests {
         (1..=ALL).map(member).collect()
     }
 
-    fn row(study: &Study, table: usize, heads: &[&str]) -> Vec<String> {
+    fn row(study: &Section, table: usize, heads: &[&str]) -> Vec<String> {
         heads.iter().map(|head| column(tables(study)[table], head)[0].clone()).collect()
     }
 
@@ -355,7 +425,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_told_has_its_reason_and_fails_its_gate() {
-        let reason = |study: &Study| row(study, 0, &["horizon", "verdict"]);
+        let reason = |study: &Section| row(study, 0, &["horizon", "verdict"]);
         let (failed, one) = judged(all()[..1].to_vec());
         assert_eq!(failed, ["case.ensemble.members", "case.agree", "case.median"]);
         assert_eq!(reason(&one), ["–", "nothing can be said: 1 members; 6 are needed"]);

@@ -1,34 +1,97 @@
 //! The largest stable time step compared with theory.
 
+use touchstone_base::{
+    gate::Gate,
+    spec::{Bisect, RunSpec},
+};
 use touchstone_report::Cell;
 
 use super::anchor;
 use crate::{
     bisect::STABLE,
     columns::Columns,
-    declare::{StepLimit, StepLimits},
-    runs::{Judged, Runs},
+    rules::Rules,
+    runs::{Judged, Planned, Runs},
+    section::Section,
     study::Study,
 };
 
-pub fn study(case: &str, limits: &StepLimits, runs: &Runs) -> Study {
-    let caption = format!("Largest stable time step of `{case}` by bisection. {}", limits.about);
-    let ratio = |value: Option<f64>| Cell::num(value.unwrap_or(f64::NAN), 3);
-    let measured = |limit: &StepLimit| of_theory(limit, runs).unwrap_or(f64::NAN) * limit.theory;
-    let of_default = |limit: &StepLimit| stable(limit, runs).map(|x| x / limit.default_at);
-    let table = Columns::<StepLimit>::default()
-        .code("variant", |limit| limit.spec.variant.clone())
-        .text("scene", |limit| limit.scene.clone())
-        .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))
-        .num(["measured", "s"], |limit| Cell::sci(measured(limit), 3))
-        .num(["measured/theory", "-"], |limit| ratio(of_theory(limit, runs)))
-        .num(["default/theory", "-"], |limit| Cell::num(limit.default_at / limit.theory_at, 3))
-        .num(["measured/default", "-"], |limit| ratio(of_default(limit)))
-        .table(caption, &limits.of);
-    let mut study = Study::new(&anchor(case, "time-step"), "Largest stable time step");
-    let judged = |limit: &StepLimit| Some(Judged::new(limit.gate.clone()?, of_theory(limit, runs)));
-    study.judged.extend(limits.of.iter().filter_map(judged));
-    study.block(table)
+/// Largest stable time steps against theory.
+#[derive(Default)]
+pub struct StepLimits {
+    /// The runs and the criterion of stability, in one or two sentences.
+    pub about: String,
+    /// One per variant and scene.
+    pub of: Vec<StepLimit>,
+}
+
+/// The largest stable time step of one variant.
+#[derive(Clone)]
+pub struct StepLimit {
+    /// The scene in words.
+    pub scene: String,
+    /// The bisection.
+    pub spec: RunSpec,
+    /// Theoretical limit \[s\].
+    pub theory: f64,
+    /// The x of the bisection at the theoretical limit.
+    pub theory_at: f64,
+    /// The x of the bisection at the default step.
+    pub default_at: f64,
+    /// A gate on the largest stable step over the theoretical limit.
+    pub gate: Option<Gate>,
+}
+
+impl StepLimit {
+    /// The bisection of a setting that is the time step over its theoretical limit, or proportional to it:
+    /// the setting has the value `unit` at the limit. `rules` are the step rules of the run with its default
+    /// step. The gate judges the largest stable step over the limit.
+    pub fn proportional(
+        scene: &str,
+        spec: RunSpec,
+        (setting, unit): (&str, f64),
+        rules: &Rules,
+        gate: Option<Gate>,
+    ) -> Self {
+        let setting = setting.to_string();
+        let bisect = Bisect { setting, guess: 1.0, unit, resolution: 0.02, end: None };
+        Self {
+            scene: scene.into(),
+            spec: spec.allow_unstable().bisect(bisect),
+            theory_at: 1.0,
+            theory: rules.dt_limit(),
+            default_at: rules.dt() / rules.dt_limit(),
+            gate,
+        }
+    }
+}
+
+impl Study for StepLimits {
+    fn runs(&self) -> Vec<Planned> {
+        self.of.iter().map(|limit| Planned::new(limit.spec.clone())).collect()
+    }
+
+    fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
+        let caption = format!("Largest stable time step of `{case}` by bisection. {}", self.about);
+        let ratio = |value: Option<f64>| Cell::num(value.unwrap_or(f64::NAN), 3);
+        let measured =
+            |limit: &StepLimit| of_theory(limit, runs).unwrap_or(f64::NAN) * limit.theory;
+        let of_default = |limit: &StepLimit| stable(limit, runs).map(|x| x / limit.default_at);
+        let table = Columns::<StepLimit>::default()
+            .code("variant", |limit| limit.spec.variant.clone())
+            .text("scene", |limit| limit.scene.clone())
+            .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))
+            .num(["measured", "s"], |limit| Cell::sci(measured(limit), 3))
+            .num(["measured/theory", "-"], |limit| ratio(of_theory(limit, runs)))
+            .num(["default/theory", "-"], |limit| Cell::num(limit.default_at / limit.theory_at, 3))
+            .num(["measured/default", "-"], |limit| ratio(of_default(limit)))
+            .table(caption, &self.of);
+        let mut section = Section::new(&anchor(case, "time-step"), "Largest stable time step");
+        let judged =
+            |limit: &StepLimit| Some(Judged::new(limit.gate.clone()?, of_theory(limit, runs)));
+        section.judged.extend(self.of.iter().filter_map(judged));
+        (!self.of.is_empty()).then(|| section.block(table))
+    }
 }
 
 /// The largest stable step over the theoretical limit, if one was found.
@@ -44,13 +107,12 @@ fn stable(limit: &StepLimit, runs: &Runs) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use touchstone_base::{
-        gate::{Bound, Evidence, Gate, Verdict},
+        gate::{Bound, Evidence, Verdict},
         record::{Metric, Record},
-        spec::Bisect,
     };
 
     use super::*;
-    use crate::studies::tests::{column, records, spec, tables};
+    use crate::studies::tests::{column, evaluate, records, spec, tables};
 
     /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, 2 of the default, and
     /// default/theory 0.75. Theory is 4 ms, so 6 ms were measured.
@@ -73,8 +135,8 @@ mod tests {
             record.metrics.insert(STABLE.into(), Metric::new(1.2, "-", "made up"));
         };
         let runs = records([(limits.of[0].spec.clone(), stable)]);
-        let study = study("case", &limits, &runs);
-        let table = tables(&study)[0];
+        let section = evaluate(&limits, runs);
+        let table = tables(&section)[0];
         for (head, expected) in [
             ("measured", "6.00·10⁻³"),
             ("measured/theory", "1.50"),
@@ -83,7 +145,7 @@ mod tests {
         ] {
             assert_eq!(column(table, head)[0], expected, "{head}");
         }
-        let verdicts: Vec<(&str, Verdict)> = study
+        let verdicts: Vec<(&str, Verdict)> = section
             .judged
             .iter()
             .map(|judged| (judged.gate.id.as_str(), judged.judgement.verdict))

@@ -1,18 +1,19 @@
 //! The smallest error of each constant that the gates of a case detect.
 
 use touchstone_base::{
-    gate::{Bound, Evidence, Gate},
-    mutation::Constant,
+    gate::{Bound, Cause, Evidence, Gate},
+    mutation::{Constant, Detect, Mutation},
     record::Record,
+    spec::{RunKey, RunSpec, Task},
 };
 use touchstone_report::{Cell, code};
 
 use super::anchor;
 use crate::{
     columns::Columns,
-    declare::{Blind, Sensitivity, Watched},
     detect::{DETECTED, GATES, UNDETECTED},
-    runs::{Runs, entry},
+    runs::{Planned, Runs, Tier, entry},
+    section::Section,
     study::Study,
 };
 
@@ -29,6 +30,99 @@ const ABOUT: &str = "What the gates can detect. One constant of the scene is mul
 
 /// An error that means that none up to 30 % is detected.
 const NONE: f64 = 1.0;
+
+/// Errors of the constants of a case that the gates of some of its runs must detect.
+pub struct Sensitivity {
+    /// The runs, each judged by the gates that the plans have for it.
+    pub runs: Vec<RunSpec>,
+    /// The constants.
+    pub of: Vec<Watched>,
+    /// Are smaller errors than the largest that may go undetected tried?
+    pub is_bisected: bool,
+}
+
+/// A constant, an error of which the gates must detect.
+pub struct Watched {
+    /// The constant.
+    pub constant: Constant,
+    /// Where the gates do not detect the largest allowed error: the errors that they detect, and the reason.
+    pub blind: Option<Blind>,
+    /// Is the allowed error tried in the quick tier too?
+    pub is_quick: bool,
+    /// Factors of gross faults, such as -1 for a wrong sign and 0 for a term that is missing.
+    pub faults: Vec<f64>,
+}
+
+/// How blind the gates are to errors of a constant.
+pub struct Blind {
+    /// The relative error that they do detect, 1 for none up to 30 % \[-\].
+    pub up_to: f64,
+    /// The reason for this constant.
+    pub why: &'static str,
+    /// The cause that it shares with other constants.
+    pub cause: &'static Cause,
+}
+
+impl Watched {
+    /// A constant whose allowed error the gates detect.
+    pub fn new(constant: Constant) -> Self {
+        Self { constant, blind: None, is_quick: false, faults: Vec::new() }
+    }
+
+    /// Tries the allowed error in the quick tier as well.
+    pub fn quick(self) -> Self {
+        Self { is_quick: true, ..self }
+    }
+
+    /// Adds gross faults, each of which some gate must detect: factors of the constant.
+    pub fn faults(self, factors: &[f64]) -> Self {
+        Self { faults: factors.to_vec(), ..self }
+    }
+
+    /// A constant to which the gates are blind up to an error, 1 if they are up to 30 %, for a reason and by
+    /// a cause of [`causes`](super::causes).
+    pub fn blind_up_to(
+        constant: Constant,
+        up_to: f64,
+        why: &'static str,
+        cause: &'static Cause,
+    ) -> Self {
+        Self { blind: Some(Blind { up_to, why, cause }), ..Self::new(constant) }
+    }
+}
+
+impl Sensitivity {
+    /// The full tier bisects every constant and makes every gross fault. The quick tier tries, on the first
+    /// run alone, the largest allowed error of the constants that are marked for it.
+    pub fn new(
+        tier: Tier,
+        runs: impl IntoIterator<Item = RunSpec>,
+        of: impl IntoIterator<Item = Watched>,
+    ) -> Self {
+        let is_bisected = tier == Tier::Full;
+        let mut of: Vec<Watched> = of.into_iter().collect();
+        let mut runs: Vec<RunSpec> = runs.into_iter().collect();
+        if !is_bisected {
+            of.retain(|watched| watched.is_quick);
+            of.iter_mut().for_each(|watched| watched.faults.clear());
+            runs.truncate(1);
+        }
+        Self { runs, of, is_bisected }
+    }
+
+    /// The searches for a constant, one a run.
+    pub fn searches(&self, constant: Constant) -> impl Iterator<Item = RunSpec> {
+        let detect = Detect { of: constant, only_allowed: !self.is_bisected };
+        self.runs.iter().map(move |run| run.clone().detect(detect))
+    }
+
+    /// The runs with a constant multiplied by a factor.
+    pub fn faulty(&self, of: Constant, factor: f64) -> impl Iterator<Item = (&RunSpec, RunSpec)> {
+        let mutation = Mutation { of, factor };
+        let faulty = |run: &RunSpec| run.clone().allow_unstable().measure_all();
+        self.runs.iter().map(move |run| (run, faulty(run).mutated(mutation)))
+    }
+}
 
 /// A constant and the results of the searches: the best of all runs.
 struct Row<'a> {
@@ -55,36 +149,60 @@ impl Row<'_> {
     }
 }
 
-pub fn study(case: &str, sensitivity: &Sensitivity, runs: &Runs) -> Study {
-    let row = |watched| row(sensitivity, watched, runs);
-    let rows: Vec<Row> = sensitivity.of.iter().map(row).collect();
-    let mut study = Study::new(&anchor(case, "sensitivity"), "Errors that the gates detect");
-    for row in &rows {
-        study = study.judge(gate(case, row.watched), row.error());
-        for &(factor, failed) in &row.faults {
-            let gate = fault_gate(case, row.watched.constant, factor);
-            study = study.judge(gate, failed as f64);
+impl Study for Sensitivity {
+    fn runs(&self) -> Vec<Planned> {
+        let mut runs = Vec::new();
+        for Watched { constant, faults, .. } in &self.of {
+            runs.extend(self.searches(*constant));
+            let pairs = faults.iter().flat_map(|factor| self.faulty(*constant, *factor));
+            runs.extend(pairs.flat_map(|(healthy, faulty)| [healthy.clone(), faulty]));
+        }
+        runs.into_iter().map(Planned::new).collect()
+    }
+
+    fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
+        let row = |watched| row(self, watched, runs);
+        let rows: Vec<Row> = self.of.iter().map(row).collect();
+        let mut section =
+            Section::new(&anchor(case, "sensitivity"), "Errors that the gates detect");
+        for row in &rows {
+            section = section.judge(gate(case, row.watched), row.error());
+            for &(factor, failed) in &row.faults {
+                let gate = fault_gate(case, row.watched.constant, factor);
+                section = section.judge(gate, failed as f64);
+            }
+        }
+        let faults = |row: &Row| {
+            let of = |(factor, failed): &(f64, usize)| format!("× {factor}: {failed}");
+            row.faults.iter().map(of).collect::<Vec<_>>().join(", ")
+        };
+        let percent = |error: f64| Cell::percent(error, 2);
+        let error = move |row: &Row| match row.error() {
+            NONE => Cell::text("none"),
+            error => percent(error),
+        };
+        let table = Columns::<Row>::default()
+            .text("constant", |row| row.watched.constant.words())
+            .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
+            .num(["detected from", "-"], error)
+            .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
+            .marked("gates that detect it", Row::gates)
+            .text("gates that detect a gross fault", faults)
+            .text("why not smaller", |row| row.watched.blind.as_ref().map_or("", |blind| blind.why))
+            .table(ABOUT, &rows);
+        (!self.of.is_empty()).then(|| section.block(table))
+    }
+
+    /// Errors of constants are searched in every judged run of the case, not in the few of the full tier.
+    fn deepen(&mut self, full: &[Planned]) {
+        let known: Vec<RunKey> = self.runs.iter().map(RunSpec::key).collect();
+        for Planned { spec, gates, .. } in full {
+            let is_healthy = spec.task == Task::Simulate && spec.mutation.is_none();
+            if is_healthy && !gates.is_empty() && !known.contains(&spec.key()) {
+                self.runs.push(spec.clone());
+            }
         }
     }
-    let faults = |row: &Row| {
-        let of = |(factor, failed): &(f64, usize)| format!("× {factor}: {failed}");
-        row.faults.iter().map(of).collect::<Vec<_>>().join(", ")
-    };
-    let percent = |error: f64| Cell::percent(error, 2);
-    let error = move |row: &Row| match row.error() {
-        NONE => Cell::text("none"),
-        error => percent(error),
-    };
-    let table = Columns::<Row>::default()
-        .text("constant", |row| row.watched.constant.words())
-        .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
-        .num(["detected from", "-"], error)
-        .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
-        .marked("gates that detect it", Row::gates)
-        .text("gates that detect a gross fault", faults)
-        .text("why not smaller", |row| row.watched.blind.as_ref().map_or("", |blind| blind.why))
-        .table(ABOUT, &rows);
-    study.block(table)
 }
 
 /// The search of that run which detects the smallest error.
@@ -148,14 +266,14 @@ fn gate(case: &str, watched: &Watched) -> Gate {
 #[cfg(test)]
 mod tests {
     use serde_json::json;
-    use touchstone_base::{gate::Verdict, spec::RunSpec};
+    use touchstone_base::gate::Verdict;
 
     use super::*;
     use crate::{
-        runs::{JudgedRun, Planned, Tier},
+        runs::JudgedRun,
         studies::{
             causes::NOT_MEASURED,
-            tests::{ERROR, column, records, spec, tables},
+            tests::{ERROR, column, evaluate, records, spec, tables},
         },
     };
 
@@ -168,7 +286,7 @@ mod tests {
             Watched::blind_up_to(Constant::Speed, 1.0, "nothing depends on it", &NOT_MEASURED),
         ];
         let of = Sensitivity::new(Tier::Full, [run], watched);
-        let study = study("case", &of, &Runs::new(Vec::new()));
+        let study = evaluate(&of, Runs::new(Vec::new()));
         assert_eq!(study.judged.len(), 3);
         for judged in study.judged {
             assert_eq!(judged.judgement.verdict, Verdict::Fail, "{}", judged.gate.id);
@@ -182,7 +300,7 @@ mod tests {
         let sensitivity = Sensitivity::new(Tier::Full, of, [Watched::new(Constant::Viscosity)]);
         let all = sensitivity.searches(Constant::Viscosity);
         let made = all.take(1).map(|search| (search, self::search(Some(0.02), None)));
-        let study = study("case", &sensitivity, &records(made));
+        let study = evaluate(&sensitivity, records(made));
         assert_eq!(study.judged[0].judgement.verdict, Verdict::Fail);
     }
 
@@ -222,7 +340,7 @@ mod tests {
         ] {
             let searches = sensitivity.searches(Constant::Viscosity);
             let found = [first, second].map(|(detected, undetected)| search(detected, undetected));
-            let study = study("case", &sensitivity, &records(searches.zip(found)));
+            let study = evaluate(&sensitivity, records(searches.zip(found)));
             let table = tables(&study)[0];
             let shown = ["detected from", "not detected", "gates that detect it"]
                 .map(|head| column(table, head).concat());
@@ -261,7 +379,7 @@ mod tests {
             run.record.put(ERROR, error);
             runs.push(run);
         }
-        let study = study("case", &sensitivity, &Runs::new(runs));
+        let study = evaluate(&sensitivity, Runs::new(runs));
         let shown = column(tables(&study)[0], "gates that detect a gross fault");
         assert_eq!(shown, ["× -1: 2"], "`case.shared` and `case.own_0` of the first run");
         let of_fault = study.judged.iter().find(|judged| judged.gate.id.contains("_x_-1"));

@@ -7,12 +7,12 @@ use touchstone_base::{
 };
 use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, Shape, percent, plain, seconds};
 
-use super::anchor;
+use super::{Accuracy, Card, Comparisons, anchor, cost::error_of};
 use crate::{
     columns::Columns,
-    declare::{Accuracy, Declaration, error_of},
     runs::{Judged, JudgedRun, Runs},
-    study::Study,
+    section::Section,
+    study::Studies,
 };
 
 /// A submission with an error.
@@ -230,15 +230,15 @@ fn equal(runs: &Runs) -> Option<String> {
 }
 
 /// All submissions of a case, if there are any: the closed division, then the open one.
-pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
+pub fn section(case: &str, studies: &Studies, runs: &Runs) -> Option<Section> {
     runs.of_others().next()?;
     let id = anchor(case, "submissions");
-    let accuracy = declared.accuracy.iter();
+    let accuracy = studies.of();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));
     let words = first.into_iter().chain(equal(runs)).chain(provenance(runs));
-    let study = words.fold(Study::new(&id, "Runs of other codes"), Study::prose);
-    let study = study.prose(
+    let section = words.fold(Section::new(&id, "Runs of other codes"), Section::prose);
+    let section = section.prose(
             "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
              the bounds of the same gates; known limitations of our own method are no excuse. A gate is not \
              applicable if its metric needs what no file holds or what was not handed in, or if its bound \
@@ -247,25 +247,25 @@ pub fn study(case: &str, declared: &Declaration, runs: &Runs) -> Option<Study> {
              something else of them. Versions, seconds and steps are as submitted, for this program cannot \
              check them.",
         );
-    let study = match &found {
-        Some((accuracy, marks)) => study.block(figure(&format!("{id}-cost"), accuracy, marks)),
-        None => study,
+    let section = match &found {
+        Some((accuracy, marks)) => section.block(figure(&format!("{id}-cost"), accuracy, marks)),
+        None => section,
     };
-    Some(study.block(table(declared, runs)))
+    Some(section.block(table(studies, runs)))
 }
 
 /// The runs of the closed division, then of the open one, the best first.
-fn table(declared: &Declaration, runs: &Runs) -> touchstone_report::Table {
+fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
     type Row<'a> = (&'a Submission, &'a JudgedRun, f64, &'a str);
     let rows = runs.of_others().filter_map(|run| {
-        let mut all = declared.accuracy.iter();
+        let mut all = studies.of::<Accuracy>();
         let found = all.find_map(|of| Some((error_of(&of.error, &run.record)?, &*of.label)));
         let (error, of) = found.unwrap_or((f64::NAN, ""));
         Some((run.record.run.submission.as_deref()?, run, error, of))
     });
     let mut rows: Vec<Row> = rows.collect();
     rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
-    let accuracy = accuracy_metrics(declared);
+    let accuracy = accuracy_metrics(studies);
     let others = accuracy.clone();
     let mut columns = Columns::<Row>::default();
     if rows.iter().any(|row| row.3 != rows[0].3) {
@@ -295,10 +295,10 @@ fn table(declared: &Declaration, runs: &Runs) -> touchstone_report::Table {
 }
 
 /// Names, without their times, of the metrics that say how accurate a run is.
-fn accuracy_metrics(declared: &Declaration) -> Vec<String> {
-    let errors = declared.accuracy.iter().map(|of| &of.error.name);
-    let compared = declared.comparisons.iter().map(|of| &of.metric.name);
-    let shown = declared.card.iter().map(|of| &of.metric.name);
+fn accuracy_metrics(studies: &Studies) -> Vec<String> {
+    let errors = studies.of::<Accuracy>().map(|of| &of.error.name);
+    let compared = studies.of::<Comparisons>().flat_map(|of| &of.0).map(|of| &of.metric.name);
+    let shown = studies.of::<Card>().map(|of| &of.metric.name);
     errors.chain(compared).chain(shown).map(|name| base_of(name).to_string()).collect()
 }
 
@@ -378,9 +378,8 @@ mod tests {
         runs
     }
 
-    fn declared() -> Declaration {
-        let accuracy = vec![Accuracy::new("case", ERROR, "Error [-]")];
-        Declaration { accuracy, ..Declaration::default() }
+    fn accuracy() -> Accuracy {
+        Accuracy::new("case", ERROR, "Error [-]")
     }
 
     /// Of runs of one code with equal numbers of particles the fastest is shown; of curves, which have no
@@ -389,8 +388,7 @@ mod tests {
     fn the_fastest_of_one_code_with_as_many_particles_is_shown() {
         let of = [(10, 3.0, 0.3), (10, 1.0, 0.2), (20, 2.0, 0.1), (0, 5.0, 0.5), (0, 6.0, 0.6)];
         let runs = of_others(of.map(|(count, s, error)| run_of("code", count, s, error)).into());
-        let accuracy = &declared().accuracy[0];
-        let shown: Vec<f64> = marks(accuracy, &runs).iter().map(|mark| mark.error).collect();
+        let shown: Vec<f64> = marks(&accuracy(), &runs).iter().map(|mark| mark.error).collect();
         assert_eq!(shown, [0.2, 0.1, 0.5, 0.6]);
     }
 
@@ -398,8 +396,9 @@ mod tests {
     #[test]
     fn the_table_has_the_best_first_and_the_accuracy_apart() {
         let runs = of_others(vec![run_of("worse", 10, 1.0, 0.3), run_of("better", 10, 1.0, 0.2)]);
-        let study = study("case", &declared(), &runs).expect("there are others");
-        let table = tables(&study)[0];
+        let studies = Studies::default().with(accuracy());
+        let section = section("case", &studies, &runs).expect("there are others");
+        let table = tables(&section)[0];
         assert_eq!(column(table, "error"), ["20 %", "30 %"]);
         assert_eq!(
             column(table, "accuracy"),

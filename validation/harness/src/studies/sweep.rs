@@ -7,29 +7,28 @@ use touchstone_base::record::{MetricName, Record};
 use touchstone_report::{Cell, Column, Figure, Table, code, sig};
 
 use super::{
-    anchor,
-    cost::{Line, Point, panel},
+    Accuracy, Card, Studies, anchor,
+    cost::{Line, Point, error_of, panel},
 };
 use crate::{
     case::{self, Case},
-    declare::{Declaration, error_of},
     runs::Tier,
-    study::Study,
+    section::Section,
 };
 
 /// The setting that refines the runs of a case.
-pub struct Resolution {
-    /// Name.
-    pub setting: &'static str,
+struct Resolution {
+    /// Its name.
+    setting: &'static str,
     /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
-    pub is_count: bool,
+    is_count: bool,
 }
 
 impl Resolution {
     /// The first setting in which the coarsest and the finest level of a ladder differ.
-    pub fn of(case: &dyn Case, declared: &Declaration) -> Option<Self> {
-        let ladders = declared.accuracy.iter().flat_map(|accuracy| &accuracy.ladders);
-        let ladder = ladders.into_iter().find(|ladder| ladder.levels.len() > 1)?;
+    fn of(case: &dyn Case, studies: &Studies) -> Option<Self> {
+        let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
+        let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
         let ends = [ladder.levels.first()?, ladder.levels.last()?];
         let [coarse, fine] = ends.map(|level| &level.run.spec.settings);
         case.fields().iter().map(|field| field.name).find_map(|setting| {
@@ -57,10 +56,10 @@ struct Row<'a> {
 
 /// A table of the errors and costs of these runs of a case, and a figure of errors over costs: a line for the
 /// runs that differ in their resolution alone.
-pub fn study(case: &dyn Case, records: &[Record]) -> Study {
-    let declared = case.declaration(Tier::Quick);
-    let error = declared.error();
-    let resolution = Resolution::of(case, &declared);
+pub fn section(case: &dyn Case, records: &[Record]) -> Section {
+    let studies = case.studies(Tier::Quick);
+    let error = studies.error();
+    let resolution = Resolution::of(case, &studies);
     let mut rows: Vec<Row> =
         records.iter().map(|of| row(case, of, error, resolution.as_ref())).collect();
     let coarser = |a: &Row, b: &Row| b.point.spacing.total_cmp(&a.point.spacing);
@@ -68,12 +67,12 @@ pub fn study(case: &dyn Case, records: &[Record]) -> Study {
         (a.place, &a.others).cmp(&(b.place, &b.others)).then_with(|| coarser(a, b))
     });
     let id = anchor(case.name(), "sweep");
-    let study = Study::new(&id, &format!("Runs of {}", case.name()));
-    let study = match error {
-        Some(error) => study.block(figure(&id, error, &rows)),
-        None => study,
+    let section = Section::new(&id, &format!("Runs of {}", case.name()));
+    let section = match error {
+        Some(error) => section.block(figure(&id, error, &rows)),
+        None => section,
     };
-    study.block(table(case, &declared, &rows))
+    section.block(table(case, &studies, &rows))
 }
 
 fn row<'a>(
@@ -125,7 +124,7 @@ fn figure(id: &str, error: &MetricName, rows: &[Row]) -> Figure {
 }
 
 /// A row a run. A column for each setting that is changed in some run.
-fn table(case: &dyn Case, declared: &Declaration, rows: &[Row]) -> Table {
+fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
     let changed = rows.iter().flat_map(|row| case::changed(case, &row.record.spec()));
     let changed: Vec<String> =
         changed.filter_map(|text| Some(text.split_once('=')?.0.to_string())).collect();
@@ -141,7 +140,7 @@ fn table(case: &dyn Case, declared: &Declaration, rows: &[Row]) -> Table {
         let Row { record, point, .. } = row;
         let mut cells = vec![Cell::marked(code(&record.run.variant))];
         cells.extend(names.iter().map(|name| value(&record.run.settings[*name])));
-        cells.push(error_in_words(declared, point, record));
+        cells.push(error_in_words(studies, point, record));
         cells.push(Cell::seconds(point.median()));
         cells.push(Cell::sci(point.pairs, 2));
         let [particles, steps] = [record.cost.particles as u64, record.cost.steps];
@@ -149,7 +148,7 @@ fn table(case: &dyn Case, declared: &Declaration, rows: &[Row]) -> Table {
         cells.push(Cell::text(record.status.to_string()));
         cells
     };
-    let metric = declared.error();
+    let metric = studies.error();
     let formula = rows.iter().filter_map(|row| row.record.metrics.get(&metric?.name));
     formula.for_each(|of| *formulas.entry(of.formula.clone()).or_insert(0) += 1);
     let error = match (metric, formulas.keys().next()) {
@@ -165,8 +164,8 @@ fn table(case: &dyn Case, declared: &Declaration, rows: &[Row]) -> Table {
 }
 
 /// The error as the case states it.
-fn error_in_words(declared: &Declaration, point: &Point, record: &Record) -> Cell {
-    let stated = declared.card.as_ref().map(|card| (card.stated)(&record.run.settings));
+fn error_in_words(studies: &Studies, point: &Point, record: &Record) -> Cell {
+    let stated = studies.first::<Card>().map(|card| (card.stated)(&record.run.settings));
     match stated {
         _ if point.error.is_nan() => Cell::text("–"),
         Some(stated) => Cell { value: Some(point.error), ..Cell::text(stated.number(point.error)) },

@@ -5,9 +5,9 @@ use touchstone_base::{record::Record, spec::RunSpec};
 use touchstone_report::{Block, Table};
 
 use crate::{
-    declare::{Comparison, Level, Resolution},
     runs::{JudgedRun, Planned, Runs},
-    study::Study,
+    section::Section,
+    studies::{Comparison, Level, Resolution, Study},
 };
 
 touchstone_base::metrics! {
@@ -38,6 +38,21 @@ pub fn run(spec: RunSpec, fill: impl FnOnce(&mut Record)) -> JudgedRun {
     JudgedRun::new(Planned::new(spec), record)
 }
 
+/// The section of a study, from the runs that were made; those of its other runs are refused.
+pub fn evaluate(study: &impl Study, made: Runs) -> Section {
+    study.evaluate("case", &whole(study.runs(), made)).expect("a section")
+}
+
+/// The runs of a plan: those that were made, and all others as refused.
+pub fn whole(plan: Vec<Planned>, made: Runs) -> Runs {
+    let mut all = Runs::of_none(crate::plan::merged(plan)).all;
+    let is_made = |run: &JudgedRun| {
+        made.all.iter().any(|made| made.planned.spec.key() == run.planned.spec.key())
+    };
+    all.retain(|run| !is_made(run));
+    Runs::new(made.all.into_iter().chain(all).collect())
+}
+
 /// The comparison of the error of a variant at these resolutions with a reference that is exact, without
 /// inputs.
 pub fn comparison(variant: &str, resolutions: &[usize]) -> Comparison {
@@ -57,9 +72,9 @@ pub fn comparison(variant: &str, resolutions: &[usize]) -> Comparison {
     }
 }
 
-/// The tables of a study, in its order.
-pub fn tables(study: &Study) -> Vec<&Table> {
-    let tables = study.blocks.iter().filter_map(|block| match block {
+/// The tables of a section, in its order.
+pub fn tables(section: &Section) -> Vec<&Table> {
+    let tables = section.blocks.iter().filter_map(|block| match block {
         Block::Table(table) => Some(table),
         _ => None,
     });

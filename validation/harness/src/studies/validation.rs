@@ -4,17 +4,18 @@
 
 use touchstone_base::{
     functions::{ln, powf},
+    record::MetricName,
     spec::RunSpec,
 };
 use touchstone_report::{Cell, Table, percent, sig};
 
-use super::anchor;
+use super::{Ladder, Level as LadderLevel, anchor};
 use crate::{
     columns::Columns,
     convergence::{Convergence, Label, Level, SLOWEST, convergence},
-    declare::Comparison,
     orders::Found as Order,
-    runs::Runs,
+    runs::{Planned, Runs},
+    section::Section,
     study::Study,
 };
 
@@ -32,6 +33,45 @@ const EXPANDS: f64 = 2.0;
 /// A comparison with an uncertainty of 95 % above this fraction of the compared quantity could not detect an
 /// error of a tenth: a small E is then no evidence.
 const TELLS: f64 = 0.1;
+
+/// A comparison with a reference: exact, or with an uncertainty by ASME V&V 20.
+#[derive(Clone)]
+pub struct Comparison {
+    /// The compared quantity, with its unit if it is a length or a velocity.
+    pub what: String,
+    /// The reference.
+    pub against: &'static str,
+    /// E = S − D, result less data; of a norm its magnitude.
+    pub metric: MetricName,
+    /// The runs, coarse to fine: E is the error of the finest.
+    pub levels: Vec<LadderLevel>,
+    /// Pairs of runs: as it is, and with one input changed by its own uncertainty.
+    pub inputs: Vec<[RunSpec; 2]>,
+    /// u_D, in the unit of E.
+    pub reference: f64,
+    /// Where u_input and u_D come from.
+    pub because: &'static str,
+}
+
+impl Comparison {
+    /// A comparison of a ladder with the inputs of the reference, so that u_input is 0.
+    pub fn new(
+        what: &str,
+        against: &'static str,
+        metric: impl Into<MetricName>,
+        ladder: &Ladder,
+        (reference, because): (f64, &'static str),
+    ) -> Self {
+        let (what, levels) = (format!("`{}`: {what}", ladder.variant), ladder.levels.clone());
+        let (metric, inputs) = (metric.into(), Vec::new());
+        Self { what, against, metric, levels, inputs, reference, because }
+    }
+
+    /// Whether neither the reference nor the input has an uncertainty.
+    pub fn is_exact(&self) -> bool {
+        self.reference == 0.0 && self.inputs.is_empty()
+    }
+}
 
 /// Result of a ladder for its finest level.
 #[derive(Clone, Debug, PartialEq)]
@@ -268,15 +308,29 @@ const OF_UNCERTAIN: &str = "\
     |E| > 2 u_val: model error. If |E| ≤ 2 u_val and 2 u_val is above a tenth of what is compared, \
     nothing can be said. Without an order there is neither: the ladder does not tell.";
 
-/// All comparisons of a case: with exact references, and with others.
-pub fn study(case: &str, comparisons: &[Comparison], runs: &Runs) -> Study {
-    let rows: Vec<Row> = comparisons.iter().map(|of| (of, Found::of(of, runs))).collect();
-    let (exact, uncertain): (Vec<Row>, Vec<Row>) =
-        rows.into_iter().partition(|(_, found)| found.exact.is_some());
-    let study = Study::new(&anchor(case, "uncertainty"), "Comparisons with references");
-    let tables = [(exact, of_exact as fn(&[Row]) -> Table), (uncertain, of_uncertain)];
-    let tables = tables.into_iter().filter(|(rows, _)| !rows.is_empty());
-    tables.fold(study, |study, (rows, table)| study.block(table(&rows)))
+/// The comparisons of a case with references, exact ones and others.
+pub struct Comparisons(pub Vec<Comparison>);
+
+impl Study for Comparisons {
+    fn runs(&self) -> Vec<Planned> {
+        let mut runs = Vec::new();
+        for Comparison { levels, inputs, .. } in &self.0 {
+            let levels = levels.iter().map(|level| &level.run.spec);
+            runs.extend(levels.chain(inputs.iter().flatten()).cloned().map(Planned::new));
+        }
+        runs
+    }
+
+    fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
+        let rows: Vec<Row> = self.0.iter().map(|of| (of, Found::of(of, runs))).collect();
+        let (exact, uncertain): (Vec<Row>, Vec<Row>) =
+            rows.into_iter().partition(|(_, found)| found.exact.is_some());
+        let section = Section::new(&anchor(case, "uncertainty"), "Comparisons with references");
+        let tables = [(exact, of_exact as fn(&[Row]) -> Table), (uncertain, of_uncertain)];
+        let tables = tables.into_iter().filter(|(rows, _)| !rows.is_empty());
+        let section = tables.fold(section, |section, (rows, table)| section.block(table(&rows)));
+        (!self.0.is_empty()).then_some(section)
+    }
 }
 
 type Row<'a> = (&'a Comparison, Found);
@@ -325,7 +379,7 @@ pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::tests::{column, comparison, runs, spec, tables};
+    use crate::studies::tests::{column, comparison, runs, spec, tables, whole};
 
     fn of(values: &[(f64, f64)]) -> Numerical {
         let level = |&(n, value): &(f64, f64)| Level { spacing: 1.0 / n, value };
@@ -486,9 +540,9 @@ mod tests {
         near(found.error, 0.225);
         assert_eq!(found.said(), Said::ModelError);
         let all = [uncertain, comparison("best", &[10, 20, 40])];
-        let study = study("a_case", &all, &runs);
-        assert_eq!(study.id, "a-case-uncertainty");
-        let [exact, uncertain] = tables(&study)[..] else { panic!("two tables") };
+        let section = Comparisons(all.to_vec()).evaluate("a_case", &runs).expect("a section");
+        assert_eq!(section.id, "a-case-uncertainty");
+        let [exact, uncertain] = tables(&section)[..] else { panic!("two tables") };
         assert_eq!(column(uncertain, "E"), ["22 %"]);
         assert_eq!(column(uncertain, "u_input"), ["5.0 %"]);
         assert_eq!(column(exact, "verdict"), ["stops at 20 %"]);
@@ -512,7 +566,7 @@ mod tests {
             of("noise", &|n| if n == 14.0 { 0.02 } else { 0.01 }),
             of("slow", &|n| 0.02 + 2.0 / n),
         ];
-        let runs = runs(all.concat());
+        let made = runs(all.concat());
         let compared = [
             comparison("law", &ladder),
             comparison("floor", &ladder),
@@ -527,6 +581,7 @@ mod tests {
             1 converging to the exact solution, 1 stopping at an error, 1 not distinguishable from the \
             reference, 1 with an error beyond the uncertainty, 1 too uncertain, 1 where the ladder \
             does not tell, 2 without a run";
+        let runs = whole(Comparisons(compared.to_vec()).runs(), made);
         assert_eq!(line(&compared, &runs).as_deref(), Some(expected));
     }
 }

@@ -8,31 +8,44 @@ use super::{
 };
 use nalgebra::Vector2;
 use touchstone_base::{gate::*, mutation::Constant, record::*, spec::*};
-use touchstone_harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
+use touchstone_harness::{
+    case::*,
+    studies::{causes::*, *},
+};
 use touchstone_report::Axis;
 
-/// The declaration of a flow.
-pub fn declaration(flow: Flow, tier: Tier) -> Declaration {
+/// The studies of a flow.
+pub fn studies(flow: Flow, tier: Tier) -> Studies {
     let table = plan::table(flow, tier);
     let at_half = at_half(flow, &table);
+    let is_poiseuille = flow == Flow::Poiseuille;
+    let (card, comparisons) = (card(flow, &at_half), comparisons(flow, &at_half));
+    let budgets = budgets(flow, tier, &at_half);
+    Studies::judging(table.plan())
+        .with(stiff::study(flow, &table))
+        .with_all(is_poiseuille.then(|| waves::study(&table)))
+        .with_all(is_poiseuille.then(|| maps::study(&table)))
+        .with(curves(flow))
+        .with(at_half)
+        .with(comparisons)
+        .with(budgets)
+        .with(limits(flow, tier))
+        .with(sensitivity(flow, tier))
+        .with_all(maps::declared(&table))
+        .with(card)
+}
+
+/// The facts of a flow.
+pub fn facts() -> Facts {
     let boundary = "No slip: at both plates the velocity is that of the plate, which is 0 unless the plate \
                     has a velocity. Nothing passes a plate. The velocity at the start is that of the \
                     particles. x is periodic.";
-    Declaration {
-        posed: Posed::new(boundary, &[ALL]),
-        card: Some(card(flow, &at_half)),
-        curves: vec![curves(flow)],
-        comparisons: comparisons(flow, &at_half),
-        budgets: budgets(flow, tier),
-        accuracy: vec![at_half],
-        limits: limits(flow, tier),
+    Facts {
+        statement: Statement::new(boundary, &[ALL]),
         is_stable: Some(is_stable),
-        studies: Some(Box::new(move |runs| studies(flow, tier, runs))),
-        maps: maps::declared(&table),
-        sensitivity: Some(sensitivity(flow, tier)),
         curve: Some(profile()),
         sealed: Some(SEALED),
-        ..Declaration::default()
+        ..Facts::default()
     }
 }
 
@@ -71,7 +84,7 @@ fn profile() -> Curve {
 }
 
 /// The recommended variant and the paper's over their ladders.
-fn comparisons(flow: Flow, accuracy: &Accuracy) -> Vec<Comparison> {
+fn comparisons(flow: Flow, accuracy: &Accuracy) -> Comparisons {
     let exact = (0.0, "exact: the series has the same inputs, and is summed to round-off");
     let compared =
         |ladder: &&Ladder| [flow.case().recommended.variant, "seed"].contains(&ladder.variant);
@@ -79,7 +92,7 @@ fn comparisons(flow: Flow, accuracy: &Accuracy) -> Vec<Comparison> {
         let what = "velocity from νt/L² = 0.1 on, rms";
         Comparison::new(what, "the exact series", L2_WORST, ladder, exact)
     };
-    accuracy.ladders.iter().filter(compared).map(of).collect()
+    Comparisons(accuracy.ladders.iter().filter(compared).map(of).collect())
 }
 
 /// Summary of the flow in the report.
@@ -122,10 +135,10 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
                    lattice leaves at any spacing are not in the fit.";
     let (id, bound) = ("poiseuille.plain.order", Bound::Within(1.8, 2.2));
     let order = Gate::new(id, "order", bound, Evidence::Theory, because);
-    let level = |s: &ChannelSettings| (1.0 / s.rows as f64, Resolution::new(s.rows, "{} rows"));
+    let spacing = Spacing::count(|s: &mut ChannelSettings| &mut s.rows, "{} rows");
     let of = |variant| Ladder {
         order: ((flow, variant) == (Flow::Poiseuille, "plain")).then(|| order.clone()),
-        ..table.ladder(&[For::Ladder], variant, level)
+        ..table.ladder(&[For::Ladder], variant, spacing)
     };
     let tau = flow.compared_at();
     let label = format!("relative L2 error of u at νt/L² = {tau} [-]");
@@ -177,14 +190,14 @@ fn curves(flow: Flow) -> Curves {
     }
 }
 
-fn budgets(flow: Flow, tier: Tier) -> Budgets {
+fn budgets(flow: Flow, tier: Tier, accuracy: &Accuracy) -> Budgets {
     let variants: &[&str] = match (tier, flow) {
         (Tier::Quick, _) => &["seed"],
         (_, Flow::Couette) => &["seed", "plain"],
         (_, Flow::Poiseuille) => &["seed", "plain", "curved"],
     };
     let of = variants.iter().map(|variant| changes(flow, variant, tier)).collect();
-    Budgets { about: "Runs have 20 rows and Re 0.5.".into(), of }
+    Budgets::new(accuracy, "Runs have 20 rows and Re 0.5.", of)
 }
 
 fn changes(flow: Flow, variant: &str, tier: Tier) -> Vec<Change> {
@@ -319,16 +332,6 @@ fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
     ];
     let runs = [case.spec("plain", |_| {}), case.spec("modern", |s| s.end = 1.5)];
     Sensitivity::new(tier, runs, watched)
-}
-
-/// The studies of a flow.
-pub fn studies(flow: Flow, tier: Tier, runs: &Runs) -> Vec<Study> {
-    let table = &plan::table(flow, tier);
-    let mut studies = vec![stiff::study(flow, table, runs)];
-    if flow == Flow::Poiseuille {
-        studies.extend([waves::study(table, runs), maps::study(table, runs)]);
-    }
-    studies
 }
 
 #[cfg(test)]

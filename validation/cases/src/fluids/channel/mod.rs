@@ -11,7 +11,7 @@ mod stiff;
 pub mod variants;
 mod waves;
 
-use declaration::declaration;
+use declaration::{facts, studies};
 pub use plan::{GHOSTS, ladder};
 pub use setup::{ChannelSettings, Flow, Setup};
 
@@ -42,6 +42,8 @@ pub enum For {
 
 /// The runs of a flow.
 pub type ChannelTable = Table<ChannelSettings, For>;
+/// One of them.
+pub type Row = touchstone_harness::table::Row<ChannelSettings, For>;
 
 /// Case 1, start-up Couette flow (the paper's figure 1).
 pub static COUETTE: ChannelCase = ChannelCase {
@@ -59,8 +61,8 @@ pub static COUETTE: ChannelCase = ChannelCase {
             with constant speed V = Re nu/L, Re = 0.5. The exact velocity is a Fourier series in y, and \
             pressure and cross-flow are exactly zero.",
     variants: variants::of_couette,
-    declaration: |tier| declaration(Flow::Couette, tier),
-    plan: |tier| plan::table(Flow::Couette, tier).plan(),
+    facts,
+    studies: |tier| studies(Flow::Couette, tier),
 };
 
 /// Case 2, start-up Poiseuille flow (the paper's figure 2).
@@ -79,6 +81,6 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
             along the plates sets in; V = Re nu/L is the centre-line velocity of the steady parabola. The \
             exact velocity is a Fourier series; pressure and cross-flow are exactly zero.",
     variants: variants::of_poiseuille,
-    declaration: |tier| declaration(Flow::Poiseuille, tier),
-    plan: |tier| plan::table(Flow::Poiseuille, tier).plan(),
+    facts,
+    studies: |tier| studies(Flow::Poiseuille, tier),
 };

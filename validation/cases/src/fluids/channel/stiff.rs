@@ -1,9 +1,13 @@
 //! Gain of super-time-stepping of viscosity: pair interactions of `stiff` against `modern` at one error, over
 //! the Reynolds number.
 
-use super::{ChannelSettings, ChannelTable, Flow, For, measure::L2};
-use touchstone_base::{gate::*, record::Record};
-use touchstone_harness::{runs::Runs, study::Study};
+use super::{ChannelSettings, ChannelTable, Flow, For, Row, measure::L2};
+use touchstone_base::{gate::*, record::Record, spec::RunSpec};
+use touchstone_harness::{
+    runs::Runs,
+    section::Section,
+    studies::{CustomStudy, Study},
+};
 
 /// Reynolds numbers, and the largest allowed ratio of pair interactions to those of `modern`. At the lower
 /// one sound does not limit the step, so that accuracy determines the cost.
@@ -41,17 +45,25 @@ fn gates(flow: Flow, settings: &ChannelSettings, modern: f64) -> [Gate; 2] {
 }
 
 /// The study.
-pub fn study(flow: Flow, table: &ChannelTable, runs: &Runs) -> Study {
-    let id = format!("{}-stiff", flow.case().name);
-    let study = Study::new(&id, "Steps that viscosity does not limit");
+pub fn study(flow: Flow, table: &ChannelTable) -> impl Study + use<> {
     let of = |variant| table.of(For::Stiff).filter(move |row| row.variant == variant);
-    of("modern").zip(of("stiff")).fold(study, |study, (modern, stiff)| {
-        let records = [modern, stiff].map(|row| runs.record(&row.run.spec));
-        let error = |record: &Record| record.value(L2.at(flow.compared_at()));
-        let errors = records.map(|record| record.and_then(error).unwrap_or(f64::NAN));
-        let count = |record: &Record| record.cost.pair_interactions as f64;
-        let counts = records.map(|record| record.map_or(f64::NAN, count));
-        let [l2, pairs] = gates(flow, &stiff.settings, errors[0]);
-        study.judge(l2, errors[1]).judge(pairs, counts[1] / counts[0])
-    })
+    let pair = |(modern, stiff): (&Row, &Row)| {
+        ([modern, stiff].map(|row| row.run.spec.clone()), stiff.settings.clone())
+    };
+    let pairs: Vec<([RunSpec; 2], ChannelSettings)> =
+        of("modern").zip(of("stiff")).map(pair).collect();
+    let section = move |runs: &Runs| {
+        let id = format!("{}-stiff", flow.case().name);
+        let section = Section::new(&id, "Steps that viscosity does not limit");
+        pairs.iter().fold(section, |section, (specs, settings)| {
+            let records = specs.each_ref().map(|spec| runs.record(spec));
+            let error = |record: &Record| record.value(L2.at(flow.compared_at()));
+            let errors = records.map(|record| record.and_then(error).unwrap_or(f64::NAN));
+            let count = |record: &Record| record.cost.pair_interactions as f64;
+            let counts = records.map(|record| record.map_or(f64::NAN, count));
+            let [l2, pairs] = gates(flow, settings, errors[0]);
+            section.judge(l2, errors[1]).judge(pairs, counts[1] / counts[0])
+        })
+    };
+    CustomStudy { runs: table.planned(For::Stiff), section }
 }

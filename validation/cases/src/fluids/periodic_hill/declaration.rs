@@ -8,7 +8,12 @@ use super::{
     CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*, setup::FLUX,
 };
 use touchstone_base::{gate::*, mutation::Constant, record::*};
-use touchstone_harness::{case::*, declare::*, runs::Runs, studies::causes::*, study::Study};
+use touchstone_harness::{
+    case::*,
+    runs::Runs,
+    section::Section,
+    studies::{causes::*, *},
+};
 use touchstone_maths::metrics::norms::rms;
 use touchstone_report::{Axis, ColourMap, percent};
 
@@ -23,34 +28,41 @@ const SEALED: Draws = Draws {
     free: &["end"],
 };
 
-/// The declaration of a tier.
-pub fn declaration(tier: Tier) -> Declaration {
+/// The studies of a tier.
+pub fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let accuracy = accuracy(tier, &table);
+    let (card, comparisons) = (card(tier, &accuracy), comparisons(tier, &accuracy));
+    let budgets = (tier == Tier::Full).then(|| budgets(&accuracy));
+    Studies::judging(table.plan())
+        .with_all(starts(&table))
+        .with(profiles(&table))
+        .with(picture(&table))
+        .with(accuracy)
+        .with(comparisons)
+        .with_all(budgets)
+        .with(limits(tier))
+        .with(sensitivity(tier, &table))
+        .with(card)
+}
+
+/// The facts of the case.
+pub fn facts() -> Facts {
     let boundary = "No slip: at the hill and at the lid the velocity is 0. Nothing passes them. x is \
                     periodic.";
-    let posed = Posed { further: Some(drive), ..Posed::new(boundary, &[ALL]) };
-    Declaration {
-        posed,
+    let statement = Statement { further: Some(drive), ..Statement::new(boundary, &[ALL]) };
+    Facts {
+        statement,
         // The force of our own controller; no file of another code contains one.
         stepwise: &[FORCE, FORCE_ERROR, DRAG_BALANCE],
-        card: Some(card(tier, &accuracy)),
-        comparisons: comparisons(tier, &accuracy),
-        curves: vec![profiles(&table)],
-        pictures: vec![picture(&table)],
-        budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
-        accuracy: vec![accuracy],
-        limits: limits(tier),
         is_stable: Some(is_stable),
-        studies: Some(Box::new(move |runs| studies(tier, runs))),
-        sensitivity: Some(sensitivity(tier, &table)),
         sealed: Some(SEALED),
-        ..Declaration::default()
+        ..Facts::default()
     }
 }
 
 /// Drive of the flow: the requested flux.
-fn drive(settings: &serde_json::Value) -> Vec<Fact> {
+fn drive(settings: &serde_json::Value) -> Vec<Parameter> {
     let setting = |name: &str| settings[name].as_f64().unwrap_or(f64::NAN);
     let flux = "the flux of volume through every section, the integral of u over y from the hill to the \
                 lid, that the force keeps: 2.035 U_b H times the setting `flux`, U_b = 1 m/s the mean \
@@ -60,15 +72,15 @@ fn drive(settings: &serde_json::Value) -> Vec<Fact> {
     let response = "T of our controller: f' = ((u* - u)/T - u')/(T/4), u the mean of the velocity along x \
                     over the fluid, u* that of the flux, looked at every ten steps; 0 keeps the force";
     vec![
-        Fact { name: "flux", value: setting("flux") * FLUX, unit: "m^2/s", about: flux },
-        Fact { name: "force", value: setting("force"), unit: "m/s^2", about: force },
-        Fact { name: "response", value: setting("response"), unit: "s", about: response },
+        Parameter { name: "flux", value: setting("flux") * FLUX, unit: "m^2/s", about: flux },
+        Parameter { name: "force", value: setting("force"), unit: "m/s^2", about: force },
+        Parameter { name: "response", value: setting("response"), unit: "s", about: response },
     ]
 }
 
 /// The recommended variant and the paper's over their ladders: at Re 10 in the quick tier, where nothing
 /// separates.
-fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
+fn comparisons(tier: Tier, accuracy: &Accuracy) -> Comparisons {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
     let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };
     let profiles = reference(re).map_or(f64::NAN, |reference| reference.uncertainty);
@@ -90,7 +102,7 @@ fn comparisons(tier: Tier, accuracy: &Accuracy) -> Vec<Comparison> {
         };
         all.clone().into_iter().map(of)
     };
-    ladder.flat_map(comparison).collect()
+    Comparisons(ladder.flat_map(comparison).collect())
 }
 
 /// Summary of the case in the report, at Re 50, where the flow separates: the ladder of the quick tier is at
@@ -143,9 +155,9 @@ fn left_of_start(settings: &serde_json::Value) -> String {
 
 /// Runs from rest only: runs from the reference end before they could leave it.
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
-    let level = |s: &HillSettings| (1.0 / s.n as f64, Resolution::new(s.n, "H/dx = {}"));
+    let spacing = Spacing::count(|s: &mut HillSettings| &mut s.n, "H/dx = {}");
     let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
-        .map(|variant| table.ladder(&[For::Ladder], variant, level));
+        .map(|variant| table.ladder(&[For::Ladder], variant, spacing));
     let run = ladders[0].levels.first().map(|level| &level.run.spec.settings);
     let [re, end] =
         ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));
@@ -169,7 +181,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
 }
 
 /// One thing changed at a time.
-fn budgets() -> Budgets {
+fn budgets(accuracy: &Accuracy) -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
                  effect of disorder.";
     let change = |what, part, variant, set: fn(&mut HillSettings)| {
@@ -194,7 +206,7 @@ fn budgets() -> Budgets {
     ];
     // The walls are compared with `modern`, earlier in the list.
     changes[10].against = 9;
-    Budgets { about: about.into(), of: vec![changes] }
+    Budgets::new(accuracy, about, vec![changes])
 }
 
 /// Profiles at their stations, symbols on lines, and shear along the hill.
@@ -314,22 +326,28 @@ fn sensitivity(tier: Tier, table: &Table) -> Sensitivity {
 }
 
 /// Runs from rest and from the reference, ten spacings a hill: only the full tier has both.
-pub fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let because =
-        "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
-    let table = table(tier);
-    let study = Study::new("periodic-hill-starts", "Whether the start matters");
-    let study = REYNOLDS.into_iter().fold(study, |study, re| {
-        let rows = shown(&table, re).into_iter().filter(|row| row.settings.n == 10);
-        let [rest, other] = rows.collect::<Vec<_>>()[..] else { return study };
-        let u = |row: &Row| Some(runs.completed(&row.run.spec)?.column("stations", "u"));
-        let both = u(rest).zip(u(other));
-        let found = both.map_or(f64::NAN, |(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)));
-        let metric = "rms over stations of the difference of u [U_b]";
-        let (id, bound) = (format!("{NAME}.{RECOMMENDED}.{re}.starts"), Bound::Below(0.005));
-        study.judge(Gate::new(id, metric, bound, Evidence::Invariant, because), found)
-    });
-    if study.judged.is_empty() { Vec::new() } else { vec![study] }
+fn starts(table: &Table) -> Option<impl Study + use<>> {
+    let pair = |re: f64| -> Option<(f64, [Planned; 2])> {
+        let rows = shown(table, re).into_iter().filter(|row| row.settings.n == 10);
+        let runs: Vec<Planned> = rows.map(|row| row.run.clone()).collect();
+        Some((re, runs.try_into().ok()?))
+    };
+    let pairs: Vec<(f64, [Planned; 2])> = REYNOLDS.into_iter().filter_map(pair).collect();
+    let runs: Vec<Planned> = pairs.iter().flat_map(|(_, runs)| runs.clone()).collect();
+    let section = move |runs: &Runs| {
+        let because =
+            "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
+        let section = Section::new("periodic-hill-starts", "Whether the start matters");
+        pairs.iter().fold(section, |section, (re, [rest, other])| {
+            let u = |run: &Planned| Some(runs.completed(&run.spec)?.column("stations", "u"));
+            let both = u(rest).zip(u(other));
+            let found = both.map_or(f64::NAN, |(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)));
+            let metric = "rms over stations of the difference of u [U_b]";
+            let (id, bound) = (format!("{NAME}.{RECOMMENDED}.{re}.starts"), Bound::Below(0.005));
+            section.judge(Gate::new(id, metric, bound, Evidence::Invariant, because), found)
+        })
+    };
+    (!runs.is_empty()).then_some(CustomStudy { runs, section })
 }
 
 /// Particles of the finest run at each Reynolds number, the floor, and the line that encloses the fluid that

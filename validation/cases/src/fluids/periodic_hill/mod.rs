@@ -96,6 +96,6 @@ pub static CASE: Composed<HillSettings> = Composed {
             trough, or on the next hill. It is steady and laminar. The reference is a finite-element \
             computation of this project, because none is published.",
     variants,
-    declaration: declaration::declaration,
-    plan: |tier| plan::table(tier).plan(),
+    facts: declaration::facts,
+    studies: declaration::studies,
 };

@@ -4,7 +4,7 @@
 mod run;
 
 use touchstone_base::{functions::log10, gate::*, record::Record};
-use touchstone_harness::{case::*, composed::*, declare::*, table};
+use touchstone_harness::{case::*, composed::*, studies::*, table};
 use touchstone_report::{Axis, ColourMap};
 use touchstone_schemes::flow;
 
@@ -82,8 +82,8 @@ pub static CASE: Composed<VortexSettings> = Composed {
             stagnation points, so that the order of the start is soon lost. The case therefore shows what \
             a method does with disorder. Runs start from a square lattice or from a disturbed one.",
     variants,
-    declaration,
-    plan: |tier| table(tier).plan(),
+    facts,
+    studies,
 };
 
 /// Purpose of a run.
@@ -197,10 +197,10 @@ const SEALED: Draws = Draws {
 };
 
 /// The declaration of a tier.
-fn declaration(tier: Tier) -> Declaration {
+fn studies(tier: Tier) -> Studies {
     let table = table(tier);
-    let level = |s: &VortexSettings| (1.0 / s.n as f64, Resolution::new(s.n, "{} x {}"));
-    let mut ladders = LADDER.map(|variant| table.ladder(&[For::Ladder], variant, level));
+    let spacing = Spacing::count(|s: &mut VortexSettings| &mut s.n, "{} x {}");
+    let mut ladders = LADDER.map(|variant| table.ladder(&[For::Ladder], variant, spacing));
     for ladder in ladders.iter_mut().filter(|of| of.variant == RECOMMENDED && tier == Tier::Full) {
         let because = "The bound is what this program computed before, 1.95, with 0.3 either way. Errors of \
                        the sums fall as h^2, but those of the sound speed and the time step fall otherwise \
@@ -215,20 +215,24 @@ fn declaration(tier: Tier) -> Declaration {
         ladders: ladders.into(),
         ..Accuracy::new("taylor-green", L2, "relative L2 error of the velocity [-]")
     };
-    let boundary = "There is no wall: x and y are periodic.";
-    Declaration {
-        posed: Posed::new(boundary, &[run::ALL]),
-        curves: vec![histories(tier, &table)],
-        pictures: vec![picture(&table)],
-        budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
-        accuracy: vec![accuracy],
+    let budgets = (tier == Tier::Full).then(|| budgets(&accuracy));
+    Studies::judging(table.plan())
+        .with(histories(tier, &table))
+        .with(picture(&table))
+        .with(accuracy)
+        .with_all(budgets)
+}
+
+fn facts() -> Facts {
+    Facts {
+        statement: Statement::new("There is no wall: x and y are periodic.", &[run::ALL]),
         sealed: Some(SEALED),
-        ..Declaration::default()
+        ..Facts::default()
     }
 }
 
 /// One thing changed at a time, over the recommended variant at 50 x 50 from the disturbed lattice.
-fn budgets() -> Budgets {
+fn budgets(accuracy: &Accuracy) -> Budgets {
     let changed = |what: &str, part, set: fn(&mut VortexSettings)| {
         let spec = CASE.spec(RECOMMENDED, |s| {
             s.perturb = DISTURBED;
@@ -251,7 +255,7 @@ fn budgets() -> Budgets {
                  row, with another disturbance, shows what is chance. A shorter step, faster sound and less \
                  diffusion all raise the error, because their parts have the sign opposite to that of the \
                  spacing and cancel some of it.";
-    Budgets { about: about.into(), of: vec![changes] }
+    Budgets::new(accuracy, about, vec![changes])
 }
 
 /// Error through time, of each variant that keeps particles apart at one number of particles, and of `plain`.

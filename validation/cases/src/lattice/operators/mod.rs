@@ -13,11 +13,7 @@ mod study;
 #[cfg(test)]
 mod tests;
 
-use touchstone_harness::{
-    composed::*,
-    declare::{Declaration, Drawn, Draws, Posed},
-    method::*,
-};
+use touchstone_harness::{case::*, composed::*, method::*};
 use touchstone_schemes::lattice;
 
 touchstone_base::settings! {
@@ -214,15 +210,14 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
             (`divergence`). The operator is the rate of change: the value of each particle at the \
             end minus its value at the start, over the time. This rate is compared with the exact value.",
     variants,
-    declaration: |tier| Declaration {
-        posed: Posed {
+    facts: || Facts {
+        statement: Statement {
             further: Some(|_| vec![run::field(), run::guard()]),
-            ..Posed::new("There is no wall: x and y are periodic.", &[run::ALL])
+            ..Statement::new("There is no wall: x and y are periodic.", &[run::ALL])
         },
-        studies: Some(Box::new(move |runs| study::studies(tier, runs))),
         sealed: Some(SEALED),
         of_all_digits: run::ALL,
-        ..Declaration::default()
+        ..Facts::default()
     },
-    plan: plan::plan,
+    studies: study::studies,
 };

@@ -10,8 +10,8 @@ use touchstone_base::{
     record::*,
 };
 use touchstone_harness::{
+    case::Parameter,
     case::*,
-    declare::Fact,
     method::*,
     problem::{Brief, Problem},
 };
@@ -46,18 +46,18 @@ const DENSITY: f64 = 0.5;
 const ETA2: f64 = 1e-6;
 
 /// The fields and the operators, for other codes.
-pub(super) fn field() -> Fact {
+pub(super) fn field() -> Parameter {
     let about = "wave number K of the fields; φ = sin Kx cos Ky, ψ = cos Kx sin Ky. The operator o and its \
                  exact value: density: ρ/ρ0 - 1 after the step, φ/2; gradient: (v - v_start)/t, -∇p/ρ of p \
                  = 1e-6 ρ0 c0² φ; laplacian: (v - v_start)/t, ν ∇²v of v = 0.1 c0 (φ, ψ); divergence: \
                  (ρ_start - ρ)/t, ∇·v of the same v";
-    Fact { name: "K", value: K, unit: "1/m", about }
+    Parameter { name: "K", value: K, unit: "1/m", about }
 }
 
 /// The guard of the Laplacian, for other codes.
-pub(super) fn guard() -> Fact {
+pub(super) fn guard() -> Parameter {
     let about = "η² over h² of the viscous sum, a guard against 0/0";
-    Fact { name: "eta2_over_h2", value: ETA2, unit: "-", about }
+    Parameter { name: "eta2_over_h2", value: ETA2, unit: "-", about }
 }
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {

@@ -6,7 +6,8 @@ use touchstone_harness::{
     convergence::Level,
     orders::{self, Line, Refinement},
     runs::Runs,
-    study::Study,
+    section::Section,
+    studies::{CustomStudy, Studies},
     table::Row,
 };
 
@@ -108,9 +109,15 @@ impl For {
     }
 }
 
-/// Studies of the case.
-pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
-    let table = table(tier);
+/// The orders of the operators.
+pub(super) fn studies(tier: Tier) -> Studies {
+    let table = judged(tier);
+    let runs = table.plan();
+    let section = move |runs: &Runs| section(tier, &table, runs);
+    Studies::judging(runs.clone()).with(CustomStudy { runs, section })
+}
+
+fn section(tier: Tier, table: &Table, runs: &Runs) -> Section {
     let all = REFINED.map(|refined| {
         let (metric, axis): (MetricKey, _) = match refined {
             For::Lattice => (BIAS, "bias [-]"),
@@ -130,7 +137,7 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
         let [_, title, spacing] = refined.texts();
         Refinement { title, axes: [spacing, axis], slopes, lines: lines.collect() }
     });
-    let study = Study::new("operators-orders", "Orders of single operators").prose(
+    let section = Section::new("operators-orders", "Orders of single operators").prose(
         "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there \
          is no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that \
          is wrong.",
@@ -142,5 +149,5 @@ pub(super) fn studies(tier: Tier, runs: &Runs) -> Vec<Study> {
                    that of lattices that are displaced by up to 0.2 dx, over the rms of the exact values. \
                    With an order below 1 in h an operator does not converge at a fixed number of neighbours.";
     let is_drawn = |line: &Line| line.name.starts_with(QUINTIC);
-    vec![orders::study(study, [figure, caption], &all, is_drawn)]
+    orders::add(section, [figure, caption], &all, is_drawn)
 }

@@ -18,7 +18,7 @@ use touchstone_base::{gate::*, record::MetricKey};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::{Declaration, Posed},
+    studies::Studies,
     table::{Row, Table},
 };
 
@@ -83,8 +83,8 @@ pub static ACOUSTIC_WAVE: Composed<WaveSettings> = Composed {
             are known exactly. A correct program has the frequency and decay that follow from them, \
             whatever the kernel.",
     variants: || variants(Polarisation::Sound),
-    declaration: |_| declaration(),
-    plan: |tier| plan(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
+    facts,
+    studies: |tier| studies(&ACOUSTIC_WAVE, Polarisation::Sound, tier),
 };
 
 /// A decaying shear wave.
@@ -96,8 +96,8 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
             a lattice, the symbol lambda(k) of the viscous sum is known exactly. Sound and pressure stay \
             exactly zero to first order.",
     variants: || variants(Polarisation::Shear),
-    declaration: |_| declaration(),
-    plan: |tier| plan(&SHEAR_WAVE, Polarisation::Shear, tier),
+    facts,
+    studies: |tier| studies(&SHEAR_WAVE, Polarisation::Shear, tier),
 };
 
 const RECOMMENDED: Recommended = Recommended {
@@ -124,9 +124,9 @@ touchstone_base::metrics! {
 }
 
 /// Measurements after every step, and facts for other codes.
-fn declaration() -> Declaration {
-    let posed = Posed::new("There is no wall: x and y are periodic.", &[ALL, run::FACTORS]);
-    Declaration { posed, stepwise: STEPWISE, ..Declaration::default() }
+fn facts() -> Facts {
+    let statement = Statement::new("There is no wall: x and y are periodic.", &[ALL, run::FACTORS]);
+    Facts { statement, stepwise: STEPWISE, ..Facts::default() }
 }
 
 /// All are fits to every step, or differences between steps.
@@ -235,7 +235,7 @@ const RATIOS: [(&str, &[f64], &[f64]); 4] = [
 ];
 
 /// The runs of a tier; the full one adds waves that are oblique to the lattice.
-fn plan(case: &'static Composed<WaveSettings>, of: Polarisation, tier: Tier) -> Vec<Planned> {
+fn studies(case: &'static Composed<WaveSettings>, of: Polarisation, tier: Tier) -> Studies {
     let mut table = Table::new(case, tier);
     let on_lattice = if of == Polarisation::Sound { SOUND } else { SHEAR };
     let wave = |s: &mut WaveSettings, (n, ratio, [kx, ky]): (usize, f64, [usize; 2])| {
@@ -264,7 +264,7 @@ fn plan(case: &'static Composed<WaveSettings>, of: Polarisation, tier: Tier) -> 
         });
     }
     table.judge(|row| gates(case, row));
-    table.plan()
+    Studies::judging(table.plan())
 }
 
 /// Gates of a run, with reasons.

@@ -7,7 +7,7 @@ mod plan;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 use touchstone_base::{gate::*, mutation::Constant, record::*};
-use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_harness::{case::*, composed::*, studies::*, table::*};
 use touchstone_lagrangian::*;
 use touchstone_schemes::total;
 use touchstone_solver::*;
@@ -53,8 +53,8 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
             begins to act: shape, material and load are those of the test CSM3 of Turek & Hron (2006). The \
             path of its end is compared with finite elements of the same bar and law.",
     variants,
-    declaration: plan::declaration,
-    plan: |tier| plan::table(tier).plan(),
+    facts: plan::facts,
+    studies: plan::studies,
 };
 
 touchstone_base::metrics! {

@@ -99,38 +99,39 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-/// In the full tier the errors of constants that the gates detect, and the metrics of a path alone.
-pub fn declaration(tier: Tier) -> Declaration {
+/// The accuracy of the path, and in the full tier the errors of constants that the gates detect.
+pub fn studies(tier: Tier) -> Studies {
+    let table = table(tier);
     let constants =
         [Constant::BodyForce, Constant::SoundSpeed, Constant::Density, Constant::ShearModulus];
     let run = CANTILEVER.spec(LAGRANGIAN, |s| s.n = 5);
     let sensitivity = Sensitivity::new(tier, [run], constants.map(Watched::new));
-    let sensitivity = (tier == Tier::Full).then_some(sensitivity);
-    let level =
-        |s: &CantileverSettings| (s.thickness / s.n as f64, Resolution::new(s.n, "{} layers"));
+    let spacing =
+        Spacing::count(|s: &mut CantileverSettings| &mut s.n, "{} layers").over(|s| s.thickness);
     let accuracy = Accuracy {
         about: "A bar under its own weight in its first swing, until 0.75 s, against finite elements. The \
                 runs go on until 4 s."
             .into(),
         spacing: "dx [m]",
-        ladders: vec![table(tier).ladder(&[Whole], LAGRANGIAN, level)],
+        ladders: vec![table.ladder(&[Whole], LAGRANGIAN, spacing)],
         ..Accuracy::new("cantilever", PATH_RMS, "rms distance of the end over its amplitude [-]")
     };
-    let (accuracy, curve) = (vec![accuracy], Some(path_of_end()));
-    let (stepwise, of_methods) = (STEPWISE, OF_METHODS);
-    let sealed = Some(SEALED);
+    Studies::judging(table.plan())
+        .with(accuracy)
+        .with_all((tier == Tier::Full).then_some(sensitivity))
+}
+
+/// The facts of the case.
+pub fn facts() -> Facts {
     let held = "Clamped at x = 0: there the displacement is 0 at all times, along x and y. No force acts on \
                 the other faces. Weight acts from t = 0 on, on a bar without stress.";
-    let posed = Posed::new(held, &[ALL, path::OF_PATH, &COMPARED.map(|(_, error)| error)]);
-    Declaration {
-        posed,
-        accuracy,
-        sensitivity,
-        stepwise,
-        of_methods,
-        curve,
-        sealed,
-        ..Declaration::default()
+    Facts {
+        statement: Statement::new(held, &[ALL, path::OF_PATH, &COMPARED.map(|(_, error)| error)]),
+        stepwise: STEPWISE,
+        of_methods: OF_METHODS,
+        curve: Some(path_of_end()),
+        sealed: Some(SEALED),
+        ..Facts::default()
     }
 }
 

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use touchstone_base::{functions::*, gate::*, record::*};
-use touchstone_harness::{case::*, composed::*, declare::*, table::*};
+use touchstone_harness::{case::*, composed::*, studies::*, table::*};
 use touchstone_lagrangian::{Hencky, Law as _};
 use touchstone_maths::metrics::history::passes;
 use touchstone_solver::*;
@@ -49,8 +49,8 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
             first mode (Landau & Lifshitz; Gray, Monaghan & Swift 2001). Its period is compared with 0.254 \
             s of thin-plate theory, and with finite elements, as its amplitude and the path of its tip.",
     variants,
-    declaration: plan::declaration,
-    plan: |tier| plan::table(tier).plan(),
+    facts: plan::facts,
+    studies: plan::studies,
 };
 
 fn variants() -> Compositions<PlateSettings> {

@@ -180,18 +180,13 @@ fn locked(row: &Row<PlateSettings, For>) -> Gate {
 }
 
 /// Order in the full tier; the quick tier has one resolution.
-pub fn declaration(tier: Tier) -> Declaration {
-    let (table, stepwise, of_methods) = (table(tier), STEPWISE, OF_METHODS);
-    let held = "Clamped at x = 0: there the displacement is 0 at all times, along x and y. No force acts on \
-                the other faces. At the start the plate is straight and without stress, and moves.";
-    let posed = Posed::new(held, &[ALL]);
-    if tier == Tier::Quick {
-        return Declaration { posed, stepwise, of_methods, ..Declaration::default() };
-    }
-    let error = PERIOD_ERROR;
-    let level = |s: &PlateSettings| (1.0 / s.n as f64, Resolution::new(s.n, "{} layers"));
-    let ladder = |variant| table.ladder(&[Paper, Order, Three], variant, level);
-    let accuracy = Accuracy {
+pub fn studies(tier: Tier) -> Studies {
+    let table = table(tier);
+    let spacing = Spacing::count(|s: &mut PlateSettings| &mut s.n, "{} layers");
+    let ladder = |variant| table.ladder(&[Paper, Order, Three], variant, spacing);
+    let label = "difference of the period from finite elements [-]";
+    let accuracy = || {
+        Accuracy {
         about: "A cantilever swings for 0.75 periods, the total Lagrangian one for three. Finite elements \
                 are of the same plate and law. The theory of a bent lattice explains the errors of 5 and \
                 10 total Lagrangian layers, so that no order is expected of these."
@@ -199,8 +194,20 @@ pub fn declaration(tier: Tier) -> Declaration {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders: ["seed", "bare", PLAIN, LAGRANGIAN].map(ladder).into(),
-        ..Accuracy::new("oscillating-plate", error, "difference of the period from finite elements [-]")
+        ..Accuracy::new("oscillating-plate", PERIOD_ERROR, label)
+    }
     };
-    let accuracy = vec![accuracy];
-    Declaration { posed, accuracy, stepwise, of_methods, ..Declaration::default() }
+    Studies::judging(table.plan()).with_all((tier == Tier::Full).then(accuracy))
+}
+
+/// The facts of the case.
+pub fn facts() -> Facts {
+    let held = "Clamped at x = 0: there the displacement is 0 at all times, along x and y. No force acts on \
+                the other faces. At the start the plate is straight and without stress, and moves.";
+    Facts {
+        statement: Statement::new(held, &[ALL]),
+        stepwise: STEPWISE,
+        of_methods: OF_METHODS,
+        ..Facts::default()
+    }
 }

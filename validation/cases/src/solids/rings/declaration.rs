@@ -71,31 +71,40 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-pub fn declaration(tier: Tier) -> Declaration {
-    let accuracy = accuracy(tier);
+/// The studies of a tier.
+pub fn studies(tier: Tier) -> Studies {
+    let table = table(tier);
+    let accuracy = accuracy(tier, &table);
+    let (card, comparisons) = (card(&accuracy), comparisons(&accuracy));
+    let budgets = (tier == Tier::Full).then(|| budgets(&accuracy));
+    Studies::judging(table.plan())
+        .with(histories(&table))
+        .with_all(pictures(&table))
+        .with(accuracy)
+        .with(comparisons)
+        .with_all(budgets)
+        .with(limits(tier))
+        .with(sensitivity(tier))
+        .with(map(tier, &table))
+        .with(card)
+}
+
+/// The facts of the case.
+pub fn facts() -> Facts {
     let free = "No force acts on the faces of a ring but that of the other ring where they touch: it is \
                 normal to the faces, which slide without friction, do not pass each other and do not stick.";
-    Declaration {
-        posed: Posed::new(free, &[metrics::ALL]),
-        card: Some(card(&accuracy)),
-        curves: vec![histories(tier)],
-        comparisons: comparisons(&accuracy),
-        budgets: (tier == Tier::Full).then(budgets).unwrap_or_default(),
-        limits: limits(tier),
+    Facts {
+        statement: Statement::new(free, &[metrics::ALL]),
         is_stable: Some(is_stable),
-        maps: vec![map(tier)],
-        pictures: pictures(tier),
-        sensitivity: Some(sensitivity(tier)),
         stepwise: STEPWISE,
         curve: Some(path_and_extents()),
-        accuracy: vec![accuracy],
         sealed: Some(SEALED),
-        ..Declaration::default()
+        ..Facts::default()
     }
 }
 
 /// The ring on the right at the paper's speed with the finite elements', and one that is torn.
-fn pictures(tier: Tier) -> Vec<Picture> {
+fn pictures(table: &Table) -> Vec<Picture> {
     let whole = "The right one of two rubber rings that collide at 0.059 c0 each and meet at x = 0. \
                  Particles of variant `lagrangian`, spacing 0.1 L, are coloured by the largest principal \
                  stress σ₁ over the bulk modulus K; tension is positive. Black lines are the faces of the \
@@ -104,7 +113,6 @@ fn pictures(tier: Tier) -> Vec<Picture> {
     let torn = "The right one of two rubber rings after a collision at 0.12 c0 each without artificial \
                 stress, spacing 0.2 L. Colour is the largest principal stress σ₁ over the bulk modulus K. \
                 Rubber of this law does not break; the method does.";
-    let table = table(tier);
     let picture = |(group, variant), texts, shares: &[f64], most: f64| {
         let panel = |row: &Row, share: f64| {
             let RingSettings { spacing, speed, end, .. } = row.settings;
@@ -133,7 +141,7 @@ fn pictures(tier: Tier) -> Vec<Picture> {
 }
 
 /// The recommended variant and the paper's over their ladders, each with the reference of its law.
-fn comparisons(accuracy: &Accuracy) -> Vec<Comparison> {
+fn comparisons(accuracy: &Accuracy) -> Comparisons {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes, steps, contact, disorder \
                            (`references/rubber_rings`)";
     let of = |ladder: &Ladder| {
@@ -150,7 +158,7 @@ fn comparisons(accuracy: &Accuracy) -> Vec<Comparison> {
         }))
     };
     let compared = |ladder: &&Ladder| SHOWN.contains(&ladder.variant);
-    accuracy.ladders.iter().filter(compared).filter_map(of).flatten().collect()
+    Comparisons(accuracy.ladders.iter().filter(compared).filter_map(of).flatten().collect())
 }
 
 /// Summary of the case in the report.
@@ -185,8 +193,8 @@ fn card(accuracy: &Accuracy) -> Card {
 }
 
 /// The recommended variant and the paper's, with the reference of the law of the recommended.
-fn histories(tier: Tier) -> Curves {
-    let (table, settings) = (table(tier), RingSettings::default());
+fn histories(table: &Table) -> Curves {
+    let settings = RingSettings::default();
     let exact = Reference::of(LAGRANGIAN, &settings);
     let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
     let panel = |(k, label): (usize, &str)| {
@@ -213,17 +221,13 @@ fn histories(tier: Tier) -> Curves {
 }
 
 /// Error of the histories over spacing and cost.
-fn accuracy(tier: Tier) -> Accuracy {
-    let table = table(tier);
+fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let variants: &[&str] = match tier {
         Tier::Quick => &["seed", LAGRANGIAN],
         _ => &["seed", "leapfrog", LAGRANGIAN],
     };
-    let ladder = |variant| {
-        table.ladder(&[Group::Coarse, Group::Paper], variant, |s| {
-            (s.spacing, Resolution::new((1.0 / s.spacing).round() as usize, "{} layers"))
-        })
-    };
+    let spacing = Spacing::length(|s: &mut RingSettings| &mut s.spacing, "{} layers");
+    let ladder = |variant| table.ladder(&[Group::Coarse, Group::Paper], variant, spacing);
     let label = "distance of the histories [outer diameters]";
     Accuracy {
         about: "Rubber rings of thickness L collide at 0.059 c0 each; the reference is finite elements. The \
@@ -237,7 +241,7 @@ fn accuracy(tier: Tier) -> Accuracy {
     }
 }
 
-fn budgets() -> Budgets {
+fn budgets(accuracy: &Accuracy) -> Budgets {
     let change = |what: &str, part: &'static str, set: fn(&mut RingSettings)| {
         let spec = RUBBER_RINGS.spec("leapfrog", |s| {
             s.spacing = 0.25;
@@ -256,7 +260,7 @@ fn budgets() -> Budgets {
         change("no XSPH", "XSPH", |s| s.stabilisation.xsph = 0.0),
         change("ξ = 0", "artificial stress", |s| s.stabilisation.xi = 0.0),
     ];
-    Budgets { about: "Rings collide at 0.059 c0 each at spacing 0.25 L.".into(), of: vec![changes] }
+    Budgets::new(accuracy, "Rings collide at 0.059 c0 each at spacing 0.25 L.", vec![changes])
 }
 
 fn limits(tier: Tier) -> StepLimits {
@@ -285,8 +289,7 @@ fn step_limit(variant: &'static str) -> StepLimit {
 }
 
 /// Whole, torn or in pieces.
-fn map(tier: Tier) -> Map {
-    let table = table(tier);
+fn map(tier: Tier, table: &Table) -> Map {
     let (speeds, spacings): (&[f64], &[f64]) = match tier {
         Tier::Quick => (&[0.03, SPEED, 0.12, 0.3], &[0.1, 0.2]),
         _ => (&[0.03, SPEED, 0.12, 0.2, 0.3], &[0.05, 0.1, 0.2]),
@@ -326,6 +329,7 @@ fn map(tier: Tier) -> Map {
             panel(LAGRANGIAN, LAGRANGIAN, whole),
         ],
         outcome,
+        starts: None,
     }
 }
 
@@ -422,10 +426,9 @@ mod tests {
     #[test]
     fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
         let limits = StepLimits { about: String::new(), of: vec![step_limit("no such variant")] };
-        let declared = Declaration { limits, ..Declaration::default() };
-        let studies = touchstone_harness::studies::of("rubber_rings", &declared, &Runs::default());
-        let judged: Vec<_> = studies.iter().flat_map(|study| &study.judged).collect();
-        assert_eq!(judged.len(), 1);
-        assert!(judged[0].judgement.verdict.is_failure());
+        let runs = Runs::of_none(limits.runs());
+        let section = limits.evaluate("rubber_rings", &runs).expect("a section");
+        assert_eq!(section.judged.len(), 1);
+        assert!(section.judged[0].judgement.verdict.is_failure());
     }
 }

@@ -17,7 +17,12 @@ use nalgebra::{Rotation2, Vector2};
 use std::f64::consts::TAU;
 use touchstone_base::{functions::*, gate::*, mutation::Constant, record::*};
 use touchstone_harness::{
-    case::*, composed::*, declare::*, method::Properties, pictures, studies::causes::*, table,
+    case::*,
+    composed::*,
+    method::Properties,
+    pictures,
+    studies::{causes::*, *},
+    table,
 };
 use touchstone_solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};
 
@@ -120,8 +125,8 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
             is exact, and a ring must not break: numerical fracture is the tensile instability that \
             artificial stress is there to prevent.",
     variants,
-    declaration: declaration::declaration,
-    plan: |tier| table(tier).plan(),
+    facts: declaration::facts,
+    studies: declaration::studies,
 };
 
 /// The largest energy at any time over the initial one, minus 1: the error of stress rates in time.

@@ -1,7 +1,5 @@
 //! The table of the runs, and their gates.
 
-use touchstone_harness::table::Table;
-
 use super::*;
 
 /// Purpose of a run.
@@ -17,6 +15,8 @@ pub enum Group {
     Coarse,
 }
 
+/// The runs of a tier.
+pub type Table = table::Table<RingSettings, Group>;
 /// A run of the table.
 pub type Row = table::Row<RingSettings, Group>;
 
@@ -24,7 +24,7 @@ pub type Row = table::Row<RingSettings, Group>;
 pub const SPEED: f64 = 0.059;
 
 /// The runs of a tier, with their gates.
-pub fn table(tier: Tier) -> Table<RingSettings, Group> {
+pub fn table(tier: Tier) -> Table {
     use Group::{Coarse, Paper, Speed, Unstressed};
     const COARSE: &[f64] = &[1.0 / 3.0, 0.25];
     let mut table = Table::new(&RUBBER_RINGS, tier);

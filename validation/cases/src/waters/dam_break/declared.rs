@@ -25,30 +25,37 @@ const SEALED: Draws = Draws {
     free: &[],
 };
 
-/// The declaration.
-pub fn declaration(tier: Tier) -> Declaration {
-    let accuracy = accuracy(tier);
-    let comparisons = comparisons(tier);
+/// The studies of a tier.
+pub fn studies(tier: Tier) -> Studies {
+    let table = plan::table(tier);
+    let accuracy = accuracy(tier, &table);
+    let (card, budgets) = (card(&accuracy), budgets(tier, &accuracy));
+    Studies::judging(table.plan())
+        .with_all(curves::curves(tier))
+        .with(picture(&table))
+        .with(accuracy)
+        .with(in_the_tank(&table))
+        .with(comparisons(tier, &table))
+        .with_all(ensembles::ensembles(tier, &table))
+        .with(budgets)
+        .with(limits(tier))
+        .with(sensitivity(tier))
+        .with(card)
+}
+
+/// The facts of the case.
+pub fn facts() -> Facts {
     let boundary = "Water slips along floor and walls without friction, and nothing passes them below their \
                     rim. The surface is free: no pressure acts on it. At the start the water is at rest; no \
                     wall holds it on its right.";
-    let posed = Posed { metrics: metrics::every(), ..Posed::new(boundary, &[]) };
-    Declaration {
-        posed,
-        card: Some(card(&accuracy)),
-        ensembles: ensembles::ensembles(tier),
-        comparisons,
-        curves: curves::curves(tier),
-        pictures: vec![picture(tier)],
-        budgets: budgets(tier, &accuracy),
-        accuracy: vec![accuracy, in_the_tank(tier)],
-        limits: limits(tier),
+    let statement = Statement { metrics: metrics::every(), ..Statement::new(boundary, &[]) };
+    Facts {
+        statement,
         is_stable: Some(is_stable),
-        sensitivity: Some(sensitivity(tier)),
         costly: COSTLY,
         curve: Some(front()),
         sealed: Some(SEALED),
-        ..Declaration::default()
+        ..Facts::default()
     }
 }
 
@@ -113,12 +120,12 @@ fn against_the_experiment(record: &Record) -> Option<String> {
 }
 
 /// The finest run in the tank, while the jet is at the far wall.
-fn picture(tier: Tier) -> Picture {
+fn picture(table: &Table) -> Picture {
     let caption = "Water of variant `modern` in the tank of Lobovsky et al. when its jet has risen at the \
                    far wall, coloured by pressure; colours end at 0 and 1 ρ g H.";
     let texts = ["dam-break-picture", "Picture of the tank", caption];
     let colours = ("p [ρ g H]", ColourMap::Sequential);
-    let picture = plan::table(tier).picture(texts, colours, [560.0, 230.0], |row| {
+    let picture = table.picture(texts, colours, [560.0, 230.0], |row| {
         let DamSettings { n, end, .. } = row.settings;
         let title = format!("time {} √(H/g), H/dx = {n}", sig(run::PICTURE * end, 3));
         let panel = row.panel(title, 1.0 / n as f64);
@@ -149,7 +156,7 @@ fn front() -> Curve {
 
 /// `modern` as a method, against volume of fluid, and its model, against both experiments. The tank has a
 /// ladder in the full tier alone.
-fn comparisons(tier: Tier) -> Vec<Comparison> {
+fn comparisons(tier: Tier, table: &Table) -> Comparisons {
     // Compared quantity, its metric, and u_D as a method.
     let column = [
         ("front at T = 2 [a]", FRONT_AWAY.at(2), 2.0 * vof("martin_moyce", "front_at_1")[1]),
@@ -159,7 +166,7 @@ fn comparisons(tier: Tier) -> Vec<Comparison> {
         ("front after its best shift, rms [a]", FRONT.rms_shifted.into(), FRONT_SPREAD),
         ("residual height after its best shift, rms [H]", HEIGHT.rms_shifted.into(), 1.0 / 18.0),
     ];
-    let mut all = compared(tier, Group::Ladder, 0.005 / 2.25, &column, &measured_column);
+    let mut all = compared(table, Group::Ladder, 0.005 / 2.25, &column, &measured_column);
     if tier == Tier::Full {
         let mut tank = vec![
             ("tank: front at t = 2 [H]", FRONT_AWAY.at(2), vof("lobovsky", "front_at_2")[1]),
@@ -183,9 +190,9 @@ fn comparisons(tier: Tier) -> Vec<Comparison> {
             tank.push((what, IMPULSE_AWAY[k].at(1), uncertainty / value));
             measured_tank.push((what, IMPULSE[k].at(1), IMPULSE_SPREAD));
         }
-        all.extend(compared(tier, Group::Tank, 0.5 / 300.0, &tank, &measured_tank));
+        all.extend(compared(table, Group::Tank, 0.5 / 300.0, &tank, &measured_tank));
     }
-    all
+    Comparisons(all)
 }
 
 /// A value of the reference by volume of fluid and its uncertainty.
@@ -196,7 +203,7 @@ fn vof(scene: &str, name: &str) -> [f64; 2] {
 /// Comparisons of the ladder of a group with volume of fluid and with an experiment, each with the compared
 /// quantity, its metric and u_D; `digit` is half of the last digit of a height over this height.
 fn compared(
-    tier: Tier,
+    table: &Table,
     group: Group,
     digit: f64,
     method: &[(&str, MetricName, f64)],
@@ -207,8 +214,8 @@ fn compared(
     let of_model = "u_input: heights wrong by half of the last digit that is stated, of a = 2.25 \
                     inches and of H = 300 mm; u_D: spread of digitised curves, of two series, of two \
                     sensors";
-    let level = |s: &DamSettings| (1.0 / s.n as f64, Resolution::default());
-    let ladder = plan::table(tier).ladder(&[group], "modern", level);
+    let spacing = Spacing::count(|s: &mut DamSettings| &mut s.n, "");
+    let ladder = table.ladder(&[group], "modern", spacing);
     let higher = Mutation { of: Constant::Height, factor: 1.0 + digit };
     let coarsest = ladder.levels.first().map(|level| level.run.spec.clone());
     let inputs = coarsest.map(|run| [run.clone(), run.mutated(higher)]);
@@ -223,11 +230,10 @@ fn compared(
     method.chain(model).collect()
 }
 
-fn accuracy(tier: Tier) -> Accuracy {
-    let table = plan::table(tier);
-    let level = |s: &DamSettings| (1.0 / s.n as f64, Resolution::new(s.n, "a/dx {}"));
+fn accuracy(tier: Tier, table: &Table) -> Accuracy {
+    let spacing = Spacing::count(|s: &mut DamSettings| &mut s.n, "a/dx {}");
     let mut ladders =
-        ["seed", "modern"].map(|variant| table.ladder(&[Group::Ladder], variant, level));
+        ["seed", "modern"].map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
     if tier == Tier::Full {
         let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
                        order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \
@@ -249,15 +255,15 @@ fn accuracy(tier: Tier) -> Accuracy {
 }
 
 /// The front of the column in the tank of Lobovsky et al.
-fn in_the_tank(tier: Tier) -> Accuracy {
-    let level = |s: &DamSettings| (1.0 / s.n as f64, Resolution::new(s.n, "H/dx {}"));
+fn in_the_tank(table: &Table) -> Accuracy {
+    let spacing = Spacing::count(|s: &mut DamSettings| &mut s.n, "H/dx {}");
     Accuracy {
         about: "Front of the column in the tank at t = 2 √(H/g), minus the front of the same model by volume \
                 of fluid, which is known to 0.028 H."
             .into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: vec![plan::table(tier).ladder(&[Group::Tank], "modern", level)],
+        ladders: vec![table.ladder(&[Group::Tank], "modern", spacing)],
         ..Accuracy::new("dam-break-tank", FRONT_AWAY.at(2), "error of the front at t = 2 [H]")
     }
 }
@@ -296,7 +302,7 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
         };
         has.map(change).collect()
     };
-    Budgets { about: accuracy.about.clone(), of: variants.iter().map(of).collect() }
+    Budgets::new(accuracy, accuracy.about.clone(), variants.iter().map(of).collect())
 }
 
 fn limits(tier: Tier) -> StepLimits {

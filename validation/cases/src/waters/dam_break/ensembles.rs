@@ -7,8 +7,7 @@ use super::*;
 const LATE: [f64; 2] = [6.0, plan::UNTIL];
 
 /// All ensembles, of `modern` and `seed` at two spacings; none in the quick tier.
-pub fn ensembles(tier: Tier) -> Option<Ensembles> {
-    let table = plan::table(tier);
+pub fn ensembles(tier: Tier, table: &Table) -> Option<Ensembles> {
     let ensemble = |(n, variant): (usize, &'static str)| {
         let rows = table.of(Group::Ensemble).filter(|row| row.variant == variant);
         let rows = rows.filter(|row| row.settings.n == n);
@@ -150,16 +149,18 @@ mod tests {
         case::{self, Case},
         context::Context,
         runs::{JudgedRun, Planned, Runs},
-        studies,
     };
 
     use super::*;
-    use crate::waters::dam_break::{DAM_BREAK, declared};
+    use crate::waters::dam_break::DAM_BREAK;
+
+    fn of_full_tier() -> Ensembles {
+        ensembles(Tier::Full, &plan::table(Tier::Full)).expect("ensembles")
+    }
 
     /// Eight members of the coarse ensemble of `modern`, changed in some way, and the gates that they fail.
     fn failed(change: impl Fn(RunSpec, u32) -> RunSpec + Sync) -> Vec<String> {
-        let mut declared = declared::declaration(Tier::Full);
-        let ensembles = declared.ensembles.as_mut().expect("ensembles");
+        let mut ensembles = of_full_tier();
         ensembles.of.truncate(1);
         ensembles.of[0].members.truncate(8);
         let members: Vec<Planned> =
@@ -175,8 +176,8 @@ mod tests {
             all.into_iter().map(|run| run.join().expect("a run")).collect()
         });
         let runs = Runs::new(made);
-        let study = studies::ensemble::study(NAME, ensembles, &runs);
-        let failed = study.judged.iter().filter(|judged| judged.judgement.verdict.is_failure());
+        let section = ensembles.evaluate(NAME, &runs).expect("a section");
+        let failed = section.judged.iter().filter(|judged| judged.judgement.verdict.is_failure());
         failed.map(|judged| judged.gate.id.clone()).collect()
     }
 
@@ -195,8 +196,8 @@ mod tests {
 
     #[test]
     fn members_are_runs_of_the_full_tier_alone_and_differ_in_their_seed() {
-        assert!(ensembles(Tier::Quick).is_none());
-        let all = declared::declaration(Tier::Full).ensembles.expect("ensembles").of;
+        assert!(ensembles(Tier::Quick, &plan::table(Tier::Quick)).is_none());
+        let all = of_full_tier().of;
         let count = |of: &Ensemble| (of.members.len(), of.histories.len(), of.numbers.len());
         assert_eq!(all.iter().map(count).collect::<Vec<_>>(), [(20, 7, 2); 4]);
         let [one, other] = [0, 19].map(|k| all[0].members[k].clone());
@@ -210,7 +211,7 @@ mod tests {
     /// levels until 5.5.
     #[test]
     fn histories_are_on_the_clock_of_the_model_and_are_judged_until_single_runs_are() {
-        let all = declared::declaration(Tier::Full).ensembles.expect("ensembles").of;
+        let all = of_full_tier().of;
         let of = &all[0];
         assert_eq!(of.variant, "modern");
         for (k, name) in ["P1", "P2", "P3"].into_iter().enumerate() {

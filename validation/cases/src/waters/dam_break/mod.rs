@@ -20,11 +20,10 @@ use touchstone_base::{gate::*, mutation::*, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
-    declare::*,
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
-    studies::causes::*,
+    studies::{causes::*, *},
     table,
 };
 use touchstone_schemes::water::WaterMethod;
@@ -161,6 +160,6 @@ pub static DAM_BREAK: Composed<DamSettings> = Composed {
             residual height, levels, pressures and impulses are compared with the experiments and with the \
             same model by volume of fluid; energy and momentum are accounted for term by term.",
     variants,
-    declaration: declared::declaration,
-    plan: |tier| plan::table(tier).plan(),
+    facts: declared::facts,
+    studies: declared::studies,
 };

@@ -18,6 +18,8 @@ pub enum Group {
     Ensemble,
 }
 
+/// The runs of this case in a tier.
+pub type Table = table::Table<DamSettings, Group>;
 /// A run of this case.
 pub type Row = table::Row<DamSettings, Group>;
 

@@ -1,0 +1,100 @@
+//! Facts of a case that depend on neither the tier nor a run: which metrics need what, what another code must
+//! know, and when a run counts as stable.
+
+use nalgebra::Vector2;
+use serde_json::Value;
+use touchstone_base::{
+    gate::Gate,
+    record::{MetricKey, MetricName, Record},
+    spec::Measure,
+};
+
+use crate::sealed::Draws;
+
+/// Facts of a case.
+#[derive(Default)]
+pub struct Facts {
+    /// The criterion of bisections: was this run stable? Without one a run is stable if it reaches its end.
+    pub is_stable: Option<fn(&Record) -> bool>,
+    /// The metrics with pair sweeps of their own, which a run measures only if a gate reads one of them or
+    /// all metrics are requested.
+    pub costly: &'static [MetricKey],
+    /// The metrics that need the state after every step, which results of other codes do not have.
+    pub stepwise: &'static [MetricKey],
+    /// The metrics that compare with the theory of our own methods, which does not apply to other codes.
+    pub of_methods: &'static [MetricKey],
+    /// The metrics that are rates over a very short time, which results with few digits do not determine.
+    pub of_all_digits: &'static [MetricKey],
+    /// Facts for another code in addition to the scene.
+    pub statement: Statement,
+    /// Metrics of a profile or a series from another code without particles.
+    pub curve: Option<Curve>,
+    /// Drawn settings of sealed problems, and their judgement; `None` if no reference holds at drawn
+    /// settings.
+    pub sealed: Option<Draws>,
+}
+
+impl Facts {
+    /// How much must be measured of a run with these gates.
+    pub fn measure_for(&self, gates: &[Gate]) -> Measure {
+        let mut costly = self.costly.iter().map(|metric| String::from(*metric));
+        let is_read = costly.any(|metric| gates.iter().any(|gate| gate.metric == metric));
+        if is_read { Measure::All } else { Measure::Headline }
+    }
+}
+
+/// Facts of a problem for another code in addition to its scene.
+#[derive(Clone, Default)]
+pub struct Statement {
+    /// The conditions at walls, clamps and surfaces in words.
+    pub boundary: &'static str,
+    /// Drives or motions of a run with these settings, in addition to its acceleration.
+    pub further: Option<fn(&Value) -> Vec<Parameter>>,
+    /// Every metric of the case.
+    pub metrics: Vec<MetricName>,
+}
+
+impl Statement {
+    /// With these lists of metrics.
+    pub fn new(boundary: &'static str, metrics: &[&[MetricKey]]) -> Self {
+        let metrics = metrics.concat().into_iter().map(MetricName::from).collect();
+        Self { boundary, further: None, metrics }
+    }
+}
+
+/// A number of a problem that follows from its settings.
+pub struct Parameter {
+    /// Name.
+    pub name: &'static str,
+    /// Value.
+    pub value: f64,
+    /// SI unit.
+    pub unit: &'static str,
+    /// Description with the equation.
+    pub about: &'static str,
+}
+
+/// Settings, the rows at a time, and the positions at the start of the particles that move in their order, to
+/// their positions and velocities.
+type Place = fn(&Value, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
+
+/// A profile or a series from which some of the metrics follow.
+pub struct Curve {
+    /// Names and units of its columns after the time.
+    pub columns: &'static [(&'static str, &'static str)],
+    /// The columns in words.
+    pub about: &'static str,
+    /// Least number of equidistant times; 0 if the times of the problem suffice.
+    pub least: usize,
+    /// Rows at each time, for a run with these settings; the first column is ascending.
+    pub rows: fn(&Value) -> usize,
+    /// Positions and velocities of particles that represent the rows at a time.
+    pub place: Place,
+    /// The metrics that follow from the curve, at any time; no other metric is measured.
+    pub metrics: Vec<MetricKey>,
+    /// Makes the scene coarse in which it is measured, if neither its rows nor its times depend on the
+    /// resolution. Then `export --solve` writes it in place of particles.
+    pub coarsen: Option<fn(&mut Value)>,
+    /// How the names of the profiles of a record begin that show it, and their columns.
+    pub shown: (&'static str, &'static [&'static str]),
+}
