@@ -62,7 +62,7 @@ pub use particle_data::{
 pub use particles::{Particle, Rate, Role, State};
 pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
-pub use simulation::{Divergence, Flow, Observer, Outcome, Potential, Simulation, Stepper};
+pub use simulation::{Divergence, Observer, Outcome, Potential, Simulation, Stepper};
 pub use terms::*;
 pub use touchstone_lanes as lane;
 pub use walls::*;

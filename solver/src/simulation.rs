@@ -1,6 +1,7 @@
 //! A running simulation: stepping to a given time, observers, and the possible outcomes of a run.
 
 use std::mem::take;
+use std::ops::ControlFlow;
 
 use crate::{
     engine::Engine,
@@ -37,19 +38,10 @@ pub struct Divergence {
     pub fault: InvalidState,
 }
 
-/// Whether the run continues.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flow {
-    /// Make the next step.
-    Continue,
-    /// Stop after this step.
-    Stop,
-}
-
 /// Observes a run. `()` is an observer that does nothing.
 pub trait Observer<X: Numbers> {
     /// Called after every step.
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow;
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> ControlFlow<()>;
 
     /// Whether [`Stepper::advance`] brings every quantity to its final time, for which a leapfrog sums the
     /// forces once more. Without, the velocities of a leapfrog lag by half a step, and pair sweeps read the
@@ -60,8 +52,8 @@ pub trait Observer<X: Numbers> {
 }
 
 impl<X: Numbers> Observer<X> for () {
-    fn after_step(&mut self, _: &dyn Stepper<X>) -> Flow {
-        Flow::Continue
+    fn after_step(&mut self, _: &dyn Stepper<X>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
     }
 }
 
@@ -173,7 +165,7 @@ fn advance<X: Numbers>(
         let now = &mut simulation.data_mut().progress;
         now.time = if k == steps { until } else { start + span * (k as f64 / steps as f64) };
         (now.made, now.work.steps) = (k, now.work.steps + 1);
-        if observer.after_step(simulation) == Flow::Stop {
+        if observer.after_step(simulation) == ControlFlow::Break(()) {
             return Outcome::Stopped;
         }
     }

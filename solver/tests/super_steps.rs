@@ -1,8 +1,9 @@
 //! Super-time-stepping of viscosity against its exact properties.
 
 use nalgebra::Vector2;
+use std::ops::ControlFlow;
 use touchstone_solver::{
-    BodyForce, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Ghosts, Leapfrog,
+    BodyForce, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Ghosts, Leapfrog,
     NoSlip, Observer, Open, Outcome, Particle, PlaneWall, Pressure, Role, Scene, Simulation, Split,
     Stepper, SuperSteps, Tait, Viscosity, integrator::stages, lattice, walls::Walls,
 };
@@ -268,8 +269,12 @@ fn any_number_of_threads_gives_the_same_bits() {
 struct After(u64);
 
 impl Observer<()> for After {
-    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
-        if simulation.work().steps == self.0 { Flow::Stop } else { Flow::Continue }
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
+        if simulation.work().steps == self.0 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 //! without.
 #![allow(unsafe_code)]
 
+use std::ops::ControlFlow;
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,
@@ -11,7 +12,7 @@ use std::{
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, ExtrapolatingWall, Flow, Ghosts,
+    Compose, Continuity, CubicSpline, DensityDiffusion, Domain, ExtrapolatingWall, Ghosts,
     Integrator, InterfaceWall, Leapfrog, Numbers, Observer, Open, Outcome, PlaneWall,
     PredictorCorrector, Pressure, Role, Scene, Scheme, Shifting, Smoothing, Split, Stepper,
     SuperSteps, Tait, Viscosity, Walls,
@@ -49,8 +50,12 @@ type Channel = Compose<CubicSpline, Sums, Stabilised, Ghosts, Leapfrog>;
 struct Builds(u64);
 
 impl<X: Numbers> Observer<X> for Builds {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        if simulation.work().list_builds < self.0 { Flow::Continue } else { Flow::Stop }
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
+        if simulation.work().list_builds < self.0 {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
     }
 }
 

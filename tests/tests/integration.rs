@@ -1,11 +1,12 @@
 //! Time: order of the integrators, reversibility, and the book-keeping of steps.
 
 use nalgebra::Vector2;
+use std::ops::ControlFlow;
 use touchstone_base::functions::log2;
 use touchstone_solver::{
-    Compose, Continuity, CubicSpline, Domain, Euler, Flow, Integrator, Kernel, Leapfrog, Observer,
-    Open, Outcome, Particle, PredictorCorrector, Pressure, Rate, Scene, Simulation, SingleSweep,
-    Stepper, Tait, Term, Viscosity, lane::Lane, particles::Common, terms::Pair,
+    Compose, Continuity, CubicSpline, Domain, Euler, Integrator, Kernel, Leapfrog, Observer, Open,
+    Outcome, Particle, PredictorCorrector, Pressure, Rate, Scene, Simulation, SingleSweep, Stepper,
+    Tait, Term, Viscosity, lane::Lane, particles::Common, terms::Pair,
 };
 use touchstone_tests::{bits, difference, patch};
 
@@ -197,10 +198,10 @@ struct Clock {
 }
 
 impl Observer<()> for Clock {
-    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> Flow {
+    fn after_step(&mut self, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
         self.times.push(simulation.time());
         self.dts.push(simulation.dt());
-        Flow::Continue
+        ControlFlow::Continue(())
     }
 }
 

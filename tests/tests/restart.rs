@@ -1,6 +1,7 @@
 //! A run that goes on from a checkpoint has the bits of one that was never interrupted.
 
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 use std::sync::{
     Mutex,
     atomic::{AtomicBool, AtomicU64, Ordering},
@@ -21,10 +22,10 @@ use touchstone_harness::{
     plan,
 };
 use touchstone_solver::{
-    Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Flow, Integrator,
-    Leapfrog, NoSlip, Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure,
-    Role, Scene, Scheme, Shifting, Simulation, SingleSweep, Smoothing, Stepper, Tait, Viscosity,
-    lattice, walls::Walls,
+    Checkpoint, Compose, Continuity, CubicSpline, Domain, ExtrapolatingWall, Integrator, Leapfrog,
+    NoSlip, Numbers, Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, Role, Scene,
+    Scheme, Shifting, Simulation, SingleSweep, Smoothing, Stepper, Tait, Viscosity, lattice,
+    walls::Walls,
 };
 use touchstone_tests::{bits, patch};
 
@@ -75,8 +76,12 @@ fn scene_of<I: Integrator<Method<(), W>>, W: Walls<()>>(
 struct After(u64);
 
 impl<X: Numbers> Observer<X> for After {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
-        if simulation.work().steps == self.0 { Flow::Stop } else { Flow::Continue }
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
+        if simulation.work().steps == self.0 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
     }
 }
 
@@ -133,8 +138,8 @@ fn the_predictor_corrector_goes_on_with_the_same_bits() {
 struct PositionsOnly;
 
 impl<X: Numbers> Observer<X> for PositionsOnly {
-    fn after_step(&mut self, _: &dyn Stepper<X>) -> Flow {
-        Flow::Continue
+    fn after_step(&mut self, _: &dyn Stepper<X>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
     }
     fn synchronises(&self) -> bool {
         false

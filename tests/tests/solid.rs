@@ -3,6 +3,7 @@
 //! lattice.
 
 use std::f64::consts::PI;
+use std::ops::ControlFlow;
 use touchstone_base::functions::{cos, ln, log2, modulus, powf, rotation, sin, sinh};
 use touchstone_base::reference::Reference;
 
@@ -15,10 +16,10 @@ use touchstone_harness::{
 use touchstone_maths::theory::lattice::SquareLattice;
 use touchstone_solver::{
     ArtificialViscosity, CauchyStress, ComponentStress, Compose, Continuity, CubicSpline, Domain,
-    EquationOfState, Euler, Flow, Integrator, JaumannRate, Kernel, Leapfrog, Linear, Numbers,
-    Observer, Open, Outcome, Particle, PredictorCorrector, Pressure, PrincipalStress,
-    QuinticSpline, Rate, Scene, Simulation, Smoothing, State, Stepper, Symmetric, Tait, Term,
-    Viscosity, WendlandC2, Xsph,
+    EquationOfState, Euler, Integrator, JaumannRate, Kernel, Leapfrog, Linear, Numbers, Observer,
+    Open, Outcome, Particle, PredictorCorrector, Pressure, PrincipalStress, QuinticSpline, Rate,
+    Scene, Simulation, Smoothing, State, Stepper, Symmetric, Tait, Term, Viscosity, WendlandC2,
+    Xsph,
     lane::Lane,
     lattice,
     particles::{Column, Common},
@@ -647,11 +648,11 @@ struct Mode {
 }
 
 impl<X: Numbers> Observer<X> for Mode {
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
         let particles = simulation.particles();
         let products = particles.iter().zip(&self.weights).map(|(p, w)| p.velocity.dot(w));
         self.amplitudes.push(products.fold(0.0, |sum, x| sum + x));
-        Flow::Continue
+        ControlFlow::Continue(())
     }
 }
 

@@ -4,12 +4,13 @@
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
+use std::ops::ControlFlow;
 use touchstone_base::{
     number,
     record::{Profile, Record, Status},
     spec::{Keep, Measure, RunSpec},
 };
-use touchstone_solver::{Flow, Numbers, Outcome, Particle, Role, Stepper};
+use touchstone_solver::{Numbers, Outcome, Particle, Role, Stepper};
 
 use crate::{
     checkpoint::as_json,
@@ -160,7 +161,8 @@ struct Watched<W> {
 }
 
 /// Called after every step.
-type AfterStep<P> = fn(&P, &mut <P as Problem>::Watch, &dyn Stepper<<P as Problem>::Extra>) -> Flow;
+type AfterStep<P> =
+    fn(&P, &mut <P as Problem>::Watch, &dyn Stepper<<P as Problem>::Extra>) -> ControlFlow<()>;
 /// Called at the k-th of the times of interest.
 type At<P> =
     fn(&P, &mut <P as Problem>::Watch, &mut <P as Problem>::Simulation, usize, &mut Record);

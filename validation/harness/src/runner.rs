@@ -3,11 +3,12 @@
 //! loop accesses a run of a case only through `Observed`, so it is compiled once for all cases of fluids, and
 //! once for solids.
 
+use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use serde::{Serialize, de::DeserializeOwned};
 use touchstone_base::{lock, mutation::Constant, record::*};
-use touchstone_solver::{EquationOfState, Flow, Numbers, Observer, Outcome, Stepper, Symmetric};
+use touchstone_solver::{EquationOfState, Numbers, Observer, Outcome, Stepper, Symmetric};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -63,7 +64,7 @@ trait Observed<X: Numbers> {
 /// The observations of a run.
 trait Seen<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
-    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow;
+    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> ControlFlow<()>;
     /// Everything that changes of it, as bytes.
     fn save(&self) -> Result<Vec<u8>, RunError>;
     /// Takes it over from bytes.
@@ -225,22 +226,26 @@ impl Watch<'_> {
     }
 
     /// The observations of the case, and their files.
-    fn observe<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, seen: &mut dyn Seen<X>) -> Flow {
+    fn observe<X: Numbers>(
+        &mut self,
+        simulation: &dyn Stepper<X>,
+        seen: &mut dyn Seen<X>,
+    ) -> ControlFlow<()> {
         let is_seen = !self.course.after_step.is_empty() || self.frames.is_some();
         if !is_seen && self.context.checkpoints.is_none() {
-            return Flow::Continue;
+            return ControlFlow::Continue(());
         }
         let now = self.context.now();
-        let mut flow = Flow::Continue;
+        let mut flow = ControlFlow::Continue(());
         for (k, name) in self.course.after_step.iter().enumerate() {
             self.profiler.iter().for_each(|profiler| profiler.observe(name));
-            if seen.after_step(k, simulation) == Flow::Stop {
-                flow = Flow::Stop;
+            if seen.after_step(k, simulation) == ControlFlow::Break(()) {
+                flow = ControlFlow::Break(());
             }
         }
         self.write_frames(simulation);
         // A run that ends here by itself has nothing to go on with.
-        if let (Some(checkpoints), Flow::Continue) = (self.context.checkpoints, flow)
+        if let (Some(checkpoints), ControlFlow::Continue(())) = (self.context.checkpoints, flow)
             && (now.wall - self.saved >= checkpoints.every.as_secs_f64()
                 || self.context.is_interrupted())
         {
@@ -330,7 +335,7 @@ impl Watch<'_> {
             if let Some(ended) = playback::put(playback, frame, time, simulation)? {
                 return Ok(self.ended(simulation, ended));
             }
-            Watching { watch: self, seen }.after_step(simulation);
+            let _plays_every_frame = Watching { watch: self, seen }.after_step(simulation);
             // A time may be stated twice, for example for a sample and a picture.
             while next(self.reached).is_some() {
                 (0..self.course.at.len()).for_each(|k| run.at(k, self.reached));
@@ -378,13 +383,13 @@ struct Watching<'w, 'a, X: Numbers> {
 
 impl<X: Numbers> Observer<X> for Watching<'_, '_, X> {
     #[inline]
-    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> Flow {
+    fn after_step(&mut self, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
         let Self { watch, seen } = self;
         if watch.context.progress.is_some() && watch.shown.elapsed() >= SHOW_EVERY {
             watch.show(simulation, simulation.dt());
         }
         let flow = watch.observe(simulation, *seen);
-        if watch.context.is_interrupted() { Flow::Stop } else { flow }
+        if watch.context.is_interrupted() { ControlFlow::Break(()) } else { flow }
     }
 
     fn synchronises(&self) -> bool {
@@ -419,7 +424,7 @@ pub fn check_size(
 }
 
 /// A function that is called after every step with the observations of the run.
-type AfterStep<'a, X, S> = Box<dyn Fn(&mut S, &dyn Stepper<X>) -> Flow + 'a>;
+type AfterStep<'a, X, S> = Box<dyn Fn(&mut S, &dyn Stepper<X>) -> ControlFlow<()> + 'a>;
 /// A function that is called at the k-th of the times of interest.
 type At<'a, D, S> = Box<dyn Fn(&mut S, &mut D, usize) + 'a>;
 /// A function that is called when a run goes on from a checkpoint.
@@ -432,7 +437,7 @@ struct Seeing<'a, X: Numbers, S> {
 }
 
 impl<X: Numbers, S: Serialize + DeserializeOwned> Seen<X> for Seeing<'_, X, S> {
-    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> Flow {
+    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
         self.after_step[k](self.seen, simulation)
     }
     fn save(&self) -> Result<Vec<u8>, RunError> {
@@ -510,7 +515,7 @@ where
     pub fn after_step(
         mut self,
         name: &'static str,
-        call: impl Fn(&mut S, &dyn Stepper<X>) -> Flow + 'a,
+        call: impl Fn(&mut S, &dyn Stepper<X>) -> ControlFlow<()> + 'a,
     ) -> Self {
         self.run.seeing.after_step.push(Box::new(call));
         self.course.after_step.push(name);
@@ -602,12 +607,12 @@ mod tests {
     }
 
     impl<F: Fn()> Slow<F> {
-        fn after_step(&self, simulation: &dyn Stepper<()>) -> Flow {
+        fn after_step(&self, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
             std::thread::sleep(self.each);
             if simulation.work().steps == self.at.0 {
                 (self.at.1)();
             }
-            Flow::Continue
+            ControlFlow::Continue(())
         }
     }
 
@@ -689,7 +694,7 @@ mod tests {
         let [wall, cpu] = observer.unwrap_or_default();
         let observe = |_: &mut (), _: &dyn Stepper<()>| {
             clock.pass(wall, cpu);
-            Flow::Continue
+            ControlFlow::Continue(())
         };
         let mut nothing = ();
         let mut drive = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut nothing);
@@ -746,7 +751,7 @@ mod tests {
         };
         let stop = |_: &mut (), simulation: &dyn Stepper<()>| {
             flag.store(Some(simulation.work().steps) == stop_at, Ordering::Relaxed);
-            Flow::Continue
+            ControlFlow::Continue(())
         };
         let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("stop", stop)
@@ -855,7 +860,7 @@ mod tests {
                 let after = |_: &mut (), simulation: &dyn Stepper<()>| {
                     let is_last = end == ends[2] && simulation.work().steps == 15;
                     flag.store(stop && is_last, Ordering::Relaxed);
-                    Flow::Continue
+                    ControlFlow::Continue(())
                 };
                 let Ended { cost, .. } =
                     Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
@@ -880,7 +885,7 @@ mod tests {
         let context = Context { frames, interrupt: Some(&flag), ..Context::default() };
         let stop = |_: &mut (), _: &dyn Stepper<()>| {
             flag.store(true, Ordering::Relaxed);
-            Flow::Continue
+            ControlFlow::Continue(())
         };
         let Ended { status, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("stop", stop)
@@ -897,7 +902,7 @@ mod tests {
         let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
         let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
             .after_step("slow", |_, simulation| slow.after_step(simulation))
-            .after_step("quick", |_, _| Flow::Continue)
+            .after_step("quick", |_, _| ControlFlow::Continue(()))
             .at("pause", |_, _, _| std::thread::sleep(Duration::from_millis(20)))
             .run(&Context { profile, ..Context::default() })
             .unwrap();

@@ -9,6 +9,7 @@
 //! limits are up to 1.6 % shorter, measured and in theory, and take twice as long to find.
 
 use nalgebra::Vector2;
+use std::ops::ControlFlow;
 use touchstone_base::{gate::*, random::Random, record::*, spec::Bisect};
 use touchstone_harness::{
     bisect::Growth,
@@ -22,7 +23,7 @@ use touchstone_harness::{
     table::{Row, Table},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
-use touchstone_solver::{Flow, Limits, Particle, Stepper, Tait};
+use touchstone_solver::{Limits, Particle, Stepper, Tait};
 
 use crate::lattice::torus;
 
@@ -189,8 +190,8 @@ fn energy(simulation: &dyn Stepper<()>) -> f64 {
 }
 
 /// Watches the energy, and ends the run if it grew beyond doubt.
-fn watch(growth: &mut Growth, simulation: &dyn Stepper<()>) -> Flow {
-    if growth.see(energy(simulation)) { Flow::Stop } else { Flow::Continue }
+fn watch(growth: &mut Growth, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
+    if growth.see(energy(simulation)) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 impl Problem for Resting {

@@ -7,6 +7,7 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::ops::ControlFlow;
 use touchstone_base::{functions::*, gate::*, record::*};
 use touchstone_harness::{
     case::*,
@@ -187,12 +188,12 @@ impl Watch {
         acos(0.5 * forward / square)
     }
 
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> Flow {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> ControlFlow<()> {
         let particles = simulation.particles();
         let part =
             |(k, p): (usize, &Particle<Symmetric>)| p.velocity.dot(&self.direction) * cos(phase(k));
         self.amplitudes.push(particles.iter().enumerate().map(part).sum());
-        Flow::Continue
+        ControlFlow::Continue(())
     }
 }
 

@@ -1,12 +1,14 @@
 //! One run of a channel flow: measurements and their times.
 
+use std::ops::ControlFlow;
+
 use touchstone_base::record::{Record, Status};
 use touchstone_harness::{
     case::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
 };
-use touchstone_solver::{Flow as Going, Particle, Role, Stepper};
+use touchstone_solver::{Particle, Role, Stepper};
 
 use super::measure::{self, MODE};
 use super::{Setup, setup::DECISIVE};
@@ -57,7 +59,7 @@ impl Problem for Setup {
             .when(self.settings.watch_mode, |calls| {
                 calls.after_step("pressure mode", |setup, mode, simulation| {
                     mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
-                    Going::Continue
+                    ControlFlow::Continue(())
                 })
             })
             .at("profiles and errors", |setup, _, simulation, k, record| {

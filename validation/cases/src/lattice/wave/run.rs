@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::iter::once;
+use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 use touchstone_base::{
@@ -16,7 +17,7 @@ use touchstone_harness::{
 };
 use touchstone_maths::metrics::norms::largest;
 use touchstone_maths::theory::time_step::{self, Mode, modes};
-use touchstone_solver::{EquationOfState, Flow, Particle, Stepper, Tait};
+use touchstone_solver::{EquationOfState, Particle, Stepper, Tait};
 
 use super::{
     fit::{self, DampedMode},
@@ -160,7 +161,7 @@ impl Projection {
         Self { basis, series: Vec::new(), momentum: None }
     }
 
-    fn after_step(&mut self, wave: &Wave, simulation: &dyn Stepper<()>) -> Flow {
+    fn after_step(&mut self, wave: &Wave, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
         let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = wave;
         let across = wave.across();
         let mut sums = [0.0; 3];
@@ -173,7 +174,7 @@ impl Projection {
         let momentum =
             touchstone_maths::metrics::momentum::momentum(&simulation.particles()).into();
         self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
-        Flow::Continue
+        ControlFlow::Continue(())
     }
 }
 
@@ -314,7 +315,7 @@ mod tests {
         let momentum: Vector2<f64> = parts.particles.iter().map(|p| p.velocity * p.mass).sum();
         let simulation = (method.build)(parts).expect("a scene");
         let mut projection = Projection::new(&wave);
-        projection.after_step(&wave, &*simulation);
+        let _goes_on = projection.after_step(&wave, &*simulation);
         let [p, along, across] = projection.series[0];
         assert_relative_eq!(p, 0.003, max_relative = 1e-9);
         assert_relative_eq!(along, 0.02, max_relative = 1e-9);

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector2;
 use serde::{Serialize, de::DeserializeOwned};
-use touchstone_solver::{Domain, Flow, Particle, Role, Stepper, Symmetric};
+use std::ops::ControlFlow;
+use touchstone_solver::{Domain, Particle, Role, Stepper, Symmetric};
 
 use super::lagrangian::{self, LAGRANGIAN, TOTAL};
 use super::{Energy, Material, clamp, limits};
@@ -256,7 +257,7 @@ impl<B: Body> Problem for Solid<B> {
         calls
             .after_step("measurements", |_, watch, simulation| {
                 watch.after_step(simulation);
-                Flow::Continue
+                ControlFlow::Continue(())
             })
             .when(asked.particles, |calls| {
                 calls.at_positions("particles", |_, watch, simulation, stop, record| {

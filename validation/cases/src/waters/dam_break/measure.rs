@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
+use std::ops::ControlFlow;
 
 use super::*;
 
@@ -243,12 +244,12 @@ impl Gauge {
     }
 
     /// Reads the sensors after a step.
-    pub fn after_step(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) -> Flow {
+    pub fn after_step(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
         if !self.sensors.is_empty() {
             let p = self.read(dam, simulation);
             self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
         }
-        Flow::Continue
+        ControlFlow::Continue(())
     }
 
     /// Pressures over time, means over blocks of [`BLOCK`], in the units of the column.
