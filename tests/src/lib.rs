@@ -6,21 +6,63 @@ pub mod new_term;
 pub mod new_wall;
 pub mod row_matrix;
 
-use std::{fs, path::Path};
+use std::{collections::BTreeMap, fs, path::Path};
 
 use nalgebra::Vector2;
-use serde_json::Value;
 use touchstone_base::functions::{cos, sin};
 use touchstone_solver::{
     Compose, Domain, Engine, Integrator, Kernel, Open, Outcome, Particle, Physics, Rate, Scene,
     Stepper, Term, integrator::Stepped, lattice, numbers::Numbers, physics::Particles,
 };
 
-/// The JSON of a committed snapshot, `case.variant`; `None` if there is none.
-pub fn snapshot(name: &str) -> Option<Value> {
+/// The text of a committed snapshot; `None` if there is none.
+pub fn snapshot(name: &str) -> Option<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/snapshots");
     let text = fs::read_to_string(folder.join(format!("{name}.snap"))).ok()?;
-    serde_json::from_str(text.split_once("\n---\n")?.1).ok()
+    Some(text.split_once("\n---\n")?.1.to_string())
+}
+
+/// The numbers of a snapshot by their names, for each variant and run.
+pub type Kept = BTreeMap<(String, String), BTreeMap<String, f64>>;
+
+/// The tables of a snapshot, one a variant, with the variant in the first cell. Lines without cells are none.
+fn tables(name: &str) -> impl Iterator<Item = (String, Vec<Vec<String>>)> {
+    let text = snapshot(name).unwrap_or_default();
+    let parts: Vec<String> = text.split("\n\n").map(String::from).collect();
+    parts.into_iter().filter_map(|part| {
+        let rows = part.lines().filter(|line| line.contains('|'));
+        let rows: Vec<Vec<String>> =
+            rows.map(|row| row.split('|').map(|cell| cell.trim().to_string()).collect()).collect();
+        Some((rows.first()?[0].clone(), rows))
+    })
+}
+
+/// The metrics that the snapshot of a case holds: rows are metrics, columns runs.
+pub fn kept_numbers(case: &str) -> Kept {
+    let mut kept = Kept::new();
+    for (variant, rows) in tables(case) {
+        for row in &rows[1..] {
+            let metric = row[0].split(' ').next().unwrap_or_default();
+            for (run, cell) in rows[0].iter().zip(row).skip(1) {
+                let numbers = kept.entry((variant.clone(), run.clone())).or_default();
+                numbers.extend(cell.parse().ok().map(|value| (metric.to_string(), value)));
+            }
+        }
+    }
+    kept
+}
+
+/// The work that the snapshot of a case holds: rows are runs, columns kinds of work.
+pub fn kept_work(case: &str) -> Kept {
+    let mut kept = Kept::new();
+    for (variant, rows) in tables(&format!("work.{case}")) {
+        for row in &rows[1..] {
+            let numbers = kept.entry((variant.clone(), row[0].clone())).or_default();
+            let of_row = rows[0].iter().zip(row).skip(1);
+            numbers.extend(of_row.filter_map(|(of, cell)| Some((of.clone(), cell.parse().ok()?))));
+        }
+    }
+    kept
 }
 
 /// Fails unless a magnitude is at most `most`; the message names it. NaN fails.

@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use serde_json::Value;
 use touchstone_base::gate::{Bound, Gate};
 use touchstone_harness::{
     case::{Case, Tier},
@@ -13,7 +12,7 @@ use touchstone_harness::{
     plan,
     studies::validation::numerical,
 };
-use touchstone_tests::snapshot;
+use touchstone_tests::{Kept, kept_numbers, kept_work};
 
 use crate::tidy::{assert_none, root};
 
@@ -194,20 +193,20 @@ fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
         return Some(ladder_says(kind, ladder).unwrap_or_default());
     }
     let [name, run, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
-    // Metrics are in the snapshot of the variant, steps and pair interactions in that of its work.
-    let [results, work] = [name.to_string(), format!("work.{name}")].map(|name| snapshot(&name));
-    let [results, work] = [results.unwrap_or_default(), work.unwrap_or_default()];
-    let value = [&results[run]["metrics"][metric], &work[run][metric]];
-    Some(value.into_iter().filter_map(Value::as_f64).collect())
+    // Metrics are in the snapshot of the case, steps and pair interactions in that of its work.
+    let (case, variant) = name.split_once('.')?;
+    let of = |kept: Kept| kept.get(&(variant.into(), run.into()))?.get(metric).copied();
+    Some([kept_numbers(case), kept_work(case)].into_iter().filter_map(of).collect())
 }
 
 /// The result of the ladder in a comment: U_num, the order with the ends of its interval, or the limit.
 fn ladder_says(kind: &str, comment: &str) -> Option<Vec<f64>> {
     let [name, runs, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
-    let snapshot = snapshot(name)?;
+    let (case, variant) = name.split_once('.')?;
+    let kept = kept_numbers(case);
     let level = |run: &str| {
         let resolution: f64 = run.split(['=', ' ']).nth(1)?.parse().ok()?;
-        let value = snapshot[run]["metrics"][metric].as_f64()?;
+        let value = *kept.get(&(variant.into(), run.into()))?.get(metric)?;
         Some(Level { spacing: 1.0 / resolution, value })
     };
     let levels: Vec<Level> = runs.split(", ").map(level).collect::<Option<_>>()?;

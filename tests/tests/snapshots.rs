@@ -1,10 +1,12 @@
 //! The metrics of the quick tier as snapshots, which fail on a change, and bounds on acceptable snapshots:
 //! accepting a snapshot cannot hide an error.
 //!
-//! Each case and variant has two snapshots. `case.variant` holds the metrics, compared to a relative 1e-6
-//! with a floor for metrics that are round-off. `work.case.variant` holds steps, pair interactions and
-//! right-hand sides, compared exactly. A change of work without a change of metrics changes the second alone,
-//! and is not accepted together with a change of results. No snapshot holds seconds.
+//! Each case has two snapshots, tables whose cells are separated by `|`. `case` holds the metrics of each
+//! variant, a row a metric and a column a run, which are compared to 1e-6 of themselves and a floor for those
+//! that are round-off; and the names of numerics and profiles. `work.case` holds steps, pair interactions
+//! and right-hand sides, which are compared exactly. A change that costs work and moves no metric changes
+//! the second alone, and is not accepted together with a change of results. No snapshot holds seconds.
+//! `settings.case` holds settings and variants.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -13,18 +15,20 @@ use std::{
 
 use insta::{Comparator, Settings, Snapshot};
 use rayon::prelude::*;
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 use touchstone_base::{
     gate::{Bound, Evidence, Gate},
-    record::{Record, Status},
+    record::{Column, Profile, Record, Status},
+    settings::Field,
     spec::{RunSpec, Task},
 };
 use touchstone_cases::fluids::channel::{Flow, ladder};
 use touchstone_harness::{
-    case::{self, Case, Tier},
+    case::{self, Case, Tier, Variant},
     plan,
     runner::Context,
 };
+use touchstone_tests::{kept_numbers, kept_work};
 
 /// Metrics may differ by this much of themselves.
 const RELATIVE: f64 = 1e-6;
@@ -35,39 +39,38 @@ const WAVE_FLOOR: f64 = 1e-8;
 
 const MOMENTUM: &str = "forces of pairs are equal and opposite";
 
-/// JSON with numbers that may differ a little; whole numbers, texts and names may not.
+/// Tables whose numbers may differ a little; whole numbers, texts and names may not.
 #[derive(Clone)]
 struct Close;
 
 impl Close {
-    fn are(key: &str, a: &Value, b: &Value) -> bool {
-        match (a, b) {
-            (Value::Object(a), Value::Object(b)) => {
-                a.len() == b.len()
-                    && a.iter().all(|(k, v)| b.get(k).is_some_and(|other| Close::are(k, v, other)))
-            }
-            (Value::Array(a), Value::Array(b)) => {
-                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Close::are(key, a, b))
-            }
-            (Value::Number(x), Value::Number(y)) if x.is_f64() && y.is_f64() => {
-                let [x, y] = [x, y].map(|n| n.as_f64().unwrap_or(f64::NAN));
-                let floor = if key.ends_with("_error") { WAVE_FLOOR } else { FLOOR };
-                (x - y).abs() <= RELATIVE * x.abs().max(y.abs()) + floor
-            }
-            _ => a == b,
-        }
+    fn are(a: &str, b: &str) -> bool {
+        let rows = |text: &'_ str| -> Vec<Vec<String>> {
+            text.lines()
+                .map(|line| line.split('|').map(|of| of.trim().to_string()).collect())
+                .collect()
+        };
+        let (a, b) = (rows(a), rows(b));
+        let are_close = |(a, b): (&Vec<String>, &Vec<String>)| {
+            let key = a[0].split(' ').next().unwrap_or_default();
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Self::cells(key, a, b))
+        };
+        a.len() == b.len() && a.iter().zip(&b).all(are_close)
+    }
+
+    fn cells(key: &str, a: &str, b: &str) -> bool {
+        // A whole number is a count.
+        let number = |text: &str| text.parse::<f64>().ok().filter(|_| text.contains(['.', 'e']));
+        let Some((x, y)) = number(a).zip(number(b)) else { return a == b };
+        let floor = if key.ends_with("_error") { WAVE_FLOOR } else { FLOOR };
+        (x - y).abs() <= RELATIVE * x.abs().max(y.abs()) + floor
     }
 }
 
 impl Comparator for Close {
     fn matches(&self, reference: &Snapshot, test: &Snapshot) -> bool {
-        let json = |snapshot: &Snapshot| -> Option<Value> {
-            serde_json::from_str(&snapshot.as_text()?.to_string()).ok()
-        };
-        match (json(reference), json(test)) {
-            (Some(a), Some(b)) => Close::are("", &a, &b),
-            _ => false,
-        }
+        let text = |snapshot: &Snapshot| Some(snapshot.as_text()?.to_string());
+        text(reference).zip(text(test)).is_some_and(|(a, b)| Close::are(&a, &b))
     }
 
     fn dyn_clone(&self) -> Box<dyn Comparator> {
@@ -76,12 +79,14 @@ impl Comparator for Close {
 }
 
 /// Compares with the stored snapshot of this name.
-fn assert_close(name: &str, value: &Value) {
+fn assert_kept(name: &str, text: &str, is_close: bool) {
     let mut settings = Settings::clone_current();
-    settings.set_comparator(Box::new(Close));
+    if is_close {
+        settings.set_comparator(Box::new(Close));
+    }
     settings.set_omit_expression(true);
     settings.set_prepend_module_to_snapshot(false);
-    settings.bind(|| insta::assert_snapshot!(name, format!("{value:#}")));
+    settings.bind(|| insta::assert_snapshot!(name, text));
 }
 
 /// Variants, and settings of theirs.
@@ -220,34 +225,67 @@ fn runs(case: &dyn Case) -> Vec<Run> {
     runs
 }
 
-/// Metrics of one run.
-fn metrics(record: &Record) -> Value {
-    let metrics: Map<String, Value> =
-        record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.value))).collect();
-    json!({ "metrics": metrics })
-}
-
-/// The work of one run.
-fn work(record: &Record) -> Value {
-    let cost = &record.cost;
-    json!({
-        "steps": cost.steps,
-        "pair_interactions": cost.pair_interactions,
-        "particle_rhs": cost.particle_rhs,
-    })
-}
-
-/// Names and units of metrics and profiles.
-fn layout(record: &Record) -> Value {
-    let metrics: Map<String, Value> =
-        record.metrics.iter().map(|(name, m)| (name.clone(), json!(m.unit))).collect();
-    let columns = |profile: &touchstone_base::record::Profile| -> Value {
-        profile.columns.iter().map(|c| format!("{} [{}]", c.name, c.unit)).collect()
+/// Rows of cells, each column as wide as its widest cell.
+fn table(rows: &[Vec<String>]) -> String {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or_default();
+    let cells = |k: usize| rows.iter().filter_map(move |row| row.get(k));
+    let widths: Vec<usize> = (0..columns)
+        .map(|k| cells(k).map(|cell| cell.chars().count()).max().unwrap_or(0))
+        .collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, width)| format!("{cell:<width$}"));
+        cells.collect::<Vec<_>>().join(" | ").trim_end().to_string() + "\n"
     };
-    let profiles: Map<String, Value> =
-        record.profiles.iter().map(|(name, p)| (name.clone(), columns(p))).collect();
-    let numerics: Vec<&String> = record.numerics.keys().collect();
-    json!({"metrics": metrics, "profiles": profiles, "numerics": numerics})
+    rows.iter().map(line).collect()
+}
+
+/// Nine digits, of which the comparison needs seven.
+fn number(value: f64) -> String {
+    format!("{:?}", format!("{value:.8e}").parse().unwrap_or(value))
+}
+
+/// What the runs of a variant measured: a row a metric, a column a run; and the names of numerics and profiles.
+fn results(variant: &str, of: &[(&Run, &Record)]) -> String {
+    let names: BTreeMap<&String, &String> = of
+        .iter()
+        .flat_map(|(_, record)| record.metrics.iter().map(|(name, metric)| (name, &metric.unit)))
+        .collect();
+    let heads = of.iter().map(|(run, _)| run.name.to_string());
+    let mut rows = vec![std::iter::once(variant.to_string()).chain(heads).collect::<Vec<_>>()];
+    for (name, unit) in names {
+        let value = |(_, record): &(&Run, &Record)| {
+            record.metrics.get(name).map_or("absent".into(), |metric| number(metric.value))
+        };
+        let values = of.iter().map(value);
+        rows.push(std::iter::once(format!("{name} [{unit}]")).chain(values).collect());
+    }
+    let record = of[0].1;
+    let mut profiles: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for (name, profile) in &record.profiles {
+        profiles.entry(columns(profile)).or_default().push(name);
+    }
+    let numerics: Vec<&str> = record.numerics.keys().map(String::as_str).collect();
+    let mut text = table(&rows) + &format!("numerics: {}\n", numerics.join(", "));
+    for (columns, names) in profiles {
+        text += &format!("profiles {}: {columns}\n", names.join(", "));
+    }
+    text
+}
+
+fn columns(profile: &Profile) -> String {
+    let name = |c: &Column| format!("{} [{}]", c.name, c.unit);
+    profile.columns.iter().map(name).collect::<Vec<_>>().join(", ")
+}
+
+/// What the runs of a variant took: a row a run.
+fn work(variant: &str, of: &[(&Run, &Record)]) -> String {
+    let heads = [variant, "steps", "pair_interactions", "particle_rhs"].map(String::from).to_vec();
+    let row = |(run, record): &(&Run, &Record)| {
+        let cost = &record.cost;
+        let counts = [cost.steps, cost.pair_interactions, cost.particle_rhs];
+        std::iter::once(run.name.to_string()).chain(counts.map(|n| n.to_string())).collect()
+    };
+    table(&std::iter::once(heads).chain(of.iter().map(row)).collect::<Vec<_>>())
 }
 
 /// A metric without its time: `l2@0.1` is of the group `l2`.
@@ -462,34 +500,35 @@ fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) ->
     outside
 }
 
-/// The name of the snapshot of the work of a variant, of which the other one has the metrics.
-fn of_work(name: &str) -> String {
-    format!("work.{name}")
-}
-
-/// Makes the runs and compares two snapshots for each case and variant, metrics and work. All are compared
-/// before the test fails, so that the message states which of them changed.
-fn check(name: &str) {
-    let case = touchstone_cases::find(name).expect("a case");
-    let runs = runs(case);
-    let record = |run: &Run| case.run(&run.spec, &Context::default()).expect("a planned run");
-    let records: Vec<Record> = runs.par_iter().map(record).collect();
-    let mut documents: BTreeMap<String, Map<String, Value>> = BTreeMap::new();
+/// Runs what is kept of every case and compares, two snapshots for each case, metrics and work. All of them
+/// are compared before the test fails, so that it tells what changed.
+#[test]
+fn results_are_as_they_were() {
+    let kept: Vec<(&dyn Case, Run)> = touchstone_cases::CASES
+        .iter()
+        .flat_map(|case| runs(*case).into_iter().map(|run| (*case, run)))
+        .collect();
+    let record =
+        |(case, run): &(&dyn Case, Run)| case.run(&run.spec, &Context::default()).expect("planned");
+    let records: Vec<Record> = kept.par_iter().map(record).collect();
+    let mut by_case: BTreeMap<&str, BTreeMap<&str, Vec<(&Run, &Record)>>> = BTreeMap::new();
     let mut outside = Vec::new();
-    for (run, record) in runs.iter().zip(&records) {
-        let snapshot = format!("{name}.{}", run.spec.variant);
-        documents.entry(of_work(&snapshot)).or_default().insert(run.name.into(), work(record));
-        let document = documents.entry(snapshot).or_default();
-        document.insert(run.name.into(), metrics(record));
-        document.entry("layout").or_insert_with(|| layout(record));
-        outside.extend(outside_bounds(name, run, record));
+    for ((case, run), record) in kept.iter().zip(&records) {
+        let variants = by_case.entry(case.name()).or_default();
+        variants.entry(&run.spec.variant).or_default().push((run, record));
+        outside.extend(outside_bounds(case.name(), run, record));
     }
     assert!(outside.is_empty(), "{}", outside.join("\n"));
     let mut changed = Vec::new();
-    for (snapshot, document) in documents {
-        let compare = || assert_close(&snapshot, &Value::Object(document));
-        if catch_unwind(AssertUnwindSafe(compare)).is_err() {
-            changed.push(snapshot);
+    for (case, variants) in &by_case {
+        let of = |part: fn(&str, &[(&Run, &Record)]) -> String| {
+            let parts = variants.iter().map(|(variant, runs)| part(variant, runs));
+            parts.collect::<Vec<_>>().join("\n")
+        };
+        for (name, text) in [(case.to_string(), of(results)), (format!("work.{case}"), of(work))] {
+            if catch_unwind(AssertUnwindSafe(|| assert_kept(&name, &text, true))).is_err() {
+                changed.push(name);
+            }
         }
     }
     assert!(changed.is_empty(), "{}", told(&changed));
@@ -510,117 +549,39 @@ fn told(changed: &[String]) -> String {
     )
 }
 
-#[test]
-fn couette_flow_is_as_it_was() {
-    check("couette");
-}
-
-#[test]
-fn poiseuille_flow_is_as_it_was() {
-    check("poiseuille");
-}
-
-#[test]
-fn sound_is_as_it_was() {
-    check("acoustic_wave");
-}
-
-#[test]
-fn shear_is_as_it_was() {
-    check("shear_wave");
-}
-
-#[test]
-fn bars_are_as_they_were() {
-    check("elastic_bar");
-}
-
-#[test]
-fn the_disk_is_as_it_was() {
-    check("spinning_disk");
-}
-
-#[test]
-fn the_plate_is_as_it_was() {
-    check("oscillating_plate");
-    check("cantilever");
-}
-
-#[test]
-fn water_at_rest_is_as_it_was() {
-    check("hydrostatic");
-    check("still_wedge");
-}
-
-#[test]
-fn the_drop_is_as_it_was() {
-    check("elliptic_drop");
-}
-
-#[test]
-fn the_dam_break_is_as_it_was() {
-    check("dam_break");
-}
-
-#[test]
-fn hills_are_as_they_were() {
-    check("periodic_hill");
-}
-
-#[test]
-fn rings_are_as_they_were() {
-    check("rubber_rings");
-}
-
-#[test]
-fn curved_walls_are_as_they_were() {
-    check("taylor_couette");
-    check("cavity");
-}
-
-#[test]
-fn vortices_are_as_they_were() {
-    check("taylor_green");
-}
-
-/// Settings and variants of `list --json`.
+/// What `list --json` says of settings and variants: a row a setting, then a row a variant with the settings
+/// in which it differs from the defaults, and those that it lacks.
 #[test]
 fn settings_are_as_they_were() {
     for case in touchstone_cases::CASES {
-        let variants: Map<String, Value> = case
-            .variants()
-            .iter()
-            .map(|v| (v.name.to_string(), case.settings(v.name, &[]).expect("default settings")))
-            .collect();
-        let fields: Map<String, Value> = case
-            .fields()
-            .iter()
-            .map(|f| {
-                let field = json!({
-                    "unit": f.unit, "doc": f.doc, "kind": f.kind.to_string(), "range": f.range,
-                    "default": Value::from(f.default),
-                });
-                (f.name.to_string(), field)
-            })
-            .collect();
-        let schema = json!({"settings": fields, "variants": variants});
-        assert_close(&format!("settings.{}", case.name()), &schema);
+        let fields = case.fields();
+        let default = |field: &Field| Value::from((field.default)());
+        let setting = |field: &Field| {
+            let range = format!("{} ({}, {})", field.range, field.unit, field.kind);
+            vec![field.name.into(), default(field).to_string(), range, field.doc.into()]
+        };
+        let variant = |variant: &Variant| {
+            let own = case.settings(variant.name, &[]).expect("default settings");
+            let (mut differs, mut lacks) = (Vec::new(), Vec::new());
+            for field in fields {
+                match own.get(field.name) {
+                    None => lacks.push(field.name),
+                    Some(value) if *value == default(field) => {}
+                    Some(value) => differs.push(format!("{}={value}", field.name)),
+                }
+            }
+            let count = own.as_object().map_or(0, |own| own.len());
+            assert_eq!(count + lacks.len(), fields.len(), "{} {}", case.name(), variant.name);
+            vec![variant.name.into(), differs.join(" "), lacks.join(" ")]
+        };
+        let heads = |heads: &[&str]| vec![heads.iter().map(ToString::to_string).collect()];
+        let mut settings: Vec<Vec<String>> = heads(&["setting", "default", "range", ""]);
+        settings.extend(fields.iter().map(setting));
+        let mut variants: Vec<Vec<String>> = heads(&["variant", "differs", "lacks"]);
+        variants.extend(case.variants().iter().map(variant));
+        let text = format!("{}\n{}", table(&settings), table(&variants));
+        assert_kept(&format!("settings.{}", case.name()), &text, false);
     }
-}
-
-/// The metrics that the snapshots of a case hold.
-fn names_in_snapshots(case: &str) -> BTreeSet<String> {
-    let runs = kept(case).into_iter().flat_map(|(variants, names)| {
-        let of = move |variant| names.clone().into_iter().map(move |name| (variant, name));
-        variants.into_iter().flat_map(of)
-    });
-    let metrics = |(variant, name)| {
-        let snapshot =
-            touchstone_tests::snapshot(&format!("{case}.{variant}")).expect("a snapshot");
-        let metrics = snapshot[name]["metrics"].as_object().expect("metrics").clone();
-        metrics.into_iter().map(|(metric, _)| metric)
-    };
-    runs.flat_map(metrics).collect()
 }
 
 /// Every group of metrics in a snapshot has a gate that is no regression, or a bound above.
@@ -643,9 +604,10 @@ fn every_snapshot_has_a_physical_bound_beside_it() {
         let is_channel = channels.iter().any(|channel| channel.name() == name);
         let mut bounded = if is_channel { of_channels.clone() } else { gated(&gates_of(case)) };
         bounded.extend(bounds_beside(name).into_iter().map(|(group, _, _)| group.to_string()));
-        let metrics = names_in_snapshots(name);
+        let kept = kept_numbers(name);
+        let metrics = kept.values().flat_map(BTreeMap::keys);
         let unbounded: BTreeSet<&str> =
-            metrics.iter().map(|m| group(m)).filter(|group| !bounded.contains(*group)).collect();
+            metrics.map(|m| group(m)).filter(|group| !bounded.contains(*group)).collect();
         assert!(unbounded.is_empty(), "{name} snapshots {unbounded:?}, and nothing bounds them");
         for gate in gates_of(case) {
             let is_bounded = bounded.contains(group(&gate.metric));
@@ -671,51 +633,47 @@ fn gates_have_names_of_their_own() {
 /// Metrics and work have a file each: a change of one cannot be accepted within the other.
 #[test]
 fn results_and_work_are_kept_apart() {
-    let runs = |name: &str| -> BTreeSet<String> {
-        let snapshot = touchstone_tests::snapshot(name);
-        let snapshot = snapshot.unwrap_or_else(|| panic!("there is no snapshot `{name}`"));
-        let runs = snapshot.as_object().expect("runs").iter();
-        let runs = runs.filter(|(name, _)| *name != "layout");
-        let keys = |of: &Value| of.as_object().map_or(0, Map::len);
-        for (run, of) in runs.clone() {
-            let (expected, what) = match name.starts_with("work.") {
-                true => (["pair_interactions", "particle_rhs", "steps"].as_slice(), "work"),
-                false => (["metrics"].as_slice(), "metrics"),
-            };
-            let has = expected.iter().all(|key| !of[key].is_null()) && keys(of) == expected.len();
-            assert!(has, "`{name}` holds {what} alone, {expected:?}, and of {run} it holds {of:#}");
-        }
-        runs.map(|(run, _)| run.clone()).collect()
-    };
     let mut count = 0;
     for case in touchstone_cases::CASES {
-        for variant in kept(case.name()).into_iter().flat_map(|(variants, _)| variants) {
-            let name = format!("{}.{variant}", case.name());
-            assert_eq!(runs(&of_work(&name)), runs(&name), "the runs of `{name}` in both files");
-            count += 1;
+        let (results, work) = (kept_numbers(case.name()), kept_work(case.name()));
+        let runs = |(variants, names): Kept| {
+            let of = move |variant: &str| -> Vec<_> {
+                names.iter().map(|name| (variant.to_string(), name.to_string())).collect()
+            };
+            variants.into_iter().flat_map(of)
+        };
+        let runs: BTreeSet<(String, String)> =
+            kept(case.name()).into_iter().flat_map(runs).collect();
+        for (file, kept) in [("results", &results), ("work", &work)] {
+            assert!(runs.iter().eq(kept.keys()), "{file} of {}: {:?}", case.name(), kept.keys());
         }
+        const WORK: [&str; 3] = ["pair_interactions", "particle_rhs", "steps"];
+        for (run, numbers) in &work {
+            assert!(numbers.keys().eq(WORK), "{} {run:?} holds {numbers:?}", case.name());
+        }
+        let is_work = |name: &String| WORK.contains(&name.as_str());
+        assert!(!results.values().flat_map(BTreeMap::keys).any(is_work), "{}", case.name());
+        count += runs.len();
     }
-    assert!(count > 40, "only {count} variants have snapshots");
-    let changed = ["couette.plain", "work.couette.plain", "work.couette.seed"].map(String::from);
+    assert!(count > 100, "only {count} runs have snapshots");
+    let changed = ["couette", "work.couette", "work.cavity"].map(String::from);
     let [both, none] = [&changed[..], &changed[..0]].map(told);
-    assert!(
-        both.starts_with(
-            "metrics changed of couette.plain; work changed of work.couette.plain, work"
-        ),
-        "{both}"
-    );
+    let parts = "metrics changed of couette; work changed of work.couette, work.cavity";
+    assert!(both.starts_with(parts), "{both}");
     assert!(none.starts_with("metrics changed of none; work changed of none"), "{none}");
 }
 
 /// The comparison itself: accepted and refused differences.
 #[test]
 fn a_change_is_seen_and_round_off_is_not() {
-    let are = |a: Value, b: Value| Close::are("", &a, &b);
-    assert!(are(json!({"l2": 0.1, "n": 3}), json!({"l2": 0.100_000_05, "n": 3})));
-    assert!(!are(json!({"l2": 0.1}), json!({"l2": 0.100_000_2})));
-    assert!(are(json!({"v": 1e-14}), json!({"v": -3e-11})) && !are(json!(1e-9), json!(2e-9)));
-    assert!(!are(json!({"steps": 100}), json!({"steps": 101})));
-    assert!(!are(json!({"steps": 100}), json!({"steps": 100.0})));
-    assert!(!are(json!({"l2": 0.1}), json!({"l2": null})) && !are(json!({}), json!({"a": 1})));
-    assert!(!are(json!(["u [m/s]"]), json!(["u [V]"])) && !are(json!([1]), json!([1, 1])));
+    let are = Close::are;
+    assert!(are("l2 [-] | 0.1 | 3\n", "l2 [-]   | 0.10000005 | 3\n"));
+    assert!(!are("l2 | 0.1", "l2 | 0.1000002"));
+    assert!(are("v | 1e-14", "v | -3e-11") && !are("v | 1e-9", "v | 2e-9"));
+    assert!(are("v_error | 1e-9", "v_error | 2e-9"));
+    assert!(!are("steps | 100", "steps | 101") && !are("steps | 100", "steps | 100.0"));
+    assert!(!are("l2 | 0.1", "l2 | NaN") && !are("l2 | 0.1", "l2 | absent"));
+    assert!(are("l2 | NaN", "l2 | NaN") && !are("a | 0.1", "a | 0.1\nb | 0.1"));
+    assert!(!are("u [m/s] | 0.1", "u [V] | 0.1") && !are("a | 0.1", "a | 0.1 | 0.1"));
+    assert!(!are("profiles a: u [m/s]", "profiles a: u [V]"));
 }

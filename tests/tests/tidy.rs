@@ -126,28 +126,6 @@ fn every_file_of_tests_is_run() {
 }
 
 #[test]
-fn the_solver_knows_no_files_and_no_formats() {
-    let manifest = fs::read_to_string(root().join("solver/Cargo.toml")).unwrap();
-    let (mut section, mut found) = (String::new(), Vec::new());
-    for line in manifest.lines().map(str::trim) {
-        if line.starts_with('[') {
-            section = line.to_string();
-        }
-        // `[dependencies]`, `[target.….dependencies]` and `[dependencies.name]` alike
-        let is_dependency = section.contains("dependencies") && !section.contains("dev-");
-        let name = if line.starts_with('[') {
-            line.trim_matches(['[', ']']).rsplit('.').next().unwrap_or_default()
-        } else {
-            line.split(['.', '=', ' ']).next().unwrap_or_default()
-        };
-        if is_dependency && ["serde", "serde_json", "csv", "plotters"].contains(&name) {
-            found.push(name.to_string());
-        }
-    }
-    assert_none("the solver does no input and no output", found);
-}
-
-#[test]
 fn no_text_names_a_machine() {
     let mut found = Vec::new();
     for path in files(&root()) {

@@ -181,15 +181,11 @@ mod tests {
     use serde_json::{Value, json};
     use touchstone_base::{
         functions::{exp, sin},
-        settings::Field,
         spec::EndAfter,
     };
 
     use super::*;
-    use crate::{
-        case::{Facts, Recommended, Tier, Variant},
-        study::Studies,
-    };
+    use crate::{case::Facts, testing::Staged};
 
     /// The bisection of a condition that cannot fail.
     fn limit_of(
@@ -252,32 +248,14 @@ mod tests {
     #[derive(Default)]
     struct Spring(std::sync::Mutex<Vec<(f64, f64)>>);
 
-    impl Case for Spring {
-        fn family(&self) -> &'static str {
-            ""
-        }
-        fn recommended(&self) -> Recommended {
-            Recommended { variant: "only", because: "it is staged", papers: None }
-        }
-        fn name(&self) -> &'static str {
+    impl Staged for Spring {
+        fn called(&self) -> &'static str {
             "spring"
         }
-        fn problem(&self) -> &'static str {
-            "A spring swings"
+        fn set(&self, _: &[String]) -> Value {
+            json!({"dt": 1.0, "end": 1.0})
         }
-        fn about(&self) -> &'static str {
-            "A spring swings."
-        }
-        fn variants(&self) -> Vec<Variant> {
-            vec![Variant { name: "only", about: "as it is" }]
-        }
-        fn fields(&self) -> &'static [Field] {
-            &[]
-        }
-        fn settings(&self, _: &str, _: &[String]) -> Result<Value, RunError> {
-            Ok(json!({"dt": 1.0, "end": 1.0}))
-        }
-        fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
+        fn made(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
             let setting = |name: &str| spec.settings[name].as_f64().unwrap_or(f64::NAN);
             let (dt, end) = (setting("dt"), setting("end"));
             assert_eq!(spec.task, Task::Simulate, "one simulation at a time");
@@ -297,12 +275,9 @@ mod tests {
             };
             Ok(record)
         }
-        fn facts(&self) -> Facts {
+        fn stated(&self) -> Facts {
             let is_stable = |record: &Record| record.value(GREW) == Some(0.0);
             Facts { is_stable: Some(is_stable), ..Facts::default() }
-        }
-        fn studies(&self, _: Tier) -> Studies {
-            Studies::default()
         }
     }
 
@@ -319,7 +294,7 @@ mod tests {
         };
         let case = Spring::default();
         let spec =
-            RunSpec::new("spring", "only", json!({"dt": 1.0, "end": 1.0})).bisect(bisect.clone());
+            RunSpec::new("spring", "v", json!({"dt": 1.0, "end": 1.0})).bisect(bisect.clone());
         let record = run(&case, &spec, &bisect, &Context::default()).expect("runs");
         let asked = case.0.into_inner().expect("no panic");
         for (dt, end) in &asked {

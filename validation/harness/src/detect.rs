@@ -126,13 +126,14 @@ fn failed(
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value, json};
-    use touchstone_base::{gate::Bound, settings::Field, spec::Measure};
+    use serde_json::json;
+    use touchstone_base::{gate::Bound, spec::Measure};
 
     use super::*;
     use crate::{
-        case::{Facts, Planned, Recommended, Tier, Variant},
+        case::{Facts, Planned, Tier},
         study::Studies,
+        testing::Staged,
     };
 
     touchstone_base::metrics! {
@@ -142,32 +143,11 @@ mod tests {
     /// Its only metric is the factor of the body force.
     struct Balance;
 
-    impl Case for Balance {
-        fn family(&self) -> &'static str {
-            ""
-        }
-        fn recommended(&self) -> Recommended {
-            Recommended { variant: "only", because: "it is staged", papers: None }
-        }
-        fn name(&self) -> &'static str {
+    impl Staged for Balance {
+        fn called(&self) -> &'static str {
             "balance"
         }
-        fn problem(&self) -> &'static str {
-            "A force is weighed"
-        }
-        fn about(&self) -> &'static str {
-            "A force is weighed."
-        }
-        fn variants(&self) -> Vec<Variant> {
-            vec![Variant { name: "only", about: "as it is" }]
-        }
-        fn fields(&self) -> &'static [Field] {
-            &[]
-        }
-        fn settings(&self, _: &str, _: &[String]) -> Result<Value, RunError> {
-            Ok(json!({}))
-        }
-        fn run(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
+        fn made(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
             let mut record = Record::of(spec, 1);
             let factor = spec.mutation.map_or(1.0, |m| m.factor_of(Constant::BodyForce));
             match spec.measure {
@@ -178,10 +158,10 @@ mod tests {
             Ok(record)
         }
         /// The force is measured only where gates read it.
-        fn facts(&self) -> Facts {
+        fn stated(&self) -> Facts {
             Facts { costly: &[FORCE], ..Facts::default() }
         }
-        fn studies(&self, tier: Tier) -> Studies {
+        fn studied(&self, tier: Tier) -> Studies {
             let gate = |id: &str, bound, evidence| Gate::new(id, FORCE, bound, evidence, "staged");
             let within = |d: f64| Bound::Within(1.0 - d, 1.0 + d);
             let mut gates = vec![
@@ -196,7 +176,7 @@ mod tests {
     }
 
     fn spec() -> RunSpec {
-        RunSpec::new("balance", "only", json!({}))
+        RunSpec::new("balance", "v", json!({}))
     }
 
     fn found(of: Constant, only_allowed: bool) -> Record {

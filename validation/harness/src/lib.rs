@@ -46,3 +46,5 @@ pub mod study;
 pub mod suite;
 pub mod symmetry;
 pub mod table;
+#[cfg(test)]
+mod testing;

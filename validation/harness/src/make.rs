@@ -517,48 +517,25 @@ mod tests {
     use touchstone_base::{
         mutation::{Constant, Detect},
         record::MetricKey,
-        settings::Field,
         spec::Bisect,
     };
 
     use super::*;
-    use crate::{
-        case::{Recommended, Variant, spec},
-        studies::Studies,
-        suite,
-    };
+    use crate::{case::spec, studies::Studies, suite, testing::Staged};
 
     /// Every run of it completes at once.
     struct Quick;
 
     const ERROR: MetricKey = MetricKey::new("error", "-", "as staged");
 
-    impl Case for Quick {
-        fn family(&self) -> &'static str {
-            ""
-        }
-        fn recommended(&self) -> Recommended {
-            Recommended { variant: "v", because: "it is staged", papers: None }
-        }
-        fn name(&self) -> &'static str {
+    impl Staged for Quick {
+        fn called(&self) -> &'static str {
             "quick"
         }
-        fn problem(&self) -> &'static str {
-            "Nothing moves"
+        fn set(&self, set: &[String]) -> Value {
+            json!({ "set": set })
         }
-        fn about(&self) -> &'static str {
-            "Nothing moves."
-        }
-        fn variants(&self) -> Vec<Variant> {
-            vec![Variant { name: "v", about: "the only one" }]
-        }
-        fn fields(&self) -> &'static [Field] {
-            &[]
-        }
-        fn settings(&self, _: &str, set: &[String]) -> Result<Value, RunError> {
-            Ok(json!({ "set": set }))
-        }
-        fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+        fn made(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
             let mut record = Record::of(spec, 1);
             record.put(ERROR, 1.0);
             (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
@@ -577,7 +554,7 @@ mod tests {
                 _ => Ok(record),
             }
         }
-        fn studies(&self, _: Tier) -> Studies {
+        fn studied(&self, _: Tier) -> Studies {
             let planned = |k: i32| Planned::new(spec(self, "v", &[format!("k={k}")]).unwrap());
             Studies::judging(vec![planned(1), planned(2), planned(3).timed()])
         }
@@ -586,35 +563,17 @@ mod tests {
     /// A case of this name, with a card if it is a main one.
     struct Named(&'static str, bool);
 
-    impl Case for Named {
-        fn family(&self) -> &'static str {
-            Quick.family()
-        }
-        fn recommended(&self) -> Recommended {
-            Quick.recommended()
-        }
-        fn name(&self) -> &'static str {
+    impl Staged for Named {
+        fn called(&self) -> &'static str {
             self.0
         }
-        fn problem(&self) -> &'static str {
-            Quick.problem()
+        fn set(&self, set: &[String]) -> Value {
+            Quick.set(set)
         }
-        fn about(&self) -> &'static str {
-            Quick.about()
+        fn made(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+            Quick.made(spec, context)
         }
-        fn variants(&self) -> Vec<Variant> {
-            Quick.variants()
-        }
-        fn fields(&self) -> &'static [Field] {
-            Quick.fields()
-        }
-        fn settings(&self, variant: &str, set: &[String]) -> Result<Value, RunError> {
-            Quick.settings(variant, set)
-        }
-        fn run(&self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
-            Quick.run(spec, context)
-        }
-        fn studies(&self, _: Tier) -> Studies {
+        fn studied(&self, _: Tier) -> Studies {
             let card = || Card::made_up(ERROR, "k", Vec::new());
             Studies::default().with_all(self.1.then(card))
         }

@@ -90,19 +90,16 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 
 #[cfg(test)]
 mod tests {
-    use serde_json::{Value, json};
+    use serde_json::json;
     use touchstone_base::{
         gate::{Bound, Evidence, Gate},
         mutation::Disorder,
         record::Record,
-        settings::Field,
         spec::{Measure, RunSpec},
     };
 
     use super::*;
-    use crate::case::{Recommended, RunError, Variant};
-    use crate::context::Context;
-    use crate::study::Studies;
+    use crate::{case::RunError, context::Context, study::Studies, testing::Staged};
 
     #[test]
     fn a_run_that_is_planned_twice_is_made_once_and_judged_by_all_gates() {
@@ -125,35 +122,14 @@ mod tests {
     /// One run, and one with a slightly disordered start, with a gate each.
     struct Starts;
 
-    impl Case for Starts {
-        fn family(&self) -> &'static str {
-            ""
-        }
-        fn recommended(&self) -> Recommended {
-            Recommended { variant: "v", because: "it is staged", papers: None }
-        }
-        fn name(&self) -> &'static str {
+    impl Staged for Starts {
+        fn called(&self) -> &'static str {
             "starts"
         }
-        fn problem(&self) -> &'static str {
-            "Staged starts"
-        }
-        fn about(&self) -> &'static str {
-            "Staged starts."
-        }
-        fn variants(&self) -> Vec<Variant> {
-            vec![Variant { name: "v", about: "as it is" }]
-        }
-        fn fields(&self) -> &'static [Field] {
-            &[]
-        }
-        fn settings(&self, _: &str, _: &[String]) -> Result<Value, RunError> {
-            Ok(json!({}))
-        }
-        fn run(&self, _: &RunSpec, _: &Context) -> Result<Record, RunError> {
+        fn made(&self, _: &RunSpec, _: &Context) -> Result<Record, RunError> {
             Err(RunError::NoScene("staged"))
         }
-        fn studies(&self, tier: Tier) -> Studies {
+        fn studied(&self, tier: Tier) -> Studies {
             let gate = |id: &str| Gate::new(id, "l2", Bound::Below(1.0), Evidence::Theory, "why");
             let run = |disorder| Planned::new(RunSpec { disorder, ..spec() });
             let disorder = Some(Disorder { most: 1e-6, seed: 1 });

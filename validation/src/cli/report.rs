@@ -1,6 +1,6 @@
 //! `report`: run what is missing, judge, render. The page is there as soon as one case is complete: before
-//! all runs are made, what there is so far is judged, and what is lacking is listed. Runs of a sweep are shown
-//! and not judged.
+//! all runs are made, what there is so far is judged, and what is lacking is listed. Runs of a sweep are
+//! shown and not judged.
 
 use std::io::ErrorKind;
 use std::path::Path;

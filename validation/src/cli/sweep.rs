@@ -1,5 +1,5 @@
-//! The page of a store whose runs no tier plans, such as those of a sweep: a table and a figure a case, judged
-//! by nothing.
+//! The page of a store whose runs no tier plans, such as those of a sweep: a table and a figure a case, and
+//! no verdict.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -85,8 +85,7 @@ pub fn page(cases: &[(&'static dyn Case, Vec<Record>)], made: &str) -> Result<Pa
     Ok(Page {
         title: format!("touchstone: {runs} of a store"),
         lead: vec![format!(
-            "{made}. Errors and costs of {runs} that no tier plans, or not all of which are there: no gate is \
-             judged."
+            "{made}. Errors and costs of {runs} that no tier plans. No gate is judged."
         )],
         sections,
         png_folder: "figures".into(),

@@ -243,7 +243,10 @@ impl Background {
 mod tests {
     use super::*;
     use std::f64::consts::TAU;
-    use touchstone_base::functions::{rotation, sin_cos};
+    use touchstone_base::{
+        functions::{rotation, sin_cos},
+        random::Random,
+    };
 
     const DX: f64 = 0.1;
 
@@ -335,20 +338,10 @@ mod tests {
         assert_eq!(of(&nested), (2, 2));
     }
 
-    /// Numbers between -1 and 1, equally likely.
-    fn random() -> impl FnMut() -> f64 {
-        let mut state = 1_u64;
-        move || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as f64 / f64::from(1_u32 << 30) - 1.0
-        }
-    }
-
     #[test]
     fn strain_and_disorder_tear_nothing() {
-        let mut random = random();
+        let mut stream = Random::new(1);
+        let mut random = || 2.0 * stream.uniform() - 1.0;
         for angle in [0.0, 0.4, TAU / 4.0] {
             let strained = |p: Point| Point::new(1.3 * p.x, p.y);
             let jittered: Vec<Point> = turned(&annulus(), angle)
