@@ -555,9 +555,9 @@ fn told(changed: &[String]) -> String {
 fn settings_are_as_they_were() {
     for case in touchstone_cases::CASES {
         let fields = case.fields();
-        let default = |field: &Field| Value::from((field.default)());
+        let default = |field: &Field| Value::from(field.default);
         let setting = |field: &Field| {
-            let range = format!("{} ({}, {})", field.range, field.unit, field.kind);
+            let range = format!("{}, {}", field.range, field.kind); // with its unit
             vec![field.name.into(), default(field).to_string(), range, field.doc.into()]
         };
         let variant = |variant: &Variant| {
