@@ -286,7 +286,7 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Mass \[kg/m\] and state of the fluid particles in the order of storage, for observers that sum.
-    pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &State<X>)> {
+    pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &State<X>)> + Clone {
         let fluid = self.counts.fluid;
         self.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
     }
@@ -318,11 +318,16 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// All particles in the order of storage, with their numbers in the scene.
-    fn stored(&self) -> impl Iterator<Item = (u32, Particle<X>)> {
+    pub fn stored(&self) -> impl Iterator<Item = (u32, Particle<X>)> {
         self.fixed.iter().zip(&self.state).map(|(&Constants { mass, id, role }, evolved)| {
             let State { position, velocity, density, extra } = *evolved;
             (id, Particle { role, position, velocity, density, mass, extra })
         })
+    }
+
+    /// The states of all particles in the order of storage.
+    pub fn state(&self) -> &[State<X>] {
+        &self.state
     }
 
     /// The moving particles in the order of storage.

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde_json::Map;
 use touchstone_base::submission::Division;
 use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
-use touchstone_harness::playback::Placed;
+use touchstone_harness::foreign::Placed;
 
 /// u_t = ν u_yy with central differences in space and forward Euler in time.
 pub struct FiniteDifferences {

@@ -3,7 +3,9 @@
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 use touchstone_base::{functions::*, record::*};
-use touchstone_harness::{case::*, composed::*, method::*, problem::Simple, studies::*, table};
+use touchstone_harness::{
+    case::*, composed::*, method::*, problem::Simple, snapshot::Snapshot, studies::*, table,
+};
 use touchstone_solver::*;
 
 touchstone_base::settings! {
@@ -32,8 +34,8 @@ fn pose(method: &Method, s: &Decay) -> Result<Simple, RunError> {
         let particles = places.map(|x| Particle::fluid(x, wave(x), 1.0, dx * dx)).collect();
         Ok(Parts::new(medium, Domain::torus(1.0, 1.0), particles))
     };
-    let measure = move |now: &dyn Stepper<()>, record: &mut Record| {
-        let all = now.particles();
+    let measure = move |now: &Snapshot, record: &mut Record| {
+        let all = now.all();
         let projected = all.iter().map(|p| p.velocity.x * sin(TAU * p.position.y));
         let amplitude = 2e3 * projected.sum::<f64>() / all.len() as f64;
         record.put(ERROR, (amplitude / exp(-0.01 * TAU * TAU * end) - 1.0).abs());

@@ -1,7 +1,6 @@
 //! Extreme runs end with a value, and runs that cannot start are refused with their numbers.
 
 use nalgebra::Vector2;
-use touchstone_maths::metrics::momentum::momentum;
 use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, Leapfrog, Limits, Open,
     Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, SceneError,
@@ -63,6 +62,11 @@ fn check_divergence<I: Integrator<Scheme<()>>>(dt: f64) {
     for part in [fault.field, &format!("step {step}"), &format!("particle {}", fault.particle)] {
         assert!(text.contains(part), "{text}");
     }
+}
+
+/// Σ m v of all particles \[kg/s\].
+fn momentum(particles: &[Particle]) -> Vector2<f64> {
+    particles.iter().fold(Vector2::zeros(), |sum, p| sum + p.velocity * p.mass)
 }
 
 #[test]

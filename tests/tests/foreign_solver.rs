@@ -4,8 +4,8 @@ use serde_json::json;
 use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
 use touchstone_harness::{
     case::{Case, Tier, spec},
+    foreign::Placed,
     make::Made,
-    playback::Placed,
     suite,
 };
 use touchstone_tests::foreign_solver::FiniteDifferences;

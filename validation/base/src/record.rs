@@ -527,6 +527,14 @@ impl Record {
         }
     }
 
+    /// Puts a metric, or states why a snapshot does not determine its value.
+    pub fn put_or_absent(&mut self, metric: impl Into<MetricName>, value: Result<f64, Absent>) {
+        match value {
+            Ok(value) => self.put(metric, value),
+            Err(absent) => self.leave_out(metric, absent),
+        }
+    }
+
     /// Why a metric is absent; of `impulse@phase1` perhaps by the name `impulse`, of all phases.
     pub fn absent_as(&self, metric: &str) -> Option<&Absent> {
         let is_there = self.metrics.contains_key(metric);
@@ -545,9 +553,9 @@ impl Record {
         self.absent.extend(taken.map(|(name, _)| (name, reason.clone())));
     }
 
-    /// States that metrics are absent because they were not requested.
-    pub fn leave_unasked(&mut self, metrics: &[MetricKey]) {
-        metrics.iter().for_each(|metric| self.leave_out(*metric, Absent::NotAsked));
+    /// States why several metrics are absent.
+    pub fn leave_all_out(&mut self, metrics: &[MetricKey], reason: &Absent) {
+        metrics.iter().for_each(|metric| self.leave_out(*metric, reason.clone()));
     }
 
     /// A metric's value, `None` if it was not measured.

@@ -1,7 +1,7 @@
 //! Digits of submitted numbers: rates over a short time, and equality to round-off, need all digits of a
 //! double.
 
-use touchstone_harness::playback::{Frame, Placed};
+use touchstone_harness::foreign::{Frame, Placed};
 
 /// Numbers with at most this many digits count as rounded: of unrounded numbers one in 10⁵ is as short.
 const FEW: usize = 11;

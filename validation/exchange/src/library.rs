@@ -3,7 +3,7 @@
 use touchstone_base::{record::Record, reference::sha256, spec::RunSpec};
 use touchstone_harness::{
     case::{Case, RunError},
-    playback::{Frame, Placed},
+    foreign::{Frame, Placed},
 };
 
 use crate::{
@@ -37,6 +37,6 @@ pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Re
     let method = solver.method();
     let digest = sha256(format!("{method:?}").as_bytes());
     let entry = Entry { method, digest, system, asked: None, results, curve: None };
-    entry.check(&problem).map_err(|flaws| RunError::Playback(flaw::lines(&flaws).join("\n")))?;
+    entry.check(&problem).map_err(|flaws| RunError::Foreign(flaw::lines(&flaws).join("\n")))?;
     entry.measure(case, spec, &problem)
 }

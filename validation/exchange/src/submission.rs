@@ -20,9 +20,9 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{Case, RunError},
+    foreign::{self, Foreign, Frame, Own, Placed},
     medium::Medium,
     outline::{Outline, role},
-    playback::{self, Fill, Frame, Own, Placed, Playback},
     suite,
 };
 use touchstone_solver::{Domain, Role};
@@ -390,12 +390,12 @@ impl Entry {
         let mut flaws = Vec::new();
         let Results { frames, places, .. } = &self.results;
         let file = places.first().map_or("results", |(file, _)| file.as_str());
-        if let Some((frame, why)) = playback::misplaced(frames, &problem.outline.times) {
+        if let Some((frame, why)) = foreign::misplaced(frames, &problem.outline.times) {
             let (file, line) = &places[frame];
             let what = format!("t = {} s: {why}", number(frames[frame].time));
             flaws.push(Flaw::of(file, what).at(*line).in_column("t"));
         }
-        for time in playback::missing(frames, &problem.outline.times) {
+        for time in foreign::missing(frames, &problem.outline.times) {
             let what =
                 format!("there are no particles at t = {time} s, at which the problem is measured");
             flaws.push(Flaw::of(file, what).in_column("t"));
@@ -521,33 +521,18 @@ impl Entry {
     }
 
     /// The frames, with the particles of the code itself in the open division.
-    fn playback(&self, problem: &Problem, fill: Fill) -> Playback<'_> {
+    fn foreign(&self, problem: &Problem) -> Foreign<'_> {
         let mut own = match self.particles() {
             Division::Open => self.results.own.clone(),
             Division::Closed => Vec::new(),
         };
         own.sort_by_key(|own| own.start.id);
         let (domain, reach, limits) = (problem.outline.domain, reach(problem), limits(problem));
-        Playback { frames: &self.results.frames, own, domain, reach, limits, fill }
+        let density = problem.outline.medium.eos.density;
+        Foreign { frames: &self.results.frames, own, domain, reach, limits, density }
     }
 
-    /// Columns that a submission lacks: each by its name, with another fill in its place.
-    fn not_given(&self, problem: &Problem, fill: Fill) -> Vec<(&'static str, Fill)> {
-        let Results { frames, own, .. } = &self.results;
-        let starts = own.iter().map(|own| &own.start);
-        let mut all = frames.iter().flat_map(|frame| &frame.particles).chain(starts);
-        let density = all.any(|placed| placed.density.is_none());
-        let stress = problem.is_solid();
-        let density = density.then_some(("density", Fill { spread: 1e-3, ..fill }));
-        density
-            .into_iter()
-            .chain(stress.then_some(("stress", Fill { extra: f64::NAN, ..fill })))
-            .collect()
-    }
-
-    /// Measures the particles in a scene like a run of the problem. Metrics that depend on a missing column
-    /// are absent, with the name of the column: they differ when measured again with another fill of this
-    /// column.
+    /// Measures the particles in a scene like a run of the problem.
     ///
     /// # Errors
     /// If the case refuses the run, or a frame cannot be put in place of its particles.
@@ -558,20 +543,11 @@ impl Entry {
         problem: &Problem,
     ) -> Result<Record, RunError> {
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
-        let measured =
-            |fill: Fill| case.pose(&ours)?.measure_frames(&ours, &self.playback(problem, fill));
-        let fill = Fill { density: problem.outline.medium.eos.density, ..Fill::default() };
-        let mut record = measured(fill)?;
-        for (column, other) in self.not_given(problem, fill) {
-            playback::leave_out(&mut record, column, &measured(other)?);
-        }
+        let mut record = case.pose(&ours)?.measure_frames(&ours, &self.foreign(problem))?;
         record.run.submission = Some(Box::new(self.submission(problem)));
         record.run.settings = problem.spec.settings.clone();
         self.leave_out_rounded(case, problem, &mut record);
         suite::leave_out_ours(case, &mut record);
-        for reason in record.absent.values_mut().filter(|reason| **reason == Absent::NotAsked) {
-            *reason = Absent::OwnTerms;
-        }
         record.numerics.clear();
         record.numerics.insert(MACHINE.into(), self.system.machine.as_str().into());
         self.only_of_curve(case, problem, &mut record);
@@ -579,9 +555,6 @@ impl Entry {
             record.profiles.clear(); // those that follow rows of the problem's own particles
         }
         record.cost = self.cost(&record);
-        if !matches!(record.status, Status::Diverged { .. }) {
-            record.status = Status::Completed;
-        }
         if let (Status::Completed, Some(reason)) = (&record.status, hole(&record)) {
             record.status = Status::Refused { reason };
         }

@@ -112,7 +112,7 @@ struct IntervalFields {
 
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Role")]
-enum RoleNames {
+pub(crate) enum RoleNames {
     Fluid,
     Wall,
     Interface,
@@ -184,31 +184,6 @@ pub(crate) mod as_json {
         from: D,
     ) -> Result<T, D::Error> {
         serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)
-    }
-}
-
-/// Particles of a fluid in a watch, for `#[serde(with = "…")]`.
-pub mod particles {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-    use touchstone_solver::Particle;
-
-    use super::StoredParticle;
-
-    /// Serialises all particles.
-    ///
-    /// # Errors
-    /// Errors of `to`.
-    pub fn serialize<S: Serializer>(all: &[Particle], to: S) -> Result<S::Ok, S::Error> {
-        all.iter().map(StoredParticle::of).collect::<Vec<_>>().serialize(to)
-    }
-
-    /// Deserialises all particles.
-    ///
-    /// # Errors
-    /// Errors of `from`.
-    pub fn deserialize<'a, D: Deserializer<'a>>(from: D) -> Result<Vec<Particle>, D::Error> {
-        let stored = Vec::<StoredParticle>::deserialize(from)?;
-        Ok(stored.into_iter().map(StoredParticle::particle).collect())
     }
 }
 

@@ -152,7 +152,9 @@ mod tests {
             let factor = spec.mutation.map_or(1.0, |m| m.factor_of(Constant::BodyForce));
             match spec.measure {
                 Measure::All => record.put(FORCE, factor),
-                Measure::Headline => record.leave_unasked(&[FORCE]),
+                Measure::Headline => {
+                    record.leave_all_out(&[FORCE], &touchstone_base::absent::Absent::NotAsked)
+                }
             }
             record.cost.steps = 1;
             Ok(record)

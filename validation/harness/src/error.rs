@@ -106,7 +106,7 @@ pub enum RunError {
     },
     /// Frames of another code that do not fit the run.
     #[error("{0}")]
-    Playback(String),
+    Foreign(String),
     /// More time or memory than a run may take.
     #[error(
         "the run would be {size}; without --allow-long at most {} and {} MB are allowed; change {settings}",

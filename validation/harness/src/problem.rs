@@ -10,21 +10,22 @@ use touchstone_base::{
     record::{Profile, Record, Status},
     spec::{Keep, Measure, RunSpec},
 };
-use touchstone_solver::{Numbers, Outcome, Particle, Role, Stepper};
+use touchstone_solver::{Divergence, Numbers, Outcome, Role, Stepper};
 
 use crate::{
     checkpoint::as_json,
     context::Context,
     error::RunError,
+    foreign::{self, Foreign, OurSums},
     frames,
     medium::{Knob, Medium},
     method::{Method, Parts, see},
     outline::Outline,
-    playback::Playback,
     relation::{Relation, TIME, View},
     rules::Rules,
-    runner::{Drive, check_size},
+    runner::{self, Drive, check_size},
     size::Size,
+    snapshot::{Columns, Snapshot},
 };
 
 /// Name of the kernel in the numerics of a record.
@@ -113,7 +114,7 @@ pub trait Problem: Sized {
     type Simulation: Stepper<Self::Extra> + ?Sized;
     /// All that accumulates over a run.
     type Watch: Serialize + DeserializeOwned;
-    /// Does [`Problem::watch`] read the particles of the scene?
+    /// Does [`Problem::watch`] read the scene?
     const READS_START: bool = false;
 
     /// The method.
@@ -139,17 +140,17 @@ pub trait Problem: Sized {
     /// Changes a new simulation by data that no scene states, in the frame of an observer.
     fn prepare(&self, _simulation: &mut Self::Simulation, _view: &View) {}
 
-    /// The watch before the first step. `start` are the particles of the scene before any deliberate error,
-    /// if [`Problem::READS_START`].
-    fn watch(&self, start: &[Particle<Self::Extra>], simulation: &Self::Simulation) -> Self::Watch;
+    /// The watch before the first step: `scene` has the particles before any deliberate error, none unless
+    /// [`Problem::READS_START`], and `start` the particles with it.
+    fn watch(&self, scene: &Snapshot<Self::Extra>, start: &Snapshot<Self::Extra>) -> Self::Watch;
 
     /// Adds the functions that measure on the way.
     fn calls(&self, calls: Calls<Self>, _asked: Asked) -> Calls<Self> {
         calls
     }
 
-    /// Puts metrics and profiles; the simulation is at its end, the record states how it ended.
-    fn measure(&self, watch: Self::Watch, end: &Self::Simulation, record: &mut Record);
+    /// Puts metrics and profiles at the end; the record states how the run ended.
+    fn measure(&self, watch: Self::Watch, end: &Snapshot<Self::Extra>, record: &mut Record);
 }
 
 /// State of an observed run: everything that changes during it.
@@ -162,18 +163,24 @@ struct Watched<W> {
 
 /// Called after every step.
 type AfterStep<P> =
-    fn(&P, &mut <P as Problem>::Watch, &dyn Stepper<<P as Problem>::Extra>) -> ControlFlow<()>;
+    fn(&P, &mut <P as Problem>::Watch, &Snapshot<<P as Problem>::Extra>) -> ControlFlow<()>;
+/// Called after every step of our own runs.
+type EveryStep<P> = fn(&P, &mut <P as Problem>::Watch, &dyn Stepper<<P as Problem>::Extra>);
 /// Called at the k-th of the times of interest.
 type At<P> =
-    fn(&P, &mut <P as Problem>::Watch, &mut <P as Problem>::Simulation, usize, &mut Record);
+    fn(&P, &mut <P as Problem>::Watch, &Snapshot<<P as Problem>::Extra>, usize, &mut Record);
+/// Called at each of the times of interest of our own runs.
+type OfOurs<P> = fn(&P, &mut <P as Problem>::Watch, &mut <P as Problem>::Simulation);
 /// Called when a run goes on from a checkpoint.
 type Resumed<P> = fn(&P, &<P as Problem>::Watch, &mut <P as Problem>::Simulation);
 
 /// The functions of a problem that are called on the way, with the names that a profile of the run shows.
 pub struct Calls<P: Problem> {
     after_step: Vec<(&'static str, AfterStep<P>)>,
+    every_step: Vec<(&'static str, EveryStep<P>)>,
     at: Vec<(&'static str, Reads, At<P>)>,
-    control: Option<(&'static str, At<P>, Resumed<P>)>,
+    of_ours: Vec<(&'static str, OfOurs<P>)>,
+    resumed: Option<Resumed<P>>,
 }
 
 /// Data that a function at a time of interest reads.
@@ -185,7 +192,13 @@ enum Reads {
 
 impl<P: Problem> Default for Calls<P> {
     fn default() -> Self {
-        Self { after_step: Vec::new(), at: Vec::new(), control: None }
+        Self {
+            after_step: Vec::new(),
+            every_step: Vec::new(),
+            at: Vec::new(),
+            of_ours: Vec::new(),
+            resumed: None,
+        }
     }
 }
 
@@ -194,6 +207,13 @@ impl<P: Problem> Calls<P> {
     #[must_use]
     pub fn after_step(mut self, name: &'static str, call: AfterStep<P>) -> Self {
         self.after_step.push((name, call));
+        self
+    }
+
+    /// Calls a function after every step of our own runs, which files of another code do not have.
+    #[must_use]
+    pub fn every_step_of_ours(mut self, name: &'static str, call: EveryStep<P>) -> Self {
+        self.every_step.push((name, call));
         self
     }
 
@@ -218,13 +238,20 @@ impl<P: Problem> Calls<P> {
         if is { add(self) } else { self }
     }
 
-    /// Calls a function at each of the times of interest that changes a simulation of ours, after all that
-    /// measure; of another code's frames it is not called. `resumed` makes the change again when a run goes
-    /// on from a checkpoint, which does not hold it.
+    /// Calls a function at each of the times of interest of our own runs, after all others: it may take the
+    /// sums of our terms.
     #[must_use]
-    pub fn control(mut self, name: &'static str, call: At<P>, resumed: Resumed<P>) -> Self {
-        self.control = Some((name, call, resumed));
+    pub fn of_ours(mut self, name: &'static str, call: OfOurs<P>) -> Self {
+        self.of_ours.push((name, call));
         self
+    }
+
+    /// Likewise a function that changes our simulation. `resumed` makes the change again when a run goes on
+    /// from a checkpoint, which does not hold it.
+    #[must_use]
+    pub fn control(mut self, name: &'static str, call: OfOurs<P>, resumed: Resumed<P>) -> Self {
+        self.resumed = Some(resumed);
+        self.of_ours(name, call)
     }
 }
 
@@ -294,7 +321,7 @@ pub trait Posed {
     ///
     /// # Errors
     /// If the run is refused, or a frame does not fit its scene.
-    fn measure_frames(&self, spec: &RunSpec, playback: &Playback) -> Result<Record, RunError>;
+    fn measure_frames(&self, spec: &RunSpec, foreign: &Foreign) -> Result<Record, RunError>;
 }
 
 impl<P: Problem> Posed for P {
@@ -307,7 +334,7 @@ impl<P: Problem> Posed for P {
     }
 
     fn simulate(&self, context: &Context) -> Result<Record, RunError> {
-        self.driven(&context.spec, Steps::All, context, None)
+        self.driven(context)
     }
 
     fn outline(
@@ -337,9 +364,8 @@ impl<P: Problem> Posed for P {
         Ok(outline)
     }
 
-    fn measure_frames(&self, spec: &RunSpec, playback: &Playback) -> Result<Record, RunError> {
-        let context = Context { spec: spec.clone(), allow_long: true, ..Context::default() };
-        self.driven(spec, Steps::None, &context, Some(playback))
+    fn measure_frames(&self, spec: &RunSpec, foreign: &Foreign) -> Result<Record, RunError> {
+        self.measured(spec, foreign)
     }
 }
 
@@ -460,55 +486,123 @@ trait Parted: Problem {
         record
     }
 
-    /// Simulates a run, or shows it the frames of another code, and measures it.
-    fn driven(
-        &self,
-        spec: &RunSpec,
-        steps: Steps,
-        context: &Context,
-        playback: Option<&Playback>,
-    ) -> Result<Record, RunError> {
-        let (brief, size) = self.checked(spec, steps, context.allow_long)?;
+    /// Simulates a run, and measures it.
+    fn driven(&self, context: &Context) -> Result<Record, RunError> {
+        let spec = &context.spec;
+        let (brief, size) = self.checked(spec, Steps::All, context.allow_long)?;
         let threads = if brief.is_serial { 1 } else { context.threads };
-        let mut parts = self.parts(spec, threads)?;
-        if let Some(playback) = playback {
-            parts.particles = playback.particles(parts.particles);
-        }
-        let start = if Self::READS_START { parts.particles.clone() } else { Vec::new() };
+        let parts = self.parts(spec, threads)?;
+        let scene = if Self::READS_START { &parts.particles[..] } else { &[] };
+        let scene = Snapshot::of(0.0, scene);
         let mut simulation = self.built(parts, &View::default())?;
         let record = self.begun(spec, threads, &brief);
         let (times, asked) = (self.times(), Asked::of(spec));
-        let watch = self.watch(&start, &simulation);
-        drop(start);
-        let Calls { after_step, mut at, control } = self.calls(Calls::default(), asked);
+        let watch = self.watch(&scene, &Snapshot::ours(simulation.stepper()));
+        drop(scene);
+        let Calls { after_step, every_step, at, of_ours, resumed } =
+            self.calls(Calls::default(), asked);
         let mut seen = Watched { watch, record };
         let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
         let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
             .steps(brief.least_steps, size.sweeps);
-        if let Some((name, call, resumed)) = control.filter(|_| playback.is_none()) {
-            at.push((name, Reads::All, call));
-            drive = drive.resumed(move |seen, s| resumed(self, &seen.watch, s));
-        }
         for (name, call) in after_step {
-            drive = drive.after_step(name, move |seen, s| call(self, &mut seen.watch, s));
+            let call = move |seen: &mut Watched<Self::Watch>, s: &dyn Stepper<Self::Extra>| {
+                call(self, &mut seen.watch, &Snapshot::ours(s))
+            };
+            drive = drive.after_step(name, call);
+        }
+        for (name, call) in every_step {
+            drive = drive.after_step(name, move |seen, s| {
+                call(self, &mut seen.watch, s);
+                ControlFlow::Continue(())
+            });
         }
         for (name, reads, call) in at {
             let call = move |seen: &mut Watched<Self::Watch>, s: &mut Self::Simulation, k| {
-                call(self, &mut seen.watch, s, k, &mut seen.record);
+                let now = Snapshot::ours(s.stepper());
+                call(self, &mut seen.watch, &now, k, &mut seen.record);
             };
             drive = match reads {
                 Reads::All => drive.at(name, call),
                 Reads::Positions => drive.at_positions(name, call),
             };
         }
-        let ended = match playback {
-            Some(playback) => drive.play(playback, context),
-            None => drive.run(context),
-        }?;
+        for (name, call) in of_ours {
+            drive = drive.at(name, move |seen, s, _| call(self, &mut seen.watch, s));
+        }
+        if let Some(resumed) = resumed {
+            drive = drive.resumed(move |seen, s| resumed(self, &seen.watch, s));
+        }
+        let ended = drive.run(context)?;
         let Watched { watch, mut record } = seen;
         ended.put(&mut record);
-        self.measure(watch, &simulation, &mut record);
+        self.measure(watch, &Snapshot::ours(simulation.stepper()), &mut record);
         Ok(record)
+    }
+
+    /// Measures particles of another code.
+    fn measured(&self, spec: &RunSpec, foreign: &Foreign) -> Result<Record, RunError> {
+        let (brief, _) = self.checked(spec, Steps::None, true)?;
+        let (parts, times) = (self.parts(spec, 1)?, self.times());
+        let end = times.last().copied().unwrap_or_default();
+        if let Some(time) = foreign::missing(foreign.frames, &times).first() {
+            return Err(RunError::Foreign(format!("there is no frame at t = {time} s")));
+        }
+        let (own, limits) = (foreign.own_start(), parts.limits);
+        let scene = own.clone().unwrap_or_else(|| Columns::all(&parts.particles));
+        let sums = self.sums(parts, foreign)?;
+        let start = own.or_else(|| sums.particles());
+        let mut start = start.unwrap_or_else(|| scene.clone());
+        let mut record = self.begun(spec, 1, &brief);
+        record.cost.particles = start.points.iter().filter(|point| point.is_fluid()).count();
+        let mut last = Snapshot::given(0.0, start.clone(), &sums);
+        let mut watch = self.watch(&Snapshot::given(0.0, scene, &sums), &last);
+        start.densities = start.densities.filter(|_| foreign.has_densities());
+        let Calls { after_step, at, .. } = self.calls(Calls::default(), Asked::of(spec));
+        let mut reached = 0;
+        for frame in foreign.frames {
+            let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));
+            let time = next(reached).copied().unwrap_or(frame.time);
+            let diverged = |fault| runner::diverged(Divergence { step: 0, time, fault });
+            if let Some(fault) = foreign.lost(frame, &limits) {
+                record.status = diverged(fault);
+                break;
+            }
+            let columns = foreign.columns(frame, &start)?;
+            if let Some(fault) = foreign.crowded(frame, &columns) {
+                record.status = diverged(fault);
+                break;
+            }
+            last = Snapshot::given(time, columns, &sums);
+            for (_, call) in &after_step {
+                let _goes_on = call(self, &mut watch, &last);
+            }
+            // A time may be stated twice, such as that of a sample and of a picture.
+            while next(reached).is_some() {
+                at.iter()
+                    .for_each(|(_, _, call)| call(self, &mut watch, &last, reached, &mut record));
+                reached += 1;
+            }
+        }
+        record.state = last.sums(runner::state).ok();
+        self.measure(watch, &last, &mut record);
+        Ok(record)
+    }
+
+    /// Sums of our method over particles of another code that start like this.
+    fn sums(
+        &self,
+        parts: Parts<Self::Extra>,
+        foreign: &Foreign,
+    ) -> Result<OurSums<Self::Simulation>, RunError> {
+        let h = parts.medium.h;
+        let particles = match foreign.own.is_empty() {
+            true => Some(parts.particles),
+            false => foreign.own_particles(),
+        };
+        let built =
+            particles.map(|particles| self.built(Parts { particles, ..parts }, &View::default()));
+        Ok(OurSums::new(built.transpose()?, &self.method().properties, h))
     }
 }
 
@@ -517,7 +611,7 @@ impl<P: Problem> Parted for P {}
 /// The scene of a run.
 type Scenes<X> = Box<dyn Fn() -> Result<Parts<X>, RunError>>;
 /// Measures the particles at the end.
-type AtEnd<X> = Box<dyn Fn(&dyn Stepper<X>, &mut Record)>;
+type AtEnd<X> = Box<dyn Fn(&Snapshot<X>, &mut Record)>;
 
 /// A run that is measured at its end alone.
 pub struct Simple<X: Numbers = ()> {
@@ -543,7 +637,7 @@ impl<X: Numbers> Simple<X> {
         (particles, decisive): (f64, &'static str),
         numbers: &[(&'static str, f64)],
         scene: impl Fn() -> Result<Parts<X>, RunError> + 'static,
-        measure: impl Fn(&dyn Stepper<X>, &mut Record) + 'static,
+        measure: impl Fn(&Snapshot<X>, &mut Record) + 'static,
     ) -> Self {
         let (method, numbers) = (method.clone(), numbers.to_vec());
         let (scene, measure) = (Box::new(scene), Box::new(measure));
@@ -577,9 +671,9 @@ impl<X: Numbers> Problem for Simple<X> {
         (self.scene)()
     }
 
-    fn watch(&self, _: &[Particle<X>], _: &dyn Stepper<X>) {}
+    fn watch(&self, _: &Snapshot<X>, _: &Snapshot<X>) {}
 
-    fn measure(&self, (): (), end: &dyn Stepper<X>, record: &mut Record) {
+    fn measure(&self, (): (), end: &Snapshot<X>, record: &mut Record) {
         if record.status == Status::Completed {
             (self.measure)(end, record);
         }

@@ -8,7 +8,9 @@ use std::time::{Duration, Instant};
 
 use serde::{Serialize, de::DeserializeOwned};
 use touchstone_base::{lock, mutation::Constant, record::*};
-use touchstone_solver::{EquationOfState, Numbers, Observer, Outcome, Stepper, Symmetric};
+use touchstone_solver::{
+    Divergence, EquationOfState, Numbers, Observer, Outcome, Stepper, Symmetric,
+};
 
 pub use crate::context::{Context, Progress};
 use crate::{
@@ -16,7 +18,6 @@ use crate::{
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
-    playback::{self, Playback},
     profile::{self, Profiler},
     size::Size,
 };
@@ -42,13 +43,25 @@ impl Ended {
     }
 }
 
-fn state<X: Numbers>(simulation: &dyn Stepper<X>) -> String {
+/// Digest of a state.
+pub(crate) fn state<X: Numbers>(simulation: &dyn Stepper<X>) -> String {
     let mut numbers = Vec::new();
     for p in simulation.particles() {
         numbers.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density]);
         numbers.extend(p.extra.stress().map(Symmetric::components).into_iter().flatten());
     }
     digest(&numbers)
+}
+
+/// How a run that diverged has ended.
+pub(crate) fn diverged(Divergence { step, time, fault }: Divergence) -> Status {
+    Status::Diverged {
+        step,
+        time,
+        particle: fault.particle as usize,
+        field: fault.field.into(),
+        value_text: format!("{:.6e}", fault.value),
+    }
 }
 
 /// A simulation and all that is observed of it.
@@ -277,7 +290,7 @@ impl Watch<'_> {
         }
         match outcome {
             Outcome::Reached => None,
-            Outcome::Diverged(divergence) => Some(playback::diverged(divergence)),
+            Outcome::Diverged(divergence) => Some(diverged(divergence)),
             Outcome::Stopped => {
                 let (step, time) = (simulation.work().steps, simulation.time());
                 Some(Status::Interrupted { step, time })
@@ -316,33 +329,6 @@ impl Watch<'_> {
             frames.write(simulation).unwrap_or_else(|error| self.context.lose(&error.into()));
         }
         self.ended(simulation, Status::Completed)
-    }
-
-    /// Passes every frame of another code to the observers, and makes the calls at its times.
-    fn play<X: Numbers>(
-        &mut self,
-        run: Running<X>,
-        playback: &Playback,
-    ) -> Result<Ended, RunError> {
-        let (times, end) = (self.course.times, self.end);
-        if let Some(time) = playback::missing(playback.frames, times).first() {
-            return Err(RunError::Playback(format!("there is no frame at t = {time} s")));
-        }
-        for frame in playback.frames {
-            let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));
-            let (simulation, seen) = run.parts();
-            let time = next(self.reached).copied().unwrap_or(frame.time);
-            if let Some(ended) = playback::put(playback, frame, time, simulation)? {
-                return Ok(self.ended(simulation, ended));
-            }
-            let _plays_every_frame = Watching { watch: self, seen }.after_step(simulation);
-            // A time may be stated twice, for example for a sample and a picture.
-            while next(self.reached).is_some() {
-                (0..self.course.at.len()).for_each(|k| run.at(k, self.reached));
-                self.reached += 1;
-            }
-        }
-        Ok(self.ended(run.parts().0, Status::Completed))
     }
 
     /// Goes on from a checkpoint if there is one; how the simulation ended, if it did.
@@ -546,14 +532,6 @@ where
     pub fn resumed(mut self, resumed: impl Fn(&S, &mut D) + 'a) -> Self {
         self.run.resumed = Box::new(resumed);
         self
-    }
-
-    /// Shows every frame of another code to the functions, in place of steps.
-    ///
-    /// # Errors
-    /// If a frame is missing or does not fit the scene.
-    pub fn play(mut self, playback: &Playback, context: &Context) -> Result<Ended, RunError> {
-        self.course.watch(context)?.play(&mut self.run, playback)
     }
 
     /// Steps through the times. The cost covers the stepping, and separately the observing.

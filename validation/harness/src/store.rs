@@ -277,7 +277,7 @@ mod tests {
         let store = Store::open(folder.path()).unwrap();
         let (mut all, mut headline) = (record(Status::Completed), record(Status::Completed));
         all.put(GAP, 0.0);
-        headline.leave_unasked(&[GAP]);
+        headline.leave_all_out(&[GAP], &touchstone_base::absent::Absent::NotAsked);
         let spec = all.spec();
         let serves = |spec: &RunSpec| store.find(spec).unwrap().is_some();
         store.write(&all).unwrap();

@@ -7,8 +7,8 @@ use touchstone_base::{record::Profile, spec::RunSpec};
 use crate::{
     case::{Case, RunError},
     context::Context,
+    foreign::{Frame, Placed},
     outline::Outline,
-    playback::{Frame, Placed},
     problem::Steps,
     relation::{DENSITY, Relation, TIME},
     size::Size,

@@ -3,13 +3,14 @@
 
 use nalgebra::{SMatrix, SVector, Vector2};
 use serde::{Deserialize, Serialize};
-use touchstone_base::{gate::*, mutation::Constant, record::*, reference::*};
+use touchstone_base::{absent::Absent, gate::*, mutation::Constant, record::*, reference::*};
 use touchstone_harness::{
     case::*,
     composed::*,
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
+    snapshot::{Point, Snapshot},
     studies::*,
     table,
 };
@@ -145,14 +146,23 @@ fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
     Ok([line(0)?, line(1)?].concat())
 }
 
+/// Moving particles with their volumes \[m²\].
+///
+/// # Errors
+/// Without densities.
+fn volumes(now: &Snapshot) -> Result<Vec<(Point, f64)>, Absent> {
+    let density = now.density()?;
+    Ok(now.moving().into_iter().map(|p| (p, p.mass / density.of(&p))).collect())
+}
+
 /// The velocity at a point, from a quadratic field fitted to the fluid within 4.5 spacings with weights V W,
 /// so that a boundary layer is not smoothed. NaN without a fit.
-fn velocity((place, component, _): &Place, particles: &[Particle], dx: f64) -> f64 {
+fn velocity((place, component, _): &Place, fluid: &[(Point, f64)], dx: f64) -> f64 {
     let kernel = Smoothing::<QuinticSpline>::new(1.5 * dx);
     let (mut moments, mut sum) = (SMatrix::<f64, 6, 6>::zeros(), SVector::<f64, 6>::zeros());
-    for p in particles.iter().filter(|p| p.role == Role::Fluid) {
+    for (p, volume) in fluid {
         let r = (p.position - place) / dx;
-        let weight = p.mass / p.density * kernel.w(r.norm_squared() * dx * dx);
+        let weight = volume * kernel.w(r.norm_squared() * dx * dx);
         if weight > 0.0 {
             let basis = SVector::from([1.0, r.x, r.y, r.x * r.x, r.x * r.y, r.y * r.y]);
             moments += basis * basis.transpose() * weight;
@@ -191,6 +201,9 @@ fn measure(places: &[Place], means: &[f64], record: &mut Record) {
     record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
 }
 
+/// Metrics that need the volume of each particle.
+const OF_VOLUMES: &[MetricKey] = &[U_RMS, V_RMS, U_GHIA, V_GHIA, STRENGTH, RETURN, VOLUME];
+
 /// Means of the velocity at the places of the mid-lines.
 #[derive(Serialize, Deserialize)]
 struct Means {
@@ -222,26 +235,32 @@ impl Problem for Closed {
         Ok(self.flow.parts(Domain::open(), particles(&self.method, &self.flow)))
     }
 
-    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Means {
-        let fluid = start.iter().filter(|p| p.role == Role::Fluid);
-        Means { means: vec![0.0; self.places.len()], volume: fluid.map(|p| p.mass).sum() }
+    fn watch(&self, scene: &Snapshot, _: &Snapshot) -> Means {
+        let volume = scene.moving().iter().map(|p| p.mass).sum();
+        Means { means: vec![0.0; self.places.len()], volume }
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.at("mid-lines", |cavity, Means { means, .. }, s, _, _| {
-            let (particles, dx) = (s.particles(), cavity.flow.medium.dx);
+        calls.at("mid-lines", |cavity, Means { means, .. }, now, _, _| {
+            let (Ok(fluid), dx) = (volumes(now), cavity.flow.medium.dx) else { return };
             for (mean, place) in means.iter_mut().zip(&cavity.places) {
-                *mean += velocity(place, &particles, dx) / SAMPLES as f64;
+                *mean += velocity(place, &fluid, dx) / SAMPLES as f64;
             }
         })
     }
 
-    fn measure(&self, Means { means, volume }: Means, end: &dyn Stepper<()>, record: &mut Record) {
-        let mut all = end.particles();
+    fn measure(&self, Means { means, volume }: Means, end: &Snapshot, record: &mut Record) {
+        let mut all = end.all();
         if record.status == Status::Completed {
-            measure(&self.places, &means, record);
-            all.retain(|p| p.role == Role::Fluid);
-            record.put(VOLUME, all.iter().map(|p| p.mass / p.density).sum::<f64>() / volume - 1.0);
+            all.retain(Point::is_fluid);
+            match volumes(end) {
+                Ok(fluid) => {
+                    measure(&self.places, &means, record);
+                    let now = fluid.iter().map(|(_, volume)| volume).sum::<f64>();
+                    record.put(VOLUME, now / volume - 1.0);
+                }
+                Err(absent) => record.leave_all_out(OF_VOLUMES, &absent),
+            }
             let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
             record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
         }
@@ -431,7 +450,8 @@ mod tests {
             [([0.5, 0.03], 0), ([0.5, 0.517], 0), ([0.97, 0.5], 1), ([0.211, 0.5], 1)]
         {
             let place = Vector2::new(place[0], place[1]);
-            let found = velocity(&(place, component, [0.0; 2]), &all, flow.medium.dx);
+            let fluid = volumes(&Snapshot::of(0.0, &all)).expect("densities");
+            let found = velocity(&(place, component, [0.0; 2]), &fluid, flow.medium.dx);
             assert!((found - field(place)[component]).abs() < 1e-9, "{place:?}: {found}");
         }
     }

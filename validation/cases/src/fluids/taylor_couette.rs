@@ -3,7 +3,14 @@
 use nalgebra::Vector2;
 use touchstone_base::{gate::*, record::*};
 use touchstone_harness::table::{Row, Table};
-use touchstone_harness::{case::*, composed::*, method::*, problem::Simple, studies::*};
+use touchstone_harness::{
+    case::*,
+    composed::*,
+    method::*,
+    problem::Simple,
+    snapshot::{Point, Snapshot},
+    studies::*,
+};
 use touchstone_maths::exact::TaylorCouette;
 use touchstone_maths::geometry::{Curve, Row as Particles};
 use touchstone_maths::metrics::norms::l2;
@@ -117,19 +124,18 @@ fn pose(method: &Method, s: &CylinderSettings) -> Result<Simple, RunError> {
     let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
     let size = (area / (medium.dx * medium.dx), DECISIVE);
     let scene = move || Ok(Parts::new(medium, Domain::open(), cylinders.particles(&m)));
-    let at_end = move |end: &dyn Stepper<()>, record: &mut Record| {
-        measure(&flow, &end.particles(), record);
+    let at_end = move |end: &Snapshot, record: &mut Record| {
+        measure(&flow, &end.moving(), record);
     };
     Ok(Simple::new(method, (medium, rules), size, &numbers, scene, at_end))
 }
 
-fn measure(flow: &TaylorCouette, particles: &[Particle], record: &mut Record) {
-    let fluid = particles.iter().filter(|p| p.role == Role::Fluid);
-    let polar = |p: &Particle| {
+fn measure(flow: &TaylorCouette, fluid: &[Point], record: &mut Record) {
+    let polar = |p: &Point| {
         let (x, v, r) = (p.position, p.velocity, p.position.norm());
         [r, x.perp(&v) / r, x.dot(&v) / r]
     };
-    let mut fluid: Vec<[f64; 3]> = fluid.map(polar).collect();
+    let mut fluid: Vec<[f64; 3]> = fluid.iter().map(polar).collect();
     fluid.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let around: Vec<f64> = fluid.iter().map(|f| f[1]).collect();
     let exact: Vec<f64> = fluid.iter().map(|f| flow.velocity(f[0])).collect();
@@ -304,7 +310,7 @@ mod tests {
         let mut particles: Vec<Particle> = (0..).zip(radii).map(|(k, r)| at(k, r)).collect();
         particles.extend([at(9, 0.5e-3), at(10, 2.5e-3)].map(|p| p.with_role(Role::Wall)));
         let mut record = Record::new(NAME, INTERFACE, serde_json::json!({}), 1);
-        measure(&flow, &particles, &mut record);
+        measure(&flow, &Snapshot::of(1.0, &particles).moving(), &mut record);
         assert_relative_eq!(value(&record, L2), 0.02, max_relative = 1e-12);
         assert_relative_eq!(value(&record, RADIAL_RMS), 0.01, max_relative = 1e-12);
         assert_eq!(value(&record, OUTSIDE), 3.0);

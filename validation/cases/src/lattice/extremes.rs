@@ -12,10 +12,11 @@ use touchstone_harness::{
     composed::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
+    snapshot::{Point, Snapshot, momentum},
     studies::Studies,
     table::{Row, Table},
 };
-use touchstone_maths::metrics::{momentum::momentum, norms::largest};
+use touchstone_maths::metrics::norms::largest;
 use touchstone_solver::{Domain, Particle, Stepper, Tait};
 
 use crate::lattice::torus;
@@ -115,11 +116,11 @@ struct Extreme {
     settings: ExtremeSettings,
 }
 
-/// The particles at the start, and how far the clock was off.
+/// Momentum at the start and the sum of its sizes \[kg/s\], and how far the clock was off.
 #[derive(Serialize, Deserialize)]
 struct Watch {
-    #[serde(with = "touchstone_harness::checkpoint::particles")]
-    start: Vec<Particle>,
+    momentum: Vector2<f64>,
+    scale: f64,
     late: f64,
 }
 
@@ -175,12 +176,15 @@ impl Problem for Extreme {
         Ok(scene(&self.method, &self.settings))
     }
 
-    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Watch {
-        Watch { start: start.to_vec(), late: 0.0 }
+    fn watch(&self, scene: &Snapshot, _: &Snapshot) -> Watch {
+        let start = scene.all();
+        let scale = start.iter().map(|p| p.mass * p.velocity.norm()).sum();
+        Watch { momentum: momentum(&start), scale, late: 0.0 }
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.at("samples", |extreme, Watch { late, .. }, simulation, look, _| {
+        calls.at("samples", |extreme, Watch { late, .. }, now, look, _| {
+            let Ok(simulation) = now.simulation() else { return };
             let done = extreme.done(look);
             let is_on_time = simulation.work().steps == done as u64;
             let off = (simulation.time() - done as f64 * extreme.settings.dt).abs();
@@ -188,14 +192,13 @@ impl Problem for Extreme {
         })
     }
 
-    fn measure(&self, Watch { start, late }: Watch, end: &dyn Stepper<()>, record: &mut Record) {
-        let end = end.particles();
+    fn measure(&self, watch: Watch, end: &Snapshot, record: &mut Record) {
+        let (Watch { momentum: start, scale, late }, end) = (watch, end.all());
         if self.is_resting() {
             record.put(HEAT, fastest(&end));
             record.put(CLOCK_ERROR, late);
         } else {
-            let scale: f64 = start.iter().map(|p| p.mass * p.velocity.norm()).sum();
-            let change = (momentum(&end) - momentum(&start)).norm();
+            let change = (momentum(&end) - start).norm();
             record.put(MOMENTUM_ERROR, if scale > 0.0 { change / scale } else { change });
             record.put(FASTEST, (2.0 * fastest(&end)).sqrt());
         }
@@ -203,7 +206,7 @@ impl Problem for Extreme {
 }
 
 /// Kinetic energy per mass of the fastest particle \[c₀²\]; NaN stays.
-fn fastest(particles: &[Particle]) -> f64 {
+fn fastest(particles: &[Point]) -> f64 {
     largest(particles.iter().map(|p| 0.5 * p.velocity.norm_squared()))
 }
 

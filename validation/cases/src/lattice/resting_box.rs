@@ -10,7 +10,7 @@
 
 use nalgebra::Vector2;
 use std::ops::ControlFlow;
-use touchstone_base::{gate::*, random::Random, record::*, spec::Bisect};
+use touchstone_base::{absent::Absent, gate::*, random::Random, record::*, spec::Bisect};
 use touchstone_harness::{
     bisect::Growth,
     case::*,
@@ -19,11 +19,12 @@ use touchstone_harness::{
     method::*,
     problem::{Asked, Brief, Calls, Problem},
     rules::PLANNED_DT_OVER_LIMIT,
+    snapshot::{Point, Snapshot},
     studies::*,
     table::{Row, Table},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
-use touchstone_solver::{Limits, Particle, Stepper, Tait};
+use touchstone_solver::{Limits, Stepper, Tait};
 
 use crate::lattice::torus;
 
@@ -182,16 +183,19 @@ fn parts(method: &Method, s: &BoxSettings) -> Parts {
 }
 
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
-fn energy(simulation: &dyn Stepper<()>) -> f64 {
-    let of = |(mass, e): (f64, &touchstone_solver::State<()>)| {
-        0.5 * mass * (e.velocity.norm_squared() + (e.density - 1.0) * (e.density - 1.0))
+fn energy(now: &Snapshot) -> Result<f64, Absent> {
+    let density = now.density()?;
+    let of = |p: Point| {
+        let compression = density.of(&p) - 1.0;
+        0.5 * p.mass * (p.velocity.norm_squared() + compression * compression)
     };
-    simulation.data().fluid().map(of).sum()
+    Ok(now.stored().map(of).sum())
 }
 
 /// Watches the energy, and ends the run if it grew beyond doubt.
-fn watch(growth: &mut Growth, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
-    if growth.see(energy(simulation)) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+fn watch(growth: &mut Growth, now: &Snapshot) -> ControlFlow<()> {
+    let is_beyond_doubt = energy(now).is_ok_and(|energy| growth.see(energy));
+    if is_beyond_doubt { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 impl Problem for Resting {
@@ -228,18 +232,18 @@ impl Problem for Resting {
         Ok(parts(&self.method, &self.settings))
     }
 
-    fn watch(&self, _: &[Particle], simulation: &dyn Stepper<()>) -> Growth {
-        Growth::new(energy(simulation), self.settings.steps as u64)
+    fn watch(&self, _: &Snapshot, start: &Snapshot) -> Growth {
+        Growth::new(energy(start).unwrap_or(f64::NAN), self.settings.steps as u64)
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.after_step("energy", |_, growth, simulation| watch(growth, simulation))
+        calls.after_step("energy", |_, growth, now| watch(growth, now))
     }
 
-    fn measure(&self, growth: Growth, end: &dyn Stepper<()>, record: &mut Record) {
+    fn measure(&self, growth: Growth, end: &Snapshot, record: &mut Record) {
         let grew = matches!(record.status, Status::Diverged { .. }) || growth.grew();
         record.put(GREW, f64::from(u8::from(grew)));
-        record.put(ENERGY, energy(end) / growth.start);
+        record.put_or_absent(ENERGY, energy(end).map(|energy| energy / growth.start));
         // A run that is over early because its energy grew beyond doubt is complete.
         if growth.beyond_doubt {
             record.status = Status::Completed;

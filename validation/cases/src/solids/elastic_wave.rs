@@ -7,14 +7,14 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::ops::ControlFlow;
-use touchstone_base::{functions::*, gate::*, record::*};
+use touchstone_base::{absent::Absent, functions::*, gate::*, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
     rules::PLANNED_DT,
+    snapshot::Snapshot,
     studies::Studies,
     table::*,
 };
@@ -155,15 +155,18 @@ impl Problem for Wave {
         Ok(self.settings.parts(&self.method))
     }
 
-    fn watch(&self, _: &[Particle<Symmetric>], _: &dyn Stepper<Symmetric>) -> Watch {
+    fn watch(&self, _: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> Watch {
         Watch { direction: self.settings.direction(), amplitudes: Vec::new() }
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.after_step("projection", |_, watch, simulation| watch.after_step(simulation))
+        calls.every_step_of_ours("projection", |_, watch, simulation| watch.after_step(simulation))
     }
 
-    fn measure(&self, watch: Watch, _: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn measure(&self, watch: Watch, end: &Snapshot<Symmetric>, record: &mut Record) {
+        if end.simulation().is_err() {
+            return record.leave_out(FREQUENCY_ERROR, Absent::EveryStep);
+        }
         let dt = self.settings.rules(&self.method).dt();
         let turn = self.settings.frequency(&self.method) * dt;
         record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * watch.angle()) / turn - 1.0).abs());
@@ -188,12 +191,11 @@ impl Watch {
         acos(0.5 * forward / square)
     }
 
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) -> ControlFlow<()> {
+    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
         let particles = simulation.particles();
         let part =
             |(k, p): (usize, &Particle<Symmetric>)| p.velocity.dot(&self.direction) * cos(phase(k));
         self.amplitudes.push(particles.iter().enumerate().map(part).sum());
-        ControlFlow::Continue(())
     }
 }
 

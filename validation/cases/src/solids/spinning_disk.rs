@@ -3,8 +3,15 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
-use touchstone_base::{gate::*, record::*};
-use touchstone_harness::{case::*, composed::*, studies::*, table::*};
+use touchstone_base::{absent::Absent, gate::*, record::*};
+use touchstone_harness::{
+    case::*,
+    composed::*,
+    series::Series,
+    snapshot::{Snapshot, momentum},
+    studies::*,
+    table::*,
+};
 use touchstone_maths::metrics::history;
 use touchstone_solver::*;
 
@@ -95,8 +102,8 @@ impl Body for DiskSettings {
             .collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], _energy: Option<Energy>) -> History {
-        History::new(self, start)
+    fn watch(&self, scene: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> History {
+        History::new(self, scene)
     }
 }
 
@@ -109,42 +116,52 @@ pub struct History {
     mass: f64,
     until: f64,
     /// t \[s\], angular momentum, energy, mean square of the deviator.
-    series: Vec<[f64; 4]>,
+    series: Series<4>,
     /// Shear squared after the first step: the largest inside, the mean in the rim \[Pa²\]; and the
     /// step \[s\].
     first: Option<([f64; 2], f64)>,
 }
 
 impl History {
-    fn new(s: &DiskSettings, start: &[Particle<Symmetric>]) -> Self {
+    fn new(s: &DiskSettings, scene: &Snapshot<Symmetric>) -> Self {
+        let start = scene.all();
         let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
-        let energy = Energy::of_all(start, &s.material()).total();
         let (mass, until) = (start.iter().map(|p| p.mass).sum(), s.end() / SAMPLES);
-        let series = vec![[0.0, spin, energy, 0.0]];
+        let energy = Energy::of_points(start.into_iter(), scene, &s.material());
+        let mut series = Series::default();
+        series.push([Ok(0.0), Ok(spin), energy.map(|energy| energy.total()), Ok(0.0)]);
         Self { settings: s.clone(), mass, until, series, first: None }
     }
 
-    fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
-        let (mut mass, mut stress) = (0.0, 0.0);
-        for (m, p) in simulation.data().fluid() {
-            mass += m;
-            stress += m * norm_squared(&p.extra);
+    fn sample(&mut self, now: &Snapshot<Symmetric>) {
+        let mean = now.stress().map(|stress| {
+            let (mut mass, mut sum) = (0.0, 0.0);
+            for p in now.stored() {
+                mass += p.mass;
+                sum += p.mass * norm_squared(&stress.of(&p));
+            }
+            sum / mass
+        });
+        let energy = Energy::of(now, &self.settings.material()).map(|energy| energy.total());
+        let spin = angular_momentum(now);
+        // A sample after the last step, when the velocities of a leapfrog lag, gives way to that of the end.
+        if self.series.last(0) == Ok(now.time()) {
+            self.series.pop();
         }
-        let energy = Energy::of(simulation, &self.settings.material()).total();
-        let spin = angular_momentum(simulation);
-        // A sample after the last step, when the velocities of a leapfrog lag, is replaced by the
-        // synchronised one.
-        self.series.pop_if(|row| row[0] == simulation.time());
-        self.series.push([simulation.time(), spin, energy, stress / mass]);
+        self.series.push([Ok(now.time()), Ok(spin), energy, mean]);
     }
 }
 
 /// The square of the shear in the plane, the largest inside of this radius and the mean outside
 /// \[Pa²\]. A step along tangents dilates a rotation by (W dt)²/2, which is no shear.
-fn mistaken(simulation: &dyn Stepper<Symmetric>, radius: f64) -> [f64; 2] {
+///
+/// # Errors
+/// Without stresses.
+fn mistaken(now: &Snapshot<Symmetric>, radius: f64) -> Result<[f64; 2], Absent> {
     let (mut inside, mut rim, mut count) = (0.0_f64, 0.0, 0.0);
-    for (_, p) in simulation.data().fluid() {
-        let Symmetric { xx, yy, xy } = p.extra;
+    let stress = now.stress()?;
+    for p in now.stored() {
+        let Symmetric { xx, yy, xy } = stress.of(&p);
         let square = 0.5 * (xx - yy) * (xx - yy) + 2.0 * xy * xy;
         if p.position.norm() < radius {
             inside = inside.max(square);
@@ -152,66 +169,75 @@ fn mistaken(simulation: &dyn Stepper<Symmetric>, radius: f64) -> [f64; 2] {
             (rim, count) = (rim + square, count + 1.0);
         }
     }
-    [inside, rim / count]
+    Ok([inside, rim / count])
 }
 
 impl Watch for History {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
+    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
         let s = &self.settings;
-        if self.first.is_none() {
+        if let (None, Ok(simulation)) = (self.first, now.simulation()) {
             // One support for the gradient, one for the neighbours that XSPH has moved before it.
             let interior = s.radius - 4.0 * (s.solid.h_over_dx * s.dx()) - s.dx();
-            self.first = Some((mistaken(simulation, interior), simulation.dt()));
+            let mistaken = mistaken(now, interior).ok();
+            self.first = mistaken.map(|strain| (strain, simulation.dt()));
         }
-        if simulation.time() >= self.until {
+        if now.time() >= self.until {
             self.until += s.end() / SAMPLES;
-            self.sample(simulation);
+            self.sample(now);
         }
     }
 
-    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
-        self.sample(simulation);
+    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
+        self.sample(end);
         let (material, speed) = (self.settings.material(), self.settings.speed());
         let scale = material.density * speed * speed;
         metrics(&self.series, self.settings.end, scale, record);
         let time = TENTH / self.settings.end * self.settings.end();
-        let spin = || momentum_at(&self.series, time) / self.series[0][1] - 1.0;
-        let tenth = (self.settings.end > TENTH).then(spin);
-        let short = "the run is not longer than a tenth of a revolution";
-        record.put_or(ANGULAR_MOMENTUM_TENTH, tenth, short);
+        let short = || Err("the run is not longer than a tenth of a revolution".into());
+        let tenth = match self.settings.end > TENTH {
+            true => momentum_at(&self.series, time),
+            false => short(),
+        };
+        record.put_or_absent(ANGULAR_MOMENTUM_TENTH, tenth);
         let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
         let scale = 2.0 * material.shear * speed / self.settings.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
-        let momentum =
-            touchstone_maths::metrics::momentum::momentum(&simulation.particles()).norm();
+        let momentum = momentum(&end.all()).norm();
         record.put(MOMENTUM_ERROR, momentum / (self.mass * speed));
     }
 }
 
-/// Angular momentum at a time \[s\], between two samples of the series; NaN outside of it.
-fn momentum_at(series: &[[f64; 4]], time: f64) -> f64 {
-    let spins: Vec<(f64, f64)> = series.iter().map(|row| (row[0], row[1])).collect();
-    history::differences(&spins, &[(time, 0.0)]).map_or(f64::NAN, |found| found[0])
+/// Angular momentum at a time \[s\], between two samples of the series, over that at the start, minus 1; NaN
+/// outside of the series.
+fn momentum_at(series: &Series<4>, time: f64) -> Result<f64, Absent> {
+    let (times, spins) = (series.column(0)?, series.column(1)?);
+    let both: Vec<(f64, f64)> = times.iter().copied().zip(spins.iter().copied()).collect();
+    let found = history::differences(&both, &[(time, 0.0)]).map_or(f64::NAN, |found| found[0]);
+    Ok(found / spins[0] - 1.0)
 }
 
-fn metrics(series: &[[f64; 4]], revolutions: f64, scale: f64, record: &mut Record) {
-    let [first, last] = [series[0], series[series.len() - 1]];
-    let drift = (last[1] / first[1] - 1.0).abs() / revolutions;
-    record.put(ANGULAR_MOMENTUM_DRIFT, drift);
-    let largest = series.iter().map(|row| row[3]).fold(0.0, f64::max).sqrt();
-    record.put(LARGEST_STRESS, largest / scale);
-    record.put(ENERGY_DRIFT, (last[2] / first[2] - 1.0) / revolutions);
+fn metrics(series: &Series<4>, revolutions: f64, scale: f64, record: &mut Record) {
+    let change = |k: usize| series.column(k).map(|all| all[all.len() - 1] / all[0] - 1.0);
+    let drift = change(1).map(|change| change.abs() / revolutions);
+    record.put_or_absent(ANGULAR_MOMENTUM_DRIFT, drift);
+    let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max).sqrt() / scale;
+    record.put_or_absent(LARGEST_STRESS, series.column(3).map(largest));
+    record.put_or_absent(ENERGY_DRIFT, change(2).map(|change| change / revolutions));
     let columns = [
         ("t", "s"),
         ("angular momentum", "of the start"),
         ("energy", "of the start"),
         ("stress", "rho U^2"),
     ];
-    let row =
-        |row: &[f64; 4]| [row[0], row[1] / first[1], row[2] / first[2], row[3].sqrt() / scale];
-    let profile = Profile::of_rows(&columns, &series.iter().map(row).collect::<Vec<_>>());
-    record.profiles.insert("spin".into(), profile);
+    let over_start = |k| {
+        let of_start = |all: &[f64]| all.iter().map(|value| value / all[0]).collect();
+        series.column(k).map(of_start)
+    };
+    let stress = series.column(3).map(|all| all.iter().map(|s| s.sqrt() / scale).collect());
+    let times = series.column(0).map(<[f64]>::to_vec);
+    let shown = Series::of([times, over_start(1), over_start(2), stress]);
+    record.profiles.insert("spin".into(), shown.profile(&columns));
 }
 
 /// Purpose of a run.
@@ -337,7 +363,6 @@ mod tests {
     use touchstone_harness::{
         case::{Case, RunError},
         context::Context,
-        method::Parts,
     };
 
     /// c0 is 57.02 m/s, so 0.05 c0 is 2.851 m/s.
@@ -349,8 +374,8 @@ mod tests {
             particles.iter().find(|p| p.position.x == s.radius).expect("a particle at the rim");
         let [x, y] = [rim.velocity.x, rim.velocity.y];
         assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
-        let History { mass, series, .. } = History::new(&s, &particles);
-        let row = series[0];
+        let History { mass, series, .. } = History::new(&s, &Snapshot::of(0.0, &particles));
+        let row = [0, 1, 2].map(|k| series.column(k).expect("a column")[0]);
         let spin = 2.851 / 0.04;
         let inertia = mass * 0.5 * 0.04 * 0.04;
         assert!((row[1] / (inertia * spin) - 1.0).abs() < 0.05, "R^2/2 in the mean");
@@ -371,31 +396,29 @@ mod tests {
             .iter_mut()
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
-        let method = touchstone_schemes::solid::bare();
-        let parts = Parts::new(solid::medium(&s, &method.properties), Domain::open(), particles);
-        let simulation = (method.build)(parts).expect("a scene");
-        let [inside, rim] = mistaken(&*simulation, 0.03);
+        let [inside, rim] = mistaken(&Snapshot::of(0.0, &particles), 0.03).expect("stresses");
         assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");
     }
 
     /// A disk that stopped passed: its angular momentum changed by less than 2.2 a revolution.
     #[test]
     fn a_disk_that_stops_fails() {
-        let rows = |left: f64| -> Vec<[f64; 4]> {
+        let rows = |left: f64| -> Series<4> {
             let row = |k: i32| {
                 let share = 0.01 * f64::from(k);
                 [2.0 * share, 3.0 * (1.0 - (1.0 - left) * share), 5.0, 4.0 * share]
             };
-            (0..=100).map(row).collect()
+            (0..=100).map(row).collect::<Vec<_>>().into()
         };
         let mut record = Record::new("spinning_disk", "made-up", serde_json::Value::Null, 1);
         metrics(&rows(0.2), 0.5, 10.0, &mut record);
         let metric = |name| record.value(name).expect("measured");
         assert!((metric(ANGULAR_MOMENTUM_DRIFT) - 1.6).abs() < 1e-12, "0.8 in half a revolution");
         assert!((metric(LARGEST_STRESS) - 0.2).abs() < 1e-12);
-        assert!((momentum_at(&rows(0.2), 0.405) / 3.0 - (1.0 - 0.8 * 0.2025)).abs() < 1e-12);
-        let stopped = [[0.0, 3.0, 0.0, 0.0], [0.01, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0]];
-        let change = momentum_at(&stopped, 0.2) / 3.0 - 1.0;
+        let found = momentum_at(&rows(0.2), 0.405).expect("a column");
+        assert!((found + 0.8 * 0.2025).abs() < 1e-12);
+        let stopped = vec![[0.0, 3.0, 0.0, 0.0], [0.01, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0]];
+        let change = momentum_at(&stopped.into(), 0.2).expect("a column");
         let fails = |gate: &Gate| gate.judge(Some(change)).verdict.is_failure();
         for planned in table(Tier::Full).plan().iter().filter(|planned| !planned.gates.is_empty()) {
             let name = String::from(ANGULAR_MOMENTUM_TENTH);

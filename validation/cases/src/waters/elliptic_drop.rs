@@ -12,6 +12,7 @@ use touchstone_harness::{
     pictures,
     problem::{Asked, Brief, Calls, Problem},
     rules,
+    snapshot::{Point, Snapshot},
     studies::*,
     table,
 };
@@ -122,7 +123,7 @@ impl Drop {
     }
 
     /// The exact drop with the second moment of these initial particles.
-    fn exact(&self, start: &[Particle]) -> Exact {
+    fn exact(&self, start: &[Point]) -> Exact {
         Exact::circle(shape(start).axes[0], self.settings.strain)
     }
 }
@@ -136,7 +137,7 @@ struct Shape {
     axes: [f64; 2],
 }
 
-fn shape(particles: &[Particle]) -> Shape {
+fn shape(particles: &[Point]) -> Shape {
     let (mut mass, mut centre, mut velocity) = (0.0, Vector2::zeros(), Vector2::zeros());
     for p in particles {
         mass += p.mass;
@@ -170,10 +171,10 @@ impl History {
         Self { exact, rows: Vec::new(), free_fall: [0.0; 2], velocity: 0.0 }
     }
 
-    fn sample(&mut self, drop: &Drop, simulation: &dyn Stepper<()>) {
-        let (t, g) = (simulation.time(), drop.medium.acceleration);
-        let particles = simulation.particles();
-        let now = shape(&particles);
+    fn sample(&mut self, drop: &Drop, now: &Snapshot) {
+        let (t, g) = (now.time(), drop.medium.acceleration);
+        let particles = now.all();
+        let Shape { centre, velocity, axes, .. } = shape(&particles);
         let exact = self.exact.after(t);
         let [error, scale] = particles.iter().fold([0.0; 2], |[error, scale], p| {
             let r = p.position - g * (0.5 * t * t);
@@ -182,10 +183,10 @@ impl History {
             [error + p.mass * away.norm_squared(), scale + p.mass * strain.norm_squared()]
         });
         self.velocity += error / scale;
-        self.rows.push([t, now.axes[0], now.axes[1], exact.a, exact.b]);
+        self.rows.push([t, axes[0], axes[1], exact.a, exact.b]);
         let scale = self.exact.strain * self.exact.a + g.norm() * t;
-        let velocity = (now.velocity - g * t).norm() / scale;
-        let place = (now.centre - g * (0.5 * t * t)).norm() / (scale * t + self.exact.a);
+        let velocity = (velocity - g * t).norm() / scale;
+        let place = (centre - g * (0.5 * t * t)).norm() / (scale * t + self.exact.a);
         self.free_fall = [self.free_fall[0].max(velocity), self.free_fall[1].max(place)];
     }
 
@@ -243,8 +244,8 @@ impl Problem for Drop {
         Ok(Parts::new(self.medium, Domain::open(), self.particles()))
     }
 
-    fn watch(&self, _: &[Particle], _: &dyn Metered<()>) -> Watch {
-        let start = self.particles();
+    fn watch(&self, _: &Snapshot, _: &Snapshot) -> Watch {
+        let start = Snapshot::of(0.0, &self.particles()).all();
         let Shape { mass, axes, .. } = shape(&start);
         let kinetic = mass * (self.settings.strain * axes[0]).powi(2) / 4.0;
         let (history, ledger) = (History::new(self.exact(&start)), Ledger::default());
@@ -252,11 +253,11 @@ impl Problem for Drop {
     }
 
     fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
-        calls.at("shape", |drop, watch, s, _, _| watch.history.sample(drop, s)).when(
+        calls.at("shape", |drop, watch, now, _, _| watch.history.sample(drop, now)).when(
             asked.all,
             |calls| {
-                calls.at("energy ledger by term", |drop, watch, s, _, _| {
-                    watch.ledger.sample(&drop.medium, s);
+                calls.of_ours("energy ledger by term", |drop, watch, s| {
+                    watch.ledger.sample(&drop.medium, s)
                 })
             },
         )
@@ -265,16 +266,16 @@ impl Problem for Drop {
     fn measure(
         &self,
         Watch { history, ledger, kinetic }: Watch,
-        end: &dyn Metered<()>,
+        end: &Snapshot,
         record: &mut Record,
     ) {
         history.measure(record);
-        ledger.measure(kinetic, "initial kinetic energy", record);
-        if Asked::of(&record.run).particles {
-            let (s, particles) = (&self.settings, end.particles());
+        ledger.measure(end, kinetic, "initial kinetic energy", record);
+        if let (true, Ok(density)) = (Asked::of(&record.run).particles, end.density()) {
+            let (s, particles) = (&self.settings, end.all());
             let centre = shape(&particles).centre;
             let scale = s.water.rho * Exact::circle(s.radius, s.strain).central_pressure();
-            let pressure = |p: &Particle| self.medium.eos.pressure(p.density) / scale;
+            let pressure = |p: &Point| self.medium.eos.pressure(density.of(p)) / scale;
             let pressures =
                 particles.iter().map(|p| ((p.position - centre) / s.radius, pressure(p)));
             pictures::keep(record, pictures::END, "R", ("p", "p(0)"), pressures);
@@ -455,14 +456,15 @@ mod tests {
     fn the_particles_of_the_start_are_the_exact_drop() {
         let drop = Drop::new(&water::plain(), &DropSettings::default());
         let particles = drop.particles();
-        let start = shape(&particles);
+        let points = Snapshot::of(0.0, &particles).all();
+        let start = shape(&points);
         assert!(
             (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
         );
         assert!(start.velocity.norm() < 1e-12 && start.centre.norm() < 1e-12);
         let pressure = |p: &Particle| drop.medium.eos.pressure(p.density);
         let most = particles.iter().map(pressure).fold(0.0, f64::max);
-        let exact = 1000.0 * drop.exact(&particles).central_pressure();
+        let exact = 1000.0 * drop.exact(&points).central_pressure();
         assert!((most / exact - 1.0).abs() < 0.02, "{most} {exact}");
     }
 
@@ -507,10 +509,10 @@ mod tests {
             let method = if variant == "seed" { water::free_seed() } else { water::free() };
             let drop = Drop::new(&method, &settings);
             let parts = drop.scene().expect("a scene");
-            let mut history = History::new(drop.exact(&parts.particles));
+            let mut history = History::new(drop.exact(&Snapshot::of(0.0, &parts.particles).all()));
             let mut simulation = (method.build)(parts).expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
-            history.sample(&drop, &*simulation);
+            history.sample(&drop, &Snapshot::ours(&*simulation));
             let mut record = Record::new(NAME, variant, serde_json::json!({}), 1);
             history.measure(&mut record);
             for metric in [A_ERROR, B_ERROR, CENTRE_ERROR] {
@@ -529,7 +531,7 @@ mod tests {
         };
         let method = water::free();
         let (drop, rate) = (Drop::new(&method, &settings), settings.strain);
-        let circle = drop.exact(&drop.particles());
+        let circle = drop.exact(&Snapshot::of(0.0, &drop.particles()).all());
         let r = circle.a / 2.0_f64.sqrt();
         let simulation = |[a, b]: [f64; 2], at: Vector2<f64>, v: Vector2<f64>| {
             let places = [(a * r, 0.0), (-a * r, 0.0), (0.0, b * r), (0.0, -b * r)];
@@ -559,7 +561,7 @@ mod tests {
         let zero = Vector2::zeros();
         let mut still = history();
         for axes in [[1.0, 1.0], [0.9, 1.02], [1.03, 0.99]] {
-            still.sample(&drop, &*simulation(axes, zero, zero));
+            still.sample(&drop, &Snapshot::ours(&*simulation(axes, zero, zero)));
         }
         let value = measured(&still);
         is(value(A_ERROR), 0.1);
@@ -570,7 +572,7 @@ mod tests {
         let scale = rate * circle.a;
         let mut moved = history();
         let (at, v) = (Vector2::new(0.03, 0.04) * circle.a, Vector2::new(0.0, 0.1) * scale);
-        moved.sample(&drop, &*simulation([1.0, 1.0], at, v));
+        moved.sample(&drop, &Snapshot::ours(&*simulation([1.0, 1.0], at, v)));
         let value = measured(&moved);
         is(value(CENTRE_ERROR), 0.05);
         is(value(MOMENTUM_ERROR), 0.1);
@@ -580,7 +582,7 @@ mod tests {
         let (mut falling, mut later, t) =
             (simulation([1.0, 1.0], zero, zero), history(), 0.3 / rate);
         falling.advance(t, 1e-4, &mut ());
-        later.sample(&drop, &*falling);
+        later.sample(&drop, &Snapshot::ours(&*falling));
         let value = measured(&later);
         let exact = circle.after(t);
         is(value(A_ERROR), (0.7 * circle.a / exact.a - 1.0).abs());

@@ -9,6 +9,7 @@ use touchstone_harness::{
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
+    snapshot::{Point, Snapshot},
     studies::*,
     table,
 };
@@ -184,45 +185,50 @@ struct Moments {
 /// Samples a period.
 const SAMPLES: f64 = 8.0;
 
-/// p − p_exact at the place of a particle \[ρ g H\].
-fn error(s: &Wedge, medium: &Medium, p: &Particle) -> f64 {
+/// p − p_exact at the place of a particle of this density \[ρ g H\].
+fn error(s: &Wedge, medium: &Medium, p: &Point, density: f64) -> f64 {
     let exact = water::at_rest(medium).pressure(1.0 - p.position.y);
-    (medium.eos.pressure(p.density) - exact) / (s.water.rho * s.gravity)
+    (medium.eos.pressure(density) - exact) / (s.water.rho * s.gravity)
 }
 
 impl Moments {
-    fn sample(&mut self, Still { settings: s, medium, .. }: &Still, all: &[Particle]) {
+    fn sample(&mut self, Still { settings: s, medium, .. }: &Still, now: &Snapshot) {
         let kernel = Smoothing::<WendlandC2>::new(medium.h);
-        let water: Vec<&Particle> = all.iter().filter(|p| p.role == Role::Fluid).collect();
-        let around = |x: f64| {
-            let corner = Vector2::new(x, floor(s, x));
-            let weigh = |[sum, weight]: [f64; 2], p: &&Particle| {
-                let w = kernel.w((p.position - corner).norm_squared());
-                [sum + w * error(s, medium, p), weight + w]
-            };
-            let [sum, weight] = water.iter().fold([0.0; 2], weigh);
-            sum / weight
-        };
-        let energy = |p: &&Particle| 0.5 * p.mass * p.velocity.norm_squared();
+        let water = now.moving();
+        let energy = |p: &Point| 0.5 * p.mass * p.velocity.norm_squared();
         let mass: f64 = water.iter().map(|p| p.mass).sum();
         let kinetic = water.iter().map(energy).sum::<f64>() / (mass * s.gravity);
         self.kinetic = self.kinetic.max(kinetic);
+        self.samples += 1.0;
+        let Ok(density) = now.density() else { return };
+        let errors: Vec<f64> = water.iter().map(|p| error(s, medium, p, density.of(p))).collect();
+        let around = |x: f64| {
+            let corner = Vector2::new(x, floor(s, x));
+            let weigh = |[sum, weight]: [f64; 2], (p, error): (&Point, &f64)| {
+                let w = kernel.w((p.position - corner).norm_squared());
+                [sum + w * error, weight + w]
+            };
+            let [sum, weight] = water.iter().zip(&errors).fold([0.0; 2], weigh);
+            sum / weight
+        };
         let corners = [HALF - s.apex, HALF + s.apex, HALF].map(around);
         self.corners.iter_mut().zip(corners).for_each(|(sum, error)| *sum += error);
         self.errors.resize(water.len(), 0.0);
-        self.errors.iter_mut().zip(&water).for_each(|(sum, p)| *sum += error(s, medium, p));
-        self.samples += 1.0;
+        self.errors.iter_mut().zip(&errors).for_each(|(sum, error)| *sum += error);
     }
 
     /// Metrics at the end, and the mean error of each particle if they are kept.
-    fn measure(&self, s: &Wedge, all: &[Particle], record: &mut Record) {
+    fn measure(&self, s: &Wedge, end: &Snapshot, record: &mut Record) {
         let [left, right, apex] = self.corners.map(|sum| sum / self.samples);
         let errors = self.errors.iter().map(|sum| sum / self.samples);
-        record.put(P_L2, rms(errors.clone()));
-        record.put(P_BASE, if left.abs() > right.abs() { left } else { right });
-        record.put(P_APEX, apex);
+        let has_densities = end.density().map(|_| ());
+        let base = if left.abs() > right.abs() { left } else { right };
+        for (metric, value) in [(P_L2, rms(errors.clone())), (P_BASE, base), (P_APEX, apex)] {
+            record.put_or_absent(metric, has_densities.clone().map(|()| value));
+        }
         record.put(KINETIC, self.kinetic);
-        let water = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.position);
+        let water = end.moving();
+        let water = water.iter().map(|p| p.position);
         let is_outside = |x: &Vector2<f64>| (x.x - HALF).abs() > HALF || x.y < floor(s, x.x);
         record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
         if Asked::of(&record.run).particles {
@@ -259,17 +265,17 @@ impl Problem for Still {
         Ok(Parts::new(self.medium, Domain::open(), particles))
     }
 
-    fn watch(&self, _: &[Particle], _: &dyn Metered<()>) -> Moments {
+    fn watch(&self, _: &Snapshot, _: &Snapshot) -> Moments {
         Moments::default()
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.at("moments", |still, moments, s, _, _| moments.sample(still, &s.particles()))
+        calls.at("moments", |still, moments, now, _, _| moments.sample(still, now))
     }
 
-    fn measure(&self, moments: Moments, end: &dyn Metered<()>, record: &mut Record) {
+    fn measure(&self, moments: Moments, end: &Snapshot, record: &mut Record) {
         if record.status == Status::Completed {
-            moments.measure(&self.settings, &end.particles(), record);
+            moments.measure(&self.settings, end, record);
         }
     }
 }
@@ -375,7 +381,7 @@ mod tests {
                 kinetic: 2e-6,
             };
             let mut record = Record::new("still_wedge", "modern", serde_json::json!({}), 1);
-            moments.measure(&wedge(), &[], &mut record);
+            moments.measure(&wedge(), &Snapshot::of(0.0, &[]), &mut record);
             let expected = [(P_BASE, base), (P_APEX, 0.07), (P_L2, 0.3), (KINETIC, 2e-6)];
             for (metric, expected) in expected {
                 let value = record.value(metric).expect("a metric");
@@ -401,7 +407,7 @@ mod tests {
         }
         let mass: f64 = all.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum();
         let mut moments = Moments::default();
-        moments.sample(&still, &all);
+        moments.sample(&still, &Snapshot::of(0.0, &all));
         let [left, right, apex] = moments.corners;
         assert!((left - 0.01).abs() < 1e-9 && right.abs() < 1e-9, "{left} {right}");
         // On one of both sides of the apex.
@@ -412,7 +418,7 @@ mod tests {
         one.position = Vector2::new(HALF, 0.9 * s.apex);
         two.position.y = -0.01;
         let mut record = Record::new("still_wedge", "modern", serde_json::json!({}), 1);
-        moments.measure(s, &all, &mut record);
+        moments.measure(s, &Snapshot::of(0.0, &all), &mut record);
         assert_eq!(record.value(OUTSIDE), Some(2.0));
     }
 }

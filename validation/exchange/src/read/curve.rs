@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use touchstone_base::text::number;
 use touchstone_harness::{
     facts::Curve,
-    playback::{self, Frame, Placed},
+    foreign::{self, Frame, Placed},
 };
 
 use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, Rows, table};
@@ -106,7 +106,7 @@ fn finite(curve: &Curve, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw
 fn hold(results: &mut Results, times: &[f64]) {
     let end = times.last().copied().unwrap_or_default();
     if let [.., before, last] = &results.frames[..]
-        && !playback::missing(&results.frames, &[end]).is_empty()
+        && !foreign::missing(&results.frames, &[end]).is_empty()
         && (0.0..last.time - before.time).contains(&(end - last.time))
     {
         results.places.extend(results.places.last().cloned());

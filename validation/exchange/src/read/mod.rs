@@ -23,8 +23,8 @@ use touchstone_base::{
     text::{few, number, short},
 };
 use touchstone_harness::{
+    foreign::{Frame, Own, Placed},
     outline::role,
-    playback::{Frame, Own, Placed},
 };
 use touchstone_solver::Role;
 

@@ -3,5 +3,4 @@
 pub mod budget;
 pub mod energy;
 pub mod history;
-pub mod momentum;
 pub mod norms;

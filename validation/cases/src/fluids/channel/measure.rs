@@ -1,10 +1,12 @@
 //! Metrics of a channel flow, each norm with its formula.
 
-use touchstone_solver::{EquationOfState, Particle, Stepper};
+use touchstone_solver::EquationOfState;
 
 use super::Setup;
+use touchstone_base::absent::Absent;
 use touchstone_base::functions::cos;
 use touchstone_base::record::{Profile, Record};
+use touchstone_harness::snapshot::{Point, Snapshot};
 use touchstone_maths::metrics::norms::{l2, linf};
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
@@ -35,7 +37,7 @@ touchstone_base::metrics! {
 
 /// Compares the particles of the fluid with the exact flow at νt/L² = `tau` and adds metrics `name@tau` and a
 /// profile.
-pub fn compare(setup: &Setup, fluid: &[Particle], tau: f64, record: &mut Record) {
+pub fn compare(setup: &Setup, fluid: &[Point], tau: f64, record: &mut Record) {
     let t = setup.time(tau);
     let u: Vec<f64> = fluid.iter().map(|p| p.velocity.x).collect();
     let exact: Vec<f64> = fluid.iter().map(|p| setup.exact(p.position.y, t)).collect();
@@ -59,19 +61,25 @@ pub fn profile_at(tau: f64) -> String {
 }
 
 /// Measures that need the end of the run only.
-pub fn at_the_end(setup: &Setup, fluid: &[Particle], record: &mut Record) {
+pub fn at_the_end(setup: &Setup, end: &Snapshot, record: &mut Record) {
+    let fluid = end.moving();
     let count = fluid.len() as f64;
-    let mean = |f: &dyn Fn(&Particle) -> f64| fluid.iter().map(f).sum::<f64>() / count;
-    let rms = |f: &dyn Fn(&Particle) -> f64| mean(&|p| f(p) * f(p)).sqrt();
-    let (s, v) = (&setup.settings, setup.v);
+    let mean = |f: &dyn Fn(&Point) -> f64| fluid.iter().map(f).sum::<f64>() / count;
+    let rms = |f: &dyn Fn(&Point) -> f64| mean(&|p| f(p) * f(p)).sqrt();
+    let (s, v, eos) = (&setup.settings, setup.v, setup.medium.eos);
     record.put(V_RMS, rms(&|p| p.velocity.y) / v);
-    let pressure =
-        |p: &Particle| setup.medium.eos.pressure(p.density) - setup.medium.eos.background;
-    let mean_pressure = mean(&pressure);
-    record.put(P_RMS, rms(&|p| pressure(p) - mean_pressure) / (s.rho * v * v));
-    let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
+    let pressure_rms = end.density().map(|density| {
+        let pressure = |p: &Point| eos.pressure(density.of(p)) - eos.background;
+        let mean_pressure = mean(&pressure);
+        rms(&|p| pressure(p) - mean_pressure) / (s.rho * v * v)
+    });
+    record.put_or_absent(P_RMS, pressure_rms);
     let initial: f64 = fluid.iter().map(|p| p.mass / s.rho).sum();
-    record.put(VOLUME_DRIFT, volume / initial - 1.0);
+    let drift = end.density().map(|density| {
+        let volume: f64 = fluid.iter().map(|p| p.mass / density.of(p)).sum();
+        volume / initial - 1.0
+    });
+    record.put_or_absent(VOLUME_DRIFT, drift);
     let momentum: f64 = fluid.iter().map(|p| p.mass * p.velocity.y).sum();
     record.put(MOMENTUM_Y, momentum / (initial * s.rho * v));
     let outside = fluid.iter().filter(|p| !(0.0..=s.width).contains(&p.position.y)).count();
@@ -79,9 +87,9 @@ pub fn at_the_end(setup: &Setup, fluid: &[Particle], record: &mut Record) {
 }
 
 /// Means over the rows of the initial lattice: y, u and the exact u there.
-fn row_profile(setup: &Setup, fluid: &[Particle], t: f64) -> Profile {
-    let row = |row: &[Particle]| {
-        let mean = |f: &dyn Fn(&Particle) -> f64| row.iter().map(f).sum::<f64>() / row.len() as f64;
+fn row_profile(setup: &Setup, fluid: &[Point], t: f64) -> Profile {
+    let row = |row: &[Point]| {
+        let mean = |f: &dyn Fn(&Point) -> f64| row.iter().map(f).sum::<f64>() / row.len() as f64;
         let exact = mean(&|p| setup.exact(p.position.y, t));
         [mean(&|p| p.position.y), mean(&|p| p.velocity.x), exact]
     };
@@ -91,12 +99,12 @@ fn row_profile(setup: &Setup, fluid: &[Particle], t: f64) -> Profile {
 
 /// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within 3 dx of
 /// the wall, and to the exact flow at the same points, so that the error of the fit cancels.
-fn shear_error(setup: &Setup, fluid: &[Particle], wall: usize, t: f64) -> f64 {
+fn shear_error(setup: &Setup, fluid: &[Point], wall: usize, t: f64) -> f64 {
     let s = &setup.settings;
     let speed = if wall == 1 { setup.plate_speed() } else { 0.0 };
-    let depth = |p: &Particle| if wall == 1 { s.width - p.position.y } else { p.position.y };
-    let near: Vec<&Particle> = fluid.iter().filter(|p| depth(p) < 3.0 * setup.medium.dx).collect();
-    let slope = |velocity: &dyn Fn(&Particle) -> f64| {
+    let depth = |p: &Point| if wall == 1 { s.width - p.position.y } else { p.position.y };
+    let near: Vec<&Point> = fluid.iter().filter(|p| depth(p) < 3.0 * setup.medium.dx).collect();
+    let slope = |velocity: &dyn Fn(&Point) -> f64| {
         let (mut d2, mut d3, mut d4, mut du, mut d2u) = (0.0, 0.0, 0.0, 0.0, 0.0);
         for p in &near {
             let (d, u) = (depth(p), velocity(p) - speed);
@@ -119,15 +127,19 @@ pub const MODE: &str = "mode";
 
 /// Amplitude \[ρV²\] of the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of
 /// hypothesis H3.
-pub fn pressure_mode(setup: &Setup, simulation: &dyn Stepper<()>) -> f64 {
+///
+/// # Errors
+/// Without densities.
+pub fn pressure_mode(setup: &Setup, now: &Snapshot) -> Result<f64, Absent> {
     let Setup { settings: s, medium, v, .. } = setup;
     let (mut mode, mut count) = (0.0, 0.0);
-    for (_, e) in simulation.data().fluid() {
-        let phase = std::f64::consts::PI * e.position.y / s.width;
-        mode += 2.0 * medium.eos.pressure(e.density) / (s.rho * v * v) * cos(phase);
+    let density = now.density()?;
+    for p in now.stored() {
+        let phase = std::f64::consts::PI * p.position.y / s.width;
+        mode += 2.0 * medium.eos.pressure(density.of(&p)) / (s.rho * v * v) * cos(phase);
         count += 1.0;
     }
-    mode / count
+    Ok(mode / count)
 }
 
 /// The last [`WINDOW`] of the times \[s\] and amplitudes after every step, of a run that ended at `end`
@@ -147,7 +159,7 @@ pub fn last_of_mode(setup: &Setup, series: &[[f64; 2]], end: f64) -> Option<Prof
 mod tests {
     use nalgebra::Vector2;
     use touchstone_harness::method::Method;
-    use touchstone_solver::Role;
+    use touchstone_solver::{Particle, Role};
 
     use touchstone_base::record::{MetricName, Record};
 
@@ -169,7 +181,7 @@ mod tests {
         let t = setup.time(tau);
         fluid.iter_mut().for_each(|p| p.velocity.x = velocity(p.position.y, t));
         let mut record = Record::new(setup.flow.case().name, "seed", serde_json::Value::Null, 1);
-        compare(setup, &fluid, tau, &mut record);
+        compare(setup, &Snapshot::of(t, &fluid).all(), tau, &mut record);
         record
     }
 
@@ -220,7 +232,7 @@ mod tests {
         fluid[0].position.y = -1e-9;
         let volume: f64 = fluid.iter().map(|p| p.mass / p.density).sum();
         let mut record = Record::new("poiseuille", "seed", serde_json::Value::Null, 1);
-        at_the_end(&setup, &fluid, &mut record);
+        at_the_end(&setup, &Snapshot::of(1.0, &fluid), &mut record);
         assert_near(&record, V_RMS.into(), (0.02_f64.powi(2) + 0.03_f64.powi(2)).sqrt(), 1e-9);
         assert_near(&record, P_RMS.into(), 0.04, 1e-5);
         assert_near(&record, MOMENTUM_Y.into(), 0.02, 1e-5);
@@ -239,8 +251,8 @@ mod tests {
             let mode = cos(std::f64::consts::PI * p.position.y / s.width);
             p.density = eos.density(0.05 * s.rho * v * v * mode + eos.background);
         }
-        let simulation = (method().build)(parts).expect("a scene");
-        let amplitude = pressure_mode(&setup, &*simulation);
+        let now = Snapshot::of(0.0, &parts.particles);
+        let amplitude = pressure_mode(&setup, &now).expect("densities");
         assert!((amplitude - 0.05).abs() < 1e-4, "{amplitude}");
         // A sample in every crossing of the channel by sound: the last 60 and the end are kept.
         let crossing = s.width / eos.sound_speed;

@@ -7,18 +7,12 @@ use touchstone_harness::{
     case::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
+    snapshot::Snapshot,
 };
-use touchstone_solver::{Particle, Role, Stepper};
+use touchstone_solver::Stepper;
 
 use super::measure::{self, MODE};
 use super::{Setup, setup::DECISIVE};
-
-/// The fluid of a simulation.
-fn fluid(simulation: &dyn Stepper<()>) -> Vec<Particle> {
-    let mut all = simulation.particles();
-    all.retain(|p| p.role == Role::Fluid);
-    all
-}
 
 impl Problem for Setup {
     type Extra = ();
@@ -50,27 +44,27 @@ impl Problem for Setup {
         Ok(self.parts())
     }
 
-    fn watch(&self, _: &[Particle], _: &dyn Stepper<()>) -> Self::Watch {
+    fn watch(&self, _: &Snapshot, _: &Snapshot) -> Self::Watch {
         Vec::new()
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
         calls
             .when(self.settings.watch_mode, |calls| {
-                calls.after_step("pressure mode", |setup, mode, simulation| {
-                    mode.push([simulation.time(), measure::pressure_mode(setup, simulation)]);
+                calls.after_step("pressure mode", |setup, mode, now| {
+                    mode.extend(measure::pressure_mode(setup, now).map(|p| [now.time(), p]));
                     ControlFlow::Continue(())
                 })
             })
-            .at("profiles and errors", |setup, _, simulation, k, record| {
+            .at("profiles and errors", |setup, _, now, k, record| {
                 let tau = setup.settings.compared()[k];
-                measure::compare(setup, &fluid(simulation), tau, record);
+                measure::compare(setup, &now.moving(), tau, record);
             })
     }
 
-    fn measure(&self, mode: Self::Watch, end: &dyn Stepper<()>, record: &mut Record) {
+    fn measure(&self, mode: Self::Watch, end: &Snapshot, record: &mut Record) {
         if record.status == Status::Completed {
-            measure::at_the_end(self, &fluid(end), record);
+            measure::at_the_end(self, end, record);
         }
         if self.settings.watch_mode {
             let last = measure::last_of_mode(self, &mode, end.time());

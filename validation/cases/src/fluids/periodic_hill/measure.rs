@@ -3,14 +3,21 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
 use touchstone_solver::{
-    EquationOfState, Particle, Role, Stepper,
+    EquationOfState,
     inverse::{Inverse, of_three},
 };
 
 use super::{Setup, reference::KNOWN_SETTINGS};
 use touchstone_base::functions::hypot;
-use touchstone_base::record::{MetricKey, Profile, Record};
-use touchstone_harness::pictures;
+use touchstone_base::{
+    absent::Absent,
+    record::{MetricKey, Profile, Record},
+};
+use touchstone_harness::{
+    pictures,
+    series::Series,
+    snapshot::{Point, Snapshot},
+};
 use touchstone_maths::metrics::norms::{largest, rms};
 
 /// Points across a section.
@@ -48,6 +55,22 @@ touchstone_base::metrics! {
 
 /// Parts of the drag, named as in the reference.
 pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSURE_DRAG];
+
+/// Metrics of the field at stations and walls.
+const OF_FIELD: &[MetricKey] = &[
+    SECTION_FLUX,
+    DRAG_BALANCE,
+    SEPARATION,
+    REATTACHMENT,
+    L2_U,
+    L2_V,
+    FORCE_ERROR,
+    SEPARATION_ERROR,
+    REATTACHMENT_ERROR,
+    HILL_SHEAR_DRAG,
+    LID_SHEAR_DRAG,
+    HILL_PRESSURE_DRAG,
+];
 
 /// Metrics that compare with the reference.
 const COMPARED: [MetricKey; 5] = [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REATTACHMENT_ERROR];
@@ -157,8 +180,10 @@ pub struct Window {
     /// Shear stress on the hill and on the lid, pressure on the hill.
     wall: Vec<[f64; 3]>,
     /// Force and flux of every stretch.
-    pub forces: Vec<[f64; 2]>,
+    pub forces: Series<2>,
     samples: usize,
+    /// Why there are no samples of the field.
+    absent: Option<Absent>,
 }
 
 /// The places of the stations: x, y, weight of the section's height.
@@ -188,14 +213,17 @@ fn add<const N: usize>(sums: &mut Vec<[f64; N]>, values: impl Iterator<Item = [f
 
 impl Window {
     /// Adds a sample.
-    pub fn sample(&mut self, setup: &Setup, s: &dyn Stepper<()>) {
+    pub fn sample(&mut self, setup: &Setup, now: &Snapshot) {
         let eos = setup.flow.medium.eos;
         let point = |c: &touchstone_solver::particles::Column| {
             let p = eos.pressure(c.common.density) - eos.background;
             [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
         };
-        let points = s.plain_columns().iter().map(point).collect();
-        self.add(setup, points, &|r2: f64| s.weight(r2));
+        let added = now.sums(|s| {
+            let points = s.plain_columns().iter().map(point).collect();
+            self.add(setup, points, &|r2| s.weight(r2));
+        });
+        self.absent = added.err().or(self.absent.take());
     }
 
     /// Adds a sample of these particles, x, y, V, u, v, p each, with the weight of a squared distance.
@@ -225,26 +253,41 @@ fn wall(setup: &Setup, field: &Field, x: f64) -> [f64; 3] {
 }
 
 /// Mean velocity along x over the fluid's area \[m/s\].
-pub fn mean_velocity(s: &dyn Stepper<()>, area: f64) -> f64 {
-    s.data().fluid().map(|(mass, p)| mass / p.density * p.velocity.x).sum::<f64>() / area
+///
+/// # Errors
+/// Without densities.
+pub fn mean_velocity(now: &Snapshot, area: f64) -> Result<f64, Absent> {
+    let density = now.density()?;
+    let flow = now.stored().map(|p| p.mass / density.of(&p) * p.velocity.x);
+    Ok(flow.sum::<f64>() / area)
 }
 
 /// Metrics and profiles.
 pub fn measure(setup: &Setup, window: &Window, area: f64, record: &mut Record) {
     let (sections, wall) = (window.mean(&window.sections), window.mean(&window.wall));
-    let count = window.forces.len() as f64;
-    let [force, flux] = [0, 1].map(|k| window.forces.iter().map(|f| f[k]).sum::<f64>() / count);
-    record.put(FORCE, force);
+    let mean = |k: usize| {
+        let column = window.forces.column(k)?;
+        Ok(column.iter().sum::<f64>() / column.len() as f64)
+    };
+    let (force, flux): (Result<f64, Absent>, Result<f64, Absent>) = (mean(0), mean(1));
+    record.put_or_absent(FORCE, force.clone());
     let relative = |value: f64| (setup.flux() != 0.0).then_some(value);
     let none = "the flux wanted is 0, so no error relative to it exists";
-    record.put_or(FLUX, relative(flux / setup.flux() - 1.0), none);
+    let flux = flux.and_then(|flux| relative(flux / setup.flux() - 1.0).ok_or(none.into()));
+    record.put_or_absent(FLUX, flux);
+    if let Some(absent) = &window.absent {
+        return record.leave_all_out(OF_FIELD, absent);
+    }
     record.put_or(SECTION_FLUX, relative(section_flux(setup, &sections)), none);
     let drags = drags(setup, &wall);
     for (part, drag) in DRAGS.into_iter().zip(drags) {
         record.put(part, drag);
     }
-    let balance = (force != 0.0).then(|| drags.iter().sum::<f64>() / (force * area) - 1.0);
-    record.put_or(DRAG_BALANCE, balance, "no body force has acted yet");
+    let balance = force.and_then(|force| {
+        let none = || "no body force has acted yet".into();
+        (force != 0.0).then(|| drags.iter().sum::<f64>() / (force * area) - 1.0).ok_or_else(none)
+    });
+    record.put_or_absent(DRAG_BALANCE, balance);
     let [separation, reattachment] = bubble(&wall);
     let none = "no stretch of the hill has backward flow";
     record.put_or(SEPARATION, separation, none);
@@ -320,9 +363,9 @@ fn compare(setup: &Setup, sections: &[[f64; 2]], record: &mut Record) {
 
 /// Displacement of wall particles from their places \[dx\]: over the points along floor and lid, the largest
 /// difference between the depth of the nearest particle and the depth of the first row.
-fn wall_offset(setup: &Setup, all: &[Particle]) -> f64 {
+fn wall_offset(setup: &Setup, all: &[Point]) -> f64 {
     let (dx, lid, period) = (setup.flow.medium.dx, setup.hill.lid(), setup.hill.period());
-    let walls = || all.iter().filter(|p| p.role != Role::Fluid).map(|p| p.position);
+    let walls = || all.iter().filter(|p| !p.is_fluid()).map(|p| p.position);
     let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
         let across = (to.x - from.x).abs().rem_euclid(period);
         hypot(across.min(period - across), to.y - from.y)
@@ -351,13 +394,13 @@ fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
 }
 
 /// Where the particles are at the end, walls and fluid.
-pub fn particles(setup: &Setup, s: &dyn Stepper<()>, is_kept: bool, record: &mut Record) {
-    let all = s.particles();
+pub fn particles(setup: &Setup, end: &Snapshot, is_kept: bool, record: &mut Record) {
+    let all = end.all();
     record.put(WALL_OFFSET, wall_offset(setup, &all));
     let period = setup.hill.period();
     let place =
-        |p: &Particle| (Vector2::new(p.position.x.rem_euclid(period), p.position.y), p.velocity.x);
-    let fluid: Vec<_> = all.iter().filter(|p| p.role == Role::Fluid).map(place).collect();
+        |p: &Point| (Vector2::new(p.position.x.rem_euclid(period), p.position.y), p.velocity.x);
+    let fluid: Vec<_> = all.iter().filter(|p| p.is_fluid()).map(place).collect();
     let is_outside = |x: &Vector2<f64>| !(setup.floor(x.x)..=setup.hill.lid()).contains(&x.y);
     record.put(OUTSIDE, fluid.iter().filter(|(x, _)| is_outside(x)).count() as f64);
     if is_kept {
@@ -370,7 +413,7 @@ mod tests {
     use super::*;
     use touchstone_base::random::Random;
     use touchstone_maths::geometry::Hill;
-    use touchstone_solver::{QuinticSpline, Smoothing};
+    use touchstone_solver::{QuinticSpline, Role, Smoothing};
 
     use crate::fluids::periodic_hill::{HillSettings, setup::FLUX as BULK};
     use std::f64::consts::TAU;
@@ -430,7 +473,7 @@ mod tests {
         let mut window = Window::default();
         window.add(&setup, points, &|r2| simulation.weight(r2));
         for ripple in [-1e-3, 1e-3] {
-            window.forces.push([force * (1.0 + ripple), flux * (1.0 + 2.0 * ripple)]);
+            window.forces.push([Ok(force * (1.0 + ripple)), Ok(flux * (1.0 + 2.0 * ripple))]);
         }
         let area = setup.area();
         let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
@@ -537,12 +580,11 @@ mod tests {
     #[test]
     fn the_mean_velocity_is_that_of_the_volumes() {
         let (setup, _) = scene(|_| {});
-        let method = touchstone_schemes::hill::carried();
         let mut parts = setup.parts();
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
         }
-        let simulation = (method.build)(parts).expect("a scene");
+        let now = Snapshot::of(0.0, &parts.particles);
         let hill = Hill::new(1.0).expect("the reference's");
         let count = 900;
         let of_column = |k: i32| {
@@ -551,30 +593,29 @@ mod tests {
             gap * (0.7 + 0.1 * (middle - 1.0)) * 9.0 / f64::from(count)
         };
         let exact = (0..count).map(of_column).sum::<f64>() / setup.area();
-        let found = mean_velocity(&*simulation, setup.area());
+        let found = mean_velocity(&now, setup.area()).expect("densities");
         assert!((found / exact - 1.0).abs() < 2e-3, "{found} {exact}");
     }
 
     #[test]
     fn a_hill_that_is_too_high_and_a_particle_behind_a_wall_are_seen() {
-        let seen = |setup: &Setup, simulation: &dyn Stepper<()>| {
+        let seen = |setup: &Setup, particles: &[touchstone_solver::Particle]| {
             let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
-            particles(setup, simulation, false, &mut record);
+            super::particles(setup, &Snapshot::of(0.0, particles), false, &mut record);
             [WALL_OFFSET, OUTSIDE].map(|metric| record.value(metric).expect("measured"))
         };
         let (setup, simulation) = scene(|_| {});
-        let [offset, outside] = seen(&setup, &*simulation);
+        let [offset, outside] = seen(&setup, &simulation.particles());
         assert!(offset < 0.02 && outside == 0.0);
         // The crest 2 % of H too high, a fifth of a spacing.
-        let [offset, _] = seen(&setup, &*scene(|s| s.crest = 1.02).1);
+        let [offset, _] = seen(&setup, &scene(|s| s.crest = 1.02).1.particles());
         assert!((offset - 0.2).abs() < 0.02, "{offset}");
-        let method = touchstone_schemes::hill::carried();
         let mut parts = setup.parts();
         let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
         for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {
             p.position.y = y;
         }
-        assert_eq!(seen(&setup, &*(method.build)(parts).expect("a scene"))[1], 1.0);
+        assert_eq!(seen(&setup, &parts.particles)[1], 1.0);
     }
 
     /// The largest error of the slope at a wall y = c x²/2 turned by `angle`, with `n` disordered particles a

@@ -6,11 +6,12 @@ use touchstone_harness::{
     case::RunError,
     method::Parts,
     problem::{Asked, Brief, Calls, Problem},
+    series::Series,
+    snapshot::Snapshot,
 };
 use touchstone_schemes::hill::{Driving, HillMethod};
 
 use super::{HillSettings, Setup, measure::*};
-use touchstone_solver::Particle;
 
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;
@@ -68,39 +69,39 @@ pub struct Monitor {
     controller: Controller,
     window: Window,
     /// t, force, flux, kinetic energy.
-    series: Vec<[f64; 4]>,
+    series: Series<4>,
     /// Area of the fluid \[m²\].
     area: f64,
     /// Time between looks \[s\].
     stretch: f64,
     /// Mean velocity along x at the last look \[m/s\].
     mean: f64,
-    /// Has the controller acted? The force of another code is not known.
-    has_acted: bool,
 }
 
 impl Monitor {
     /// After a stretch: the flow is sampled if it is time.
-    fn look(&mut self, setup: &Setup, simulation: &dyn Driving) {
-        let (time, force) = (simulation.time(), self.controller.force);
-        self.mean = mean_velocity(simulation, self.area);
-        let flux = self.mean * self.area / setup.hill.period();
+    fn look(&mut self, setup: &Setup, now: &Snapshot) {
+        let (time, mean) = (now.time(), mean_velocity(now, self.area));
+        self.mean = mean.clone().unwrap_or(self.mean);
+        let flux = mean.map(|mean| mean * self.area / setup.hill.period());
+        // The force of another code is not known.
+        let force = now.simulation().map(|_| self.controller.force);
         let HillSettings { end, average, .. } = setup.settings;
         if is_last(time, end, average * end) {
-            self.window.forces.push([force, flux]);
+            self.window.forces.push([force.clone(), flux.clone()]);
             if is_first([time, self.stretch], average * end / SAMPLES) {
-                self.window.sample(setup, simulation);
+                self.window.sample(setup, now);
             }
         }
         if is_first([time, self.stretch], ENTRY) {
-            self.series.push([time, force, flux, kinetic_energy(simulation)]);
+            self.series.push([Ok(time), force, flux, Ok(kinetic_energy(now))]);
         }
     }
 }
 
 /// Σ m v²/2 of the fluid.
-fn kinetic_energy(simulation: &dyn Driving) -> f64 {
-    simulation.data().fluid().map(|(m, p)| 0.5 * m * p.velocity.norm_squared()).sum()
+fn kinetic_energy(now: &Snapshot) -> f64 {
+    now.stored().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum()
 }
 
 impl Setup {
@@ -133,34 +134,35 @@ impl Problem for Setup {
         Ok(self.parts())
     }
 
-    fn watch(&self, _: &[Particle], simulation: &dyn Driving) -> Monitor {
+    fn watch(&self, _: &Snapshot, start: &Snapshot) -> Monitor {
         let (s, area, period) = (&self.settings, self.area(), self.hill.period());
-        let mean = mean_velocity(simulation, area);
+        let known = mean_velocity(start, area);
+        let mean = known.clone().unwrap_or_default();
         let wanted = self.flux() * period / area;
         let controller = Controller { wanted, response: s.response, force: s.force, last: mean };
-        let series = vec![[0.0, s.force, mean * area / period, kinetic_energy(simulation)]];
+        let mut series = Series::default();
+        let force = start.simulation().map(|_| s.force);
+        let flux = known.map(|mean| mean * area / period);
+        series.push([Ok(0.0), force, flux, Ok(kinetic_energy(start))]);
         let (window, stretch) = (Window::default(), s.end / self.stretches());
-        Monitor { controller, window, series, area, stretch, mean, has_acted: false }
+        Monitor { controller, window, series, area, stretch, mean }
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls
-            .at("samples", |setup, monitor, simulation, _, _| monitor.look(setup, simulation))
-            .control(
-                "controller",
-                |_, monitor, simulation, _, _| {
-                    monitor.has_acted = true;
-                    monitor.controller.look(monitor.mean, monitor.stretch);
-                    simulation.drive(monitor.controller.force);
-                },
-                |_, monitor, simulation| simulation.drive(monitor.controller.force),
-            )
+        calls.at("samples", |setup, monitor, now, _, _| monitor.look(setup, now)).control(
+            "controller",
+            |_, monitor, simulation| {
+                monitor.controller.look(monitor.mean, monitor.stretch);
+                simulation.drive(monitor.controller.force);
+            },
+            |_, monitor, simulation| simulation.drive(monitor.controller.force),
+        )
     }
 
     fn measure(
         &self,
-        Monitor { window, series, area, has_acted, .. }: Monitor,
-        end: &dyn Driving,
+        Monitor { window, series, area, .. }: Monitor,
+        end: &Snapshot,
         record: &mut Record,
     ) {
         if record.status == Status::Completed {
@@ -169,9 +171,7 @@ impl Problem for Setup {
         }
         let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
         let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
-        let mut series = Profile::of_rows(&columns, &series);
-        series.columns.retain(|column| has_acted || column.name != force.0);
-        record.profiles.insert("series".into(), series);
+        record.profiles.insert("series".into(), series.profile(&columns));
     }
 }
 

@@ -6,13 +6,14 @@ use touchstone_solver::{Domain, EquationOfState, Particle, Stepper};
 
 use super::VortexSettings;
 use crate::fluids::unit_flow::{Scales, UnitFlow};
-use touchstone_base::{functions::hypot, random::Random, record::*};
+use touchstone_base::{absent::Absent, functions::hypot, random::Random, record::*};
 use touchstone_harness::{
     case::RunError,
     method::{Method, Parts},
     pictures,
     problem::{Asked, Brief, Calls, Problem},
     rules,
+    snapshot::{self, Point, Snapshot},
 };
 use touchstone_maths::{exact::TaylorGreen, metrics::norms::largest};
 
@@ -61,7 +62,7 @@ impl Setup {
     }
 
     /// Relative L2 error of the velocity vector.
-    fn error(&self, time: f64, particles: &[Particle]) -> f64 {
+    fn error(&self, time: f64, particles: &[Point]) -> f64 {
         relative(particles.iter().map(|p| {
             let exact = self.exact.velocity(p.position, time);
             [(p.velocity - exact).norm_squared(), exact.norm_squared()]
@@ -69,14 +70,17 @@ impl Setup {
     }
 
     /// Relative L2 error of the pressure, whose mean is free.
-    fn pressure_error(&self, time: f64, particles: &[Particle]) -> f64 {
-        let eos = self.flow.medium.eos;
-        let pressure = |p: &Particle| eos.pressure(p.density) - eos.background;
+    ///
+    /// # Errors
+    /// Without densities.
+    fn pressure_error(&self, now: &Snapshot) -> Result<f64, Absent> {
+        let (eos, density, particles) = (self.flow.medium.eos, now.density()?, now.all());
+        let pressure = |p: &Point| eos.pressure(density.of(p)) - eos.background;
         let mean = particles.iter().map(pressure).sum::<f64>() / particles.len() as f64;
-        relative(particles.iter().map(|p| {
-            let exact = self.exact.pressure(p.position, time);
+        Ok(relative(particles.iter().map(|p| {
+            let exact = self.exact.pressure(p.position, now.time());
             [(pressure(p) - mean - exact).powi(2), exact.powi(2)]
-        }))
+        })))
     }
 }
 
@@ -93,11 +97,10 @@ const DECAYED: f64 = 0.01;
 /// Samples of the series.
 const SAMPLES: usize = 40;
 
-/// The particles at the start, and time and error at the samples.
+/// The mean velocity at the start, and time and error at the samples.
 #[derive(Serialize, Deserialize)]
 pub struct Series {
-    #[serde(with = "touchstone_harness::checkpoint::particles")]
-    start: Vec<Particle>,
+    drift: Vector2<f64>,
     errors: Vec<[f64; 2]>,
 }
 
@@ -122,30 +125,22 @@ impl Problem for Setup {
         Ok(self.flow.parts(Domain::torus(1.0, 1.0), self.particles()))
     }
 
-    fn watch(&self, _: &[Particle], simulation: &dyn Stepper<()>) -> Series {
-        let start = simulation.particles();
-        let errors = vec![[0.0, self.error(0.0, &start)]];
-        Series { start, errors }
+    fn watch(&self, _: &Snapshot, start: &Snapshot) -> Series {
+        let start = start.all();
+        Series { drift: drift(&start), errors: vec![[0.0, self.error(0.0, &start)]] }
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.at("series", |setup, series, simulation, _, _| {
-            let time = simulation.time();
-            series.errors.push([time, setup.error(time, &simulation.particles())]);
+        calls.at("series", |setup, series, now, _, _| {
+            series.errors.push([now.time(), setup.error(now.time(), &now.all())]);
         })
     }
 
-    fn measure(
-        &self,
-        Series { start, mut errors }: Series,
-        simulation: &dyn Stepper<()>,
-        record: &mut Record,
-    ) {
-        let end = simulation.particles();
+    fn measure(&self, Series { drift, mut errors }: Series, now: &Snapshot, record: &mut Record) {
         if record.status == Status::Completed {
-            measure(self, [&start, &end], &errors, record);
+            measure(self, drift, now, &errors, record);
             if Asked::of(&record.run).particles {
-                let time = simulation.time();
+                let (end, time) = (now.all(), now.time());
                 let scale = self.exact.decay(time);
                 let all = end.iter().map(|p| {
                     let error = (p.velocity - self.exact.velocity(p.position, time)).norm() / scale;
@@ -161,21 +156,24 @@ impl Problem for Setup {
     }
 }
 
+/// Mean velocity of the mass \[m/s\].
+fn drift(particles: &[Point]) -> Vector2<f64> {
+    snapshot::momentum(particles) / particles.iter().map(|p| p.mass).sum::<f64>()
+}
+
 fn measure(
     setup: &Setup,
-    [start, end]: [&[Particle]; 2],
+    start: Vector2<f64>,
+    now: &Snapshot,
     series: &[[f64; 2]],
     record: &mut Record,
 ) {
     let [time, error] = series[series.len() - 1];
     let is_left = |[time, _]: &&[f64; 2]| setup.exact.decay(*time) >= DECAYED;
     record.put(L2_WORST, largest(series.iter().filter(is_left).map(|s| s[1])));
-    let momentum = |particles: &[Particle]| {
-        touchstone_maths::metrics::momentum::momentum(particles)
-            / particles.iter().map(|p| p.mass).sum::<f64>()
-    };
-    record.put(MOMENTUM_ADDED, (momentum(end) - momentum(start)).norm());
-    record.put(NEAREST, nearest(end) / setup.flow.medium.dx);
+    let end = now.all();
+    record.put(MOMENTUM_ADDED, (drift(&end) - start).norm());
+    record.put(NEAREST, nearest(&end) / setup.flow.medium.dx);
     let left = setup.exact.decay(time);
     if left < DECAYED {
         let reason = format!(
@@ -189,12 +187,12 @@ fn measure(
     record.put(L2, error);
     let energy = end.iter().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum::<f64>();
     record.put(ENERGY, energy / setup.exact.kinetic_energy(time) - 1.0);
-    record.put(PRESSURE_L2, setup.pressure_error(time, end));
+    record.put_or_absent(PRESSURE_L2, setup.pressure_error(now));
 }
 
 /// The least distance of two particles of the periodic unit square \[m\].
-fn nearest(particles: &[Particle]) -> f64 {
-    let wrapped = |p: &Particle| p.position.map(|x| x.rem_euclid(1.0));
+fn nearest(particles: &[Point]) -> f64 {
+    let wrapped = |p: &Point| p.position.map(|x| x.rem_euclid(1.0));
     let mut places: Vec<Vector2<f64>> = particles.iter().map(wrapped).collect();
     places.sort_by(|a, b| a.x.total_cmp(&b.x));
     let across: Vec<_> = places.iter().map(|place| place + Vector2::x()).collect();
@@ -236,9 +234,11 @@ mod tests {
             particles
         };
         let (start, end) = (at(0.0, [0.0; 3]), at(time, [error, drift, pressure]));
-        let series = [[0.0, setup.error(0.0, &start)], [time, setup.error(time, &end)]];
+        let [start, now] = [Snapshot::of(0.0, &start), Snapshot::of(time, &end)];
+        let [before, after] = [&start, &now].map(Snapshot::all);
+        let series = [[0.0, setup.error(0.0, &before)], [time, setup.error(time, &after)]];
         let mut record = Record::new("taylor_green", "plain", serde_json::Value::Null, 1);
-        measure(setup, [&start, &end], &series, &mut record);
+        measure(setup, super::drift(&before), &now, &series, &mut record);
         record
     }
 
@@ -282,7 +282,8 @@ mod tests {
     fn particles_are_near_each_other_across_an_edge_too() {
         let of = |places: [[f64; 2]; 3]| {
             let places = places.map(|[x, y]| Vector2::new(x, y));
-            nearest(&places.map(|x| Particle::fluid(x, Vector2::zeros(), 1.0, 1.0)))
+            let all: [Particle; 3] = places.map(|x| Particle::fluid(x, Vector2::zeros(), 1.0, 1.0));
+            nearest(&Snapshot::of(0.0, &all).all())
         };
         let third = [0.4, 0.7];
         for pair in [[[0.999, 0.5], [0.001, 0.5]], [[0.1, 0.999], [0.1, 0.001]]] {

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
 use touchstone_base::{
+    absent::Absent,
     functions::{cos, sin},
     random::Random,
     record::*,
@@ -14,6 +15,7 @@ use touchstone_harness::{
     case::*,
     method::*,
     problem::{Brief, Problem},
+    snapshot::{Columns, Point, Snapshot},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
 use touchstone_schemes::lattice::summing_step;
@@ -88,25 +90,55 @@ impl Operator {
         Particle::fluid(x, velocity, density, dx * dx)
     }
 
-    /// The operator applied to the field within a time \[s\], and the exact value.
-    fn values(self, [start, end]: [&Particle; 2], m: &Medium, time: f64) -> [Vector2<f64>; 2] {
-        let (x, along) = (start.position, |value| Vector2::new(value, 0.0));
-        let accelerated = (end.velocity - start.velocity) / time;
-        match self {
-            Self::Density => [along(end.density - 1.0), along(DENSITY * scalar(x))],
+    /// What was made of the field of each particle since the start, and the exact value.
+    ///
+    /// # Errors
+    /// Without densities that the operator reads.
+    fn values(self, start: &Columns, end: &Snapshot, m: &Medium) -> Result<Values, Absent> {
+        let (all, time) = (end.all(), end.time());
+        let pairs = || start.points.iter().zip(&all).enumerate();
+        let along = |value| Vector2::new(value, 0.0);
+        let accelerated = |start: &Point, end: &Point| (end.velocity - start.velocity) / time;
+        Ok(match self {
+            Self::Density => {
+                let density = end.density()?;
+                let exact = |x| along(DENSITY * scalar(x));
+                pairs()
+                    .map(|(_, (start, end))| [along(density.of(end) - 1.0), exact(start.position)])
+                    .collect()
+            }
             Self::Gradient => {
-                let gradient =
-                    Vector2::new(cos(K * x.x) * cos(K * x.y), -sin(K * x.x) * sin(K * x.y));
-                [accelerated, -gradient * (PRESSURE * K / start.density)]
+                let density = start.densities()?;
+                let exact = |k: usize, x: Vector2<f64>| {
+                    let gradient =
+                        Vector2::new(cos(K * x.x) * cos(K * x.y), -sin(K * x.x) * sin(K * x.y));
+                    -gradient * (PRESSURE * K / density[k])
+                };
+                pairs()
+                    .map(|(k, (start, end))| [accelerated(start, end), exact(k, start.position)])
+                    .collect()
             }
-            Self::Laplacian => [accelerated, vector(x) * (-2.0 * K * K * m.nu * SPEED)],
+            Self::Laplacian => {
+                let exact = |x| vector(x) * (-2.0 * K * K * m.nu * SPEED);
+                pairs()
+                    .map(|(_, (start, end))| [accelerated(start, end), exact(start.position)])
+                    .collect()
+            }
             Self::Divergence => {
-                let divergence = 2.0 * SPEED * K * cos(K * x.x) * cos(K * x.y);
-                [along((start.density - end.density) / time), along(divergence)]
+                let (before, after) = (start.densities()?, end.density()?);
+                let exact = |x: Vector2<f64>| along(2.0 * SPEED * K * cos(K * x.x) * cos(K * x.y));
+                pairs()
+                    .map(|(k, (start, end))| {
+                        [along((before[k] - after.of(end)) / time), exact(start.position)]
+                    })
+                    .collect()
             }
-        }
+        })
     }
 }
+
+/// Of each particle what was made of the field, and the exact value.
+type Values = Vec<[Vector2<f64>; 2]>;
 
 impl Subject {
     /// The gain on a lattice: the symbol of the sum over the symbol of the continuum, for a diagonal wave.
@@ -153,34 +185,38 @@ struct Sums<'a> {
 }
 
 impl Sums<'_> {
-    /// The distance of the operator of a run from its sum, over the sum, rms over particles. `None` if the
-    /// nearest image is not the only one in reach.
-    fn error(&self, start: &[Particle], end: &[Particle], time: f64) -> Option<f64> {
+    /// The distance of the operator of a run from its sum, over the sum, rms over particles.
+    ///
+    /// # Errors
+    /// Without densities at the start, or if the nearest image is not the only one in reach.
+    fn error(&self, start: &Columns, values: &Values) -> Result<f64, Absent> {
         if self.reach >= 0.5 {
-            return None;
+            return Err("the support reaches half of the period".into());
         }
+        let start: Vec<(Point, f64)> =
+            start.points.iter().copied().zip(start.densities()?.iter().copied()).collect();
         let strips = (1.0 / self.reach) as usize;
         let strip = |x: f64| ((x - x.floor()) * strips as f64) as usize % strips;
         let mut near = vec![Vec::new(); strips];
-        start.iter().for_each(|p| near[strip(p.position.x)].push(p));
+        start.iter().for_each(|p| near[strip(p.0.position.x)].push(p));
         let (mut off, mut scale) = (0.0, 0.0);
-        for (own, end) in start.iter().zip(end) {
-            let middle = strip(own.position.x);
+        for (own, [found, _]) in start.iter().zip(values) {
+            let middle = strip(own.0.position.x);
             let mut around = [middle + strips - 1, middle, middle + 1].map(|k| k % strips).to_vec();
             around.sort_unstable();
             around.dedup();
             let others = around.into_iter().flat_map(|k| &near[k]);
             let sum = others.fold(Vector2::zeros(), |sum, other| sum + self.pair(own, other));
             let sum = if self.operator == Operator::Density { sum - Vector2::x() } else { sum };
-            let [found, _] = self.operator.values([own, end], self.medium, time);
             off += (found - sum).norm_squared();
             scale += sum.norm_squared();
         }
-        Some((off / scale).sqrt())
+        Ok((off / scale).sqrt())
     }
 
     /// The contribution of one particle, which may be an image of the particle itself.
-    fn pair(&self, own: &Particle, other: &Particle) -> Vector2<f64> {
+    fn pair(&self, own: &(Point, f64), other: &(Point, f64)) -> Vector2<f64> {
+        let ((own, own_density), (other, other_density)) = (own, other);
         let Medium { eos, density, nu, h, .. } = self.medium;
         let r = (own.position - other.position).map(|x| x - x.round());
         let (r2, v, mass) = (r.norm_squared(), own.velocity - other.velocity, other.mass);
@@ -194,14 +230,14 @@ impl Sums<'_> {
         const SHARE: f64 = 1e-5;
         let rise = (self.weight)(r2 * (1.0 + SHARE)) - (self.weight)(r2 * (1.0 - SHARE));
         let slope = if r2 > 0.0 { rise / (SHARE * r2) } else { 0.0 };
-        let share = |p: &Particle| eos.pressure(p.density) / (p.density * p.density);
+        let share = |density: &f64| eos.pressure(*density) / (density * density);
         match self.operator {
-            Operator::Gradient => r * (-mass * slope * (share(own) + share(other))),
+            Operator::Gradient => r * (-mass * slope * (share(own_density) + share(other_density))),
             Operator::Laplacian => {
-                let viscous = 2.0 * nu * density / (own.density * other.density);
+                let viscous = 2.0 * nu * density / (own_density * other_density);
                 v * (viscous * mass * slope * r2 / (r2 + ETA2 * h * h))
             }
-            _ => Vector2::new(-mass / own.density * slope * v.dot(&r), 0.0),
+            _ => Vector2::new(-mass / own_density * slope * v.dot(&r), 0.0),
         }
     }
 }
@@ -232,8 +268,7 @@ impl Sampled {
 /// The particles at the start.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Start {
-    #[serde(with = "touchstone_harness::checkpoint::particles")]
-    particles: Vec<Particle>,
+    particles: Columns,
 }
 
 impl Problem for Sampled {
@@ -267,27 +302,25 @@ impl Problem for Sampled {
         Ok(Parts::new(medium, Domain::torus(1.0, 1.0), particles))
     }
 
-    fn watch(&self, start: &[Particle], _: &dyn Stepper<()>) -> Start {
-        Start { particles: start.to_vec() }
+    fn watch(&self, scene: &Snapshot, _: &Snapshot) -> Start {
+        Start { particles: scene.columns() }
     }
 
-    fn measure(
-        &self,
-        Start { particles: start }: Start,
-        end: &dyn Stepper<()>,
-        record: &mut Record,
-    ) {
+    fn measure(&self, Start { particles: start }: Start, end: &Snapshot, record: &mut Record) {
         if record.status != Status::Completed {
             return;
         }
         let Self { of, method, settings, medium, .. } = self;
-        measure(of, &start, end, medium, record);
+        let values = match of.operator.values(&start, end, medium) {
+            Ok(values) => values,
+            Err(absent) => return record.leave_all_out(ALL, &absent),
+        };
+        measure(&values, record);
         let weight: &dyn Fn(f64) -> f64 = &|r2| end.weight(r2);
         if !of.is_corrected {
             let reach = method.properties.support * medium.h;
             let sums = Sums { operator: of.operator, medium, reach, weight };
-            let error = sums.error(&start, &end.particles(), end.time());
-            record.put_or(SUM_ERROR, error, "the support reaches half of the period");
+            record.put_or_absent(SUM_ERROR, sums.error(&start, &values));
         }
         if settings.disorder == 0.0 {
             let symbol = of.symbol(method, settings, weight);
@@ -298,17 +331,7 @@ impl Problem for Sampled {
 }
 
 /// The operator on all particles against its exact values.
-fn measure(
-    of: &Subject,
-    start: &[Particle],
-    simulation: &dyn Stepper<()>,
-    medium: &Medium,
-    record: &mut Record,
-) {
-    let (end, time) = (simulation.particles(), simulation.time());
-    let pairs = start.iter().zip(&end);
-    let values: Vec<_> =
-        pairs.map(|(start, end)| of.operator.values([start, end], medium, time)).collect();
+fn measure(values: &Values, record: &mut Record) {
     let sum = |f: &dyn Fn(&[Vector2<f64>; 2]) -> f64| values.iter().fold(0.0, |sum, v| sum + f(v));
     let scale = sum(&|[_, exact]| exact.norm_squared());
     let gain = sum(&|[found, exact]| found.dot(exact)) / scale;

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 use touchstone_base::{
+    absent::Absent,
     functions::{cos, sin},
     random::Random,
     record::*,
@@ -14,10 +15,11 @@ use touchstone_harness::{
     case::*,
     method::*,
     problem::{Asked, Brief, Calls, Problem},
+    snapshot::{Snapshot, momentum},
 };
 use touchstone_maths::metrics::norms::largest;
 use touchstone_maths::theory::time_step::{self, Mode, modes};
-use touchstone_solver::{EquationOfState, Particle, Stepper, Tait};
+use touchstone_solver::{EquationOfState, Stepper, Tait};
 
 use super::{
     fit::{self, DampedMode},
@@ -161,7 +163,7 @@ impl Projection {
         Self { basis, series: Vec::new(), momentum: None }
     }
 
-    fn after_step(&mut self, wave: &Wave, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
+    fn after_step(&mut self, wave: &Wave, simulation: &dyn Stepper<()>) {
         let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = wave;
         let across = wave.across();
         let mut sums = [0.0; 3];
@@ -171,10 +173,8 @@ impl Projection {
             sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
-        let momentum =
-            touchstone_maths::metrics::momentum::momentum(&simulation.particles()).into();
+        let momentum = momentum(&Snapshot::ours(simulation).all()).into();
         self.momentum = Some([self.momentum.map_or(momentum, |[first, _]| first), momentum]);
-        ControlFlow::Continue(())
     }
 }
 
@@ -214,20 +214,23 @@ impl Problem for Wave {
         Ok(self.parts())
     }
 
-    fn watch(&self, _: &[Particle], _: &dyn Stepper<()>) -> Projection {
+    fn watch(&self, _: &Snapshot, _: &Snapshot) -> Projection {
         Projection::new(self)
     }
 
     fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
-        calls.after_step("projection", |wave, projection, s| projection.after_step(wave, s))
+        calls.every_step_of_ours("projection", |wave, projection, s| projection.after_step(wave, s))
     }
 
     fn measure(
         &self,
         Projection { series, momentum, .. }: Projection,
-        _: &dyn Stepper<()>,
+        end: &Snapshot,
         record: &mut Record,
     ) {
+        if end.simulation().is_err() {
+            return record.leave_all_out(super::STEPWISE, &Absent::EveryStep);
+        }
         let (s, Medium { density, sound_speed, .. }) = (&self.settings, self.medium);
         compare(self, self.method.properties.theory, &series, record);
         let scale = density * s.length * s.length * s.amplitude * sound_speed;

@@ -22,12 +22,12 @@ pub struct End {
     /// t \[s\], displacement of the end along x and y \[m\].
     pub path: Vec<[f64; 3]>,
     /// t \[s\], kinetic energy and total energy, minus the total at the start \[J/m\].
-    pub energies: Vec<[f64; 3]>,
+    pub energies: Series<3>,
 }
 
 impl End {
-    fn sample(&mut self, simulation: &dyn Stepper<Symmetric>) {
-        let all = simulation.particles();
+    fn sample(&mut self, now: &Snapshot<Symmetric>) {
+        let all = now.all();
         let columns = self.settings.columns();
         let middle = |column: usize| {
             let rows = (0..self.settings.n).map(|row| all[row * columns + column].position);
@@ -35,43 +35,45 @@ impl End {
         };
         // The line through the last two columns, continued by half a spacing: the end has no curvature.
         let end = 1.5 * middle(columns - 1) - 0.5 * middle(columns - 2);
-        self.path.push([simulation.time(), end.x - self.settings.length, end.y]);
+        self.path.push([now.time(), end.x - self.settings.length, end.y]);
         if self.path.len().is_multiple_of(ENERGY_EVERY) {
-            self.energies.push(self.energy(simulation));
+            self.energies.push(self.energy(now));
         }
     }
 
     /// A row of the energies. The energy of the weight is 0 at the start, because the bar is along y = 0.
-    fn energy(&self, simulation: &dyn Stepper<Symmetric>) -> [f64; 3] {
-        let mut found = Energy::of(simulation, &self.settings.material());
-        if simulation.potential().is_none() {
-            let height = |(mass, p): (f64, &State<Symmetric>)| mass * p.position.y;
-            let height = simulation.data().fluid().map(height).fold(0.0, |sum, one| sum + one);
-            found.compression += self.settings.gravity * height;
+    fn energy(&self, now: &Snapshot<Symmetric>) -> [Result<f64, Absent>; 3] {
+        if let Some(known) = Energy::known(now) {
+            return [now.time(), known.kinetic, known.total()].map(Ok);
         }
-        [simulation.time(), found.kinetic, found.total()]
+        let of_points = Energy::of_points(now.stored(), now, &self.settings.material());
+        let total = of_points.map(|mut found| {
+            let height = |p: Point| p.mass * p.position.y;
+            let height = now.stored().map(height).fold(0.0, |sum, one| sum + one);
+            found.compression += self.settings.gravity * height;
+            found.total()
+        });
+        [Ok(now.time()), Ok(solid::kinetic(now.stored())), total]
     }
 }
 
 impl Watch for End {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
-        if simulation.time() >= self.until {
-            self.until = simulation.time() + self.settings.end / SAMPLES;
-            self.sample(simulation);
+    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
+        if now.time() >= self.until {
+            self.until = now.time() + self.settings.end / SAMPLES;
+            self.sample(now);
         }
     }
 
-    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
-        self.energies.push(self.energy(simulation));
-        let most = |k: usize| {
-            self.energies
-                .iter()
-                .map(|row| row[k])
-                .fold(0.0, |a: f64, b| if b.abs() > a.abs() || b.is_nan() { b } else { a })
+    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
+        self.energies.push(self.energy(end));
+        let most = |k: usize| -> Result<f64, Absent> {
+            let larger = |a: f64, b: &f64| if b.abs() > a.abs() || b.is_nan() { *b } else { a };
+            Ok(self.energies.column(k)?.iter().fold(0.0, larger))
         };
-        record.put(ENERGY_CHANGE, most(2) / most(1));
-        let energies =
-            Profile::of_rows(&[("t", "s"), ("kinetic", "J/m"), ("change", "J/m")], &self.energies);
+        let change = most(2).and_then(|change| Ok(change / most(1)?));
+        record.put_or_absent(ENERGY_CHANGE, change);
+        let energies = self.energies.profile(&[("t", "s"), ("kinetic", "J/m"), ("change", "J/m")]);
         record.profiles.insert("energy".into(), energies);
         let path = Path(std::mem::take(&mut self.path));
         let columns = [("t", "s"), ("x", "m"), ("y", "m")];
@@ -150,9 +152,9 @@ mod tests {
             (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");
         let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
         lagrangian::displace(&mut *simulation, place);
-        let (path, energies) = (vec![[0.0; 3]], Vec::new());
+        let (path, energies) = (vec![[0.0; 3]], Series::default());
         let mut end = End { settings: s, until: 0.0, path, energies };
-        end.sample(&*simulation);
+        end.sample(&Snapshot::ours(&*simulation));
         let [_, x, y] = end.path[1];
         assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);
         assert_relative_eq!(y, -0.2 * 0.35, max_relative = 1e-9);

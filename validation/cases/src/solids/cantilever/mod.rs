@@ -7,7 +7,14 @@ mod plan;
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 use touchstone_base::{gate::*, mutation::Constant, record::*};
-use touchstone_harness::{case::*, composed::*, studies::*, table::*};
+use touchstone_harness::{
+    case::*,
+    composed::*,
+    series::Series,
+    snapshot::{Point, Snapshot},
+    studies::*,
+    table::*,
+};
 use touchstone_lagrangian::*;
 use touchstone_schemes::total;
 use touchstone_solver::*;
@@ -180,8 +187,8 @@ impl Body for CantileverSettings {
         row(0.0, columns).chain(held).collect()
     }
 
-    fn watch(&self, _: &[Particle<Symmetric>], _: Option<Energy>) -> End {
-        let (path, energies) = (vec![[0.0; 3]], vec![[0.0; 3]]);
+    fn watch(&self, _: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> End {
+        let (path, energies) = (vec![[0.0; 3]], Series::from(vec![[0.0; 3]]));
         End { settings: self.clone(), until: 0.0, path, energies }
     }
 }

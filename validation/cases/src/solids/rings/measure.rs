@@ -1,6 +1,7 @@
 //! Metrics of the rings, by sample and at the end.
 
 use serde::{Deserialize, Serialize};
+use touchstone_harness::series::Series as Columns;
 use touchstone_maths::geometry::{Bonds, Topology};
 
 use super::*;
@@ -15,7 +16,7 @@ pub const NEIGHBOURS: f64 = 1.2;
 pub const PICTURES: [f64; 5] = [0.16, 0.3, 0.4, 0.6, 1.0];
 
 /// The particles in the frame whose x axis is the line of flight, as the scene orders them.
-fn along_flight(settings: &RingSettings, mut particles: Vec<Solid>) -> Vec<Solid> {
+fn along_flight(settings: &RingSettings, mut particles: Vec<Point>) -> Vec<Point> {
     if settings.angle != 0.0 {
         let rotation = settings.to_flight();
         for p in &mut particles {
@@ -27,7 +28,7 @@ fn along_flight(settings: &RingSettings, mut particles: Vec<Solid>) -> Vec<Solid
 
 /// A ring's centre of mass \[m\], its velocity \[m/s\], and its extents along and across the line of flight,
 /// half a spacing beyond the outermost particles \[m\].
-pub fn side(ring: &[Solid], dx: f64) -> [Vector2<f64>; 3] {
+pub fn side(ring: &[Point], dx: f64) -> [Vector2<f64>; 3] {
     let (mut mass, mut centre, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
     for p in ring {
         mass += p.mass;
@@ -39,7 +40,7 @@ pub fn side(ring: &[Solid], dx: f64) -> [Vector2<f64>; 3] {
 }
 
 /// Where the particles of a ring are.
-fn places(ring: &[Solid]) -> Vec<Vector2<f64>> {
+fn places(ring: &[Point]) -> Vec<Vector2<f64>> {
     ring.iter().map(|p| p.position).collect()
 }
 
@@ -54,8 +55,6 @@ pub fn halves<T>(particles: &[T]) -> [&[T]; 2] {
     [left, right]
 }
 
-type Solid = Particle<Symmetric>;
-
 /// Watches a run.
 #[derive(Serialize, Deserialize)]
 pub struct Series {
@@ -64,11 +63,19 @@ pub struct Series {
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
     next: f64,
+    /// t \[L/c0\], place \[L\] and velocity \[c0\] of the centre, width and height \[L\], pieces, holes, and the
+    /// longest distance of neighbours \[dx\].
     rows: Vec<[f64; COLUMNS]>,
+    /// Kinetic, compression and shear energy of each row \[J/m\].
+    energies: Columns<3>,
 }
 
-const COLUMNS: usize = 11;
-const NAMES: [(&str, &str); COLUMNS] = [
+const COLUMNS: usize = 8;
+/// Columns of [`Series::rows`].
+const PIECES: usize = 5;
+const HOLES: usize = 6;
+const STRETCH: usize = 7;
+const NAMES: [(&str, &str); COLUMNS + 3] = [
     ("t", "L/c0"),
     ("x_c", "L"),
     ("v_c", "c0"),
@@ -84,17 +91,35 @@ const NAMES: [(&str, &str); COLUMNS] = [
 
 impl Series {
     /// A series over a run with this start.
-    pub fn new(settings: &RingSettings, start: &[Solid], energy: Option<Energy>) -> Self {
+    pub fn new(
+        settings: &RingSettings,
+        scene: &Snapshot<Symmetric>,
+        start: &Snapshot<Symmetric>,
+    ) -> Self {
         let next = settings.end() / SAMPLES;
-        let start = along_flight(settings, start.to_vec());
-        let bonds = halves(&start).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
-        let mut this = Self { settings: settings.clone(), bonds, next, rows: Vec::new() };
-        this.sample(0.0, &start, energy);
+        let all = along_flight(settings, scene.all());
+        let bonds = halves(&all).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
+        let (rows, energies) = (Vec::new(), Columns::default());
+        let mut this = Self { settings: settings.clone(), bonds, next, rows, energies };
+        let known = Energy::known(start);
+        this.add(0.0, &all, this.energies(known, &all, scene));
         this
     }
 
+    /// The energies of particles of a snapshot unless the method knows them.
+    fn energies(
+        &self,
+        known: Option<Energy>,
+        all: &[Point],
+        now: &Snapshot<Symmetric>,
+    ) -> [Result<f64, Absent>; 3] {
+        let of_points = || Energy::each(all.iter().copied(), now, &self.settings.material());
+        let each = |known: Energy| [known.kinetic, known.compression, known.shear].map(Ok);
+        known.map_or_else(of_points, each)
+    }
+
     /// Pieces of both rings, and the fewest holes of one.
-    fn count(&self, particles: &[Solid]) -> [f64; 2] {
+    fn count(&self, particles: &[Point]) -> [f64; 2] {
         let least_hole = Topology::least_hole_of_ring(self.settings.inner, self.settings.outer);
         let found = halves(particles)
             .map(|ring| Topology::of(&places(ring), self.settings.dx(), least_hole));
@@ -102,18 +127,23 @@ impl Series {
         [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
     }
 
-    /// Takes a sample of the ring on the right, whose centre has x > 0. The energies are the particles',
-    /// unless the simulation states them.
-    pub fn sample(&mut self, time: f64, particles: &[Solid], known: Option<Energy>) {
+    /// Takes a sample.
+    pub fn sample(&mut self, now: &Snapshot<Symmetric>) {
+        let all = along_flight(&self.settings, now.all());
+        self.add(now.time(), &all, self.energies(Energy::known(now), &all, now));
+    }
+
+    /// Adds a row: the ring on the right, whose centre has x > 0.
+    fn add(&mut self, time: f64, particles: &[Point], energies: [Result<f64, Absent>; 3]) {
         let (c0, dx) = (self.settings.c0(), self.settings.dx());
         let [left, right] = halves(particles);
         let [pieces, holes] = match self.rows.last() {
-            Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => [last[5], last[9]],
+            Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => {
+                [last[PIECES], last[HOLES]]
+            }
             _ => self.count(particles),
         };
         let [centre, velocity, extent] = side(right, dx);
-        let Energy { kinetic, compression, shear } =
-            known.unwrap_or_else(|| Energy::of_all(particles, &self.settings.material()));
         let bonds = self.bonds.iter().zip([left, right]);
         let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
         self.rows.push([
@@ -123,12 +153,30 @@ impl Series {
             extent.x,
             extent.y,
             pieces,
-            kinetic,
-            compression,
-            shear,
             holes,
             stretch,
         ]);
+        self.energies.push(energies);
+    }
+
+    /// The series, with the energies after the pieces.
+    fn profile(&self) -> Profile {
+        let row = |k: usize| Ok(self.rows.iter().map(|row| row[k]).collect());
+        let energy = |k: usize| self.energies.column(k).map(<[f64]>::to_vec);
+        let column = |k: usize| match k {
+            0..=PIECES => row(k),
+            HOLES..=8 => energy(k - HOLES),
+            _ => row(k - 3),
+        };
+        Columns::of(std::array::from_fn(column)).profile(&NAMES)
+    }
+
+    /// The sum of the energies of each row \[J/m\].
+    fn energy(&self) -> Result<Vec<f64>, Absent> {
+        let [kinetic, compression, shear] =
+            [self.energies.column(0)?, self.energies.column(1)?, self.energies.column(2)?];
+        let all = kinetic.iter().zip(compression).zip(shear);
+        Ok(all.map(|((kinetic, compression), shear)| kinetic + compression + shear).collect())
     }
 
     /// (t \[L/c0\], column number `k`) of every sample.
@@ -142,27 +190,26 @@ impl Series {
         let column = |k: usize| self.rows.iter().map(move |row| row[k]);
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
         let most = |k: usize| column(k).fold(0.0, f64::max);
-        record.put(PIECES_MOST, most(5));
+        record.put(PIECES_MOST, most(PIECES));
         // A hole narrower than a disc is not detected at the start either.
-        if is_whole([first[5], first[9]]) {
-            record.put(HOLES_LEAST, least(9));
-            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[5], row[9]])) {
+        if is_whole([first[PIECES], first[HOLES]]) {
+            record.put(HOLES_LEAST, least(HOLES));
+            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[PIECES], row[HOLES]])) {
                 record.put(TORN_AT, torn[0]);
             }
         }
-        record.put(STRETCH_MOST, largest(column(10)));
+        record.put(STRETCH_MOST, largest(column(STRETCH)));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
-        let energy = |row: &[f64; COLUMNS]| row[6] + row[7] + row[8];
-        let highest = self.rows.iter().map(energy).fold(0.0, f64::max);
         let speed = self.settings.speed;
-        for (metric, value) in [
-            (ENERGY_LOST, 1.0 - energy(last) / energy(first)),
-            (ENERGY_GAINED, highest / energy(first) - 1.0),
-        ] {
-            let moving = (speed > 0.0).then_some(value);
-            record.put_or(metric, moving, "the rings are at rest at the start");
-        }
+        let energy = match speed > 0.0 {
+            true => self.energy(),
+            false => Err("the rings are at rest at the start".into()),
+        };
+        let lost = |all: &Vec<f64>| 1.0 - all[all.len() - 1] / all[0];
+        let gained = |all: &Vec<f64>| all.iter().copied().fold(0.0, f64::max) / all[0] - 1.0;
+        record.put_or_absent(ENERGY_LOST, energy.as_ref().map(lost).map_err(Absent::clone));
+        record.put_or_absent(ENERGY_GAINED, energy.as_ref().map(gained).map_err(Absent::clone));
         self.put_contact(last[2] / speed, record);
         let columns = [1, 2, 3, 4].map(|k| self.points(k));
         reference::compare(&self.settings, &self.phases(), &columns, record);
@@ -231,47 +278,46 @@ const PAUSE: f64 = 5.0;
 const ROUND_OFF: f64 = 1e-9;
 
 impl Watch for Series {
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
-        if simulation.time() >= self.next {
+    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
+        if now.time() >= self.next {
             self.next += self.settings.end() / SAMPLES;
-            let particles = along_flight(&self.settings, simulation.particles());
-            self.sample(simulation.time(), &particles, Energy::known(simulation));
+            self.sample(now);
         }
     }
 
     /// x, y and the largest principal stress of the ring on the right, for pictures.
-    fn keep(&self, simulation: &dyn Stepper<Symmetric>, stop: usize, record: &mut Record) {
+    fn keep(&self, now: &Snapshot<Symmetric>, stop: usize, record: &mut Record) {
         let s = &self.settings;
         let share = (stop + 1) as f64 / s.samples as f64;
+        let (Ok(density), Ok(stress)) = (now.density(), now.stress()) else { return };
         if !PICTURES.contains(&share) {
             return;
         }
-        let all = along_flight(s, simulation.particles());
+        let all = along_flight(s, now.all());
         let eos = s.material().eos();
-        let stress = |p: &Solid| {
-            let (m, d) = (0.5 * (p.extra.xx + p.extra.yy), 0.5 * (p.extra.xx - p.extra.yy));
-            m + hypot(d, p.extra.xy) - eos.pressure(p.density)
+        let largest = |p: &Point| {
+            let Symmetric { xx, yy, xy } = stress.of(p);
+            0.5 * (xx + yy) + hypot(0.5 * (xx - yy), xy) - eos.pressure(density.of(p))
         };
         let [_, right] = halves(&all);
-        let stressed = right.iter().map(|p| (p.position, stress(p)));
+        let stressed = right.iter().map(|p| (p.position, largest(p)));
         let name = format!("particles@{share}");
         pictures::keep(record, &name, "L", ("stress", "Pa"), stressed);
     }
 
-    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
         if record.status == Status::Completed {
-            let particles = along_flight(&self.settings, simulation.particles());
-            let time = simulation.time();
-            if self.rows.last().is_some_and(|row| row[0] < time * self.settings.c0()) {
-                self.sample(time, &particles, Energy::known(simulation));
+            let last = self.rows.last();
+            if last.is_some_and(|row| row[0] < end.time() * self.settings.c0()) {
+                self.sample(end);
             }
             self.put(record);
+            let particles = along_flight(&self.settings, end.all());
             let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
             let of_ring = 0.5 * mass * self.settings.speed().max(f64::MIN_POSITIVE);
-            let momentum = touchstone_maths::metrics::momentum::momentum(&particles);
-            record.put(MOMENTUM, momentum.norm() / of_ring);
+            record.put(MOMENTUM, momentum(&particles).norm() / of_ring);
         }
-        record.profiles.insert("series".into(), Profile::of_rows(&NAMES, &self.rows));
+        record.profiles.insert("series".into(), self.profile());
     }
 }
 
@@ -284,7 +330,7 @@ mod tests {
 
     #[test]
     fn centre_velocity_and_extents_are_those_of_the_ring() {
-        let particles = RingSettings::default().particles();
+        let particles = Snapshot::of(0.0, &RingSettings::default().particles()).all();
         let [left, _] = halves(&particles);
         let [centre, velocity, extent] = side(left, 0.1);
         assert!((centre.x + 5.0).abs() < 1e-12 && centre.y.abs() < 1e-12);
@@ -295,16 +341,17 @@ mod tests {
     /// A run of made-up places: the rings of the scene, changed.
     fn watched(change: impl Fn(f64, &mut Particle<Symmetric>)) -> (Record, Vec<(f64, f64)>) {
         let settings = RingSettings::default();
-        let mut series = Series::new(&settings, &settings.particles(), None);
+        let start = Snapshot::of(0.0, &settings.particles());
+        let mut series = Series::new(&settings, &start, &start);
         for k in 1..40 {
             let time = f64::from(k);
             let mut particles = settings.particles();
             particles.iter_mut().for_each(|p| change(time, p));
-            series.sample(time, &particles, None);
+            series.sample(&Snapshot::of(time, &particles));
         }
         let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
         series.put(&mut record);
-        (record, series.points(9))
+        (record, series.points(HOLES))
     }
 
     /// As in rings at 0.09 to 0.12 c0: a ring opens at its rear pole into a C, still one piece.
@@ -350,11 +397,12 @@ mod tests {
     fn energies_are_those_of_simple_states() {
         let material = RingSettings::default().material();
         let mut p = Particle::fluid(Vector2::zeros(), Vector2::new(0.6, 0.8), 1.0, 0.01);
-        let at_rest = Energy::of_all(&[p], &material);
+        let of = |p| Energy::of(&Snapshot::of(0.0, &[p]), &material).expect("every column");
+        let at_rest = of(p);
         assert!((at_rest.kinetic - 0.005).abs() < 1e-15 && at_rest.compression.abs() < 1e-15);
         // Small compression: K e²/2 an area; pure shear: tau²/(2 mu) an area.
         (p.density, p.extra.xy) = (1.0 + 1e-4, 1e-4);
-        let strained = Energy::of_all(&[p], &material);
+        let strained = of(p);
         assert!((strained.compression / (0.01 * 0.5e-8) - 1.0).abs() < 1e-3);
         assert!((strained.shear / (0.01 * 1e-8 / (2.0 * 0.22)) - 1.0).abs() < 1e-3);
     }

@@ -15,16 +15,17 @@ mod tests;
 
 use nalgebra::{Rotation2, Vector2};
 use std::f64::consts::TAU;
-use touchstone_base::{functions::*, gate::*, mutation::Constant, record::*};
+use touchstone_base::{absent::Absent, functions::*, gate::*, mutation::Constant, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
     method::Properties,
     pictures,
+    snapshot::{Point, Snapshot, momentum},
     studies::{causes::*, *},
     table,
 };
-use touchstone_solver::{EquationOfState, Limits, Particle, Stepper, Symmetric};
+use touchstone_solver::{EquationOfState, Limits, Particle, Symmetric};
 
 use crate::stabilisation::Stabilisation;
 

@@ -98,8 +98,8 @@ impl Body for RingSettings {
         ring(-1.0).chain(ring(1.0)).collect()
     }
 
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Series {
-        Series::new(self, start, energy)
+    fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Series {
+        Series::new(self, scene, start)
     }
 }
 

@@ -12,7 +12,7 @@ use touchstone_base::{
     functions::exp,
     record::{MetricName, Record, Status},
 };
-use touchstone_harness::{case::Case, context::Context};
+use touchstone_harness::{case::Case, context::Context, snapshot::Snapshot};
 
 /// Coarse rings that fly at 0.06 c0.
 fn settings() -> RingSettings {
@@ -23,8 +23,9 @@ fn settings() -> RingSettings {
 /// four times in a unit of time.
 fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record {
     let (start, dx) = (settings.particles(), settings.dx());
-    let [_, _, extent] = measure::side(&start[start.len() / 2..], dx);
-    let mut series = Series::new(settings, &start, None);
+    let first = Snapshot::of(0.0, &start);
+    let [_, _, extent] = measure::side(&first.all()[start.len() / 2..], dx);
+    let mut series = Series::new(settings, &first, &first);
     for k in 1..=(4.0 * settings.end) as usize {
         let time = 0.25 * k as f64;
         let [x, v, width, height] = motion(time);
@@ -36,7 +37,7 @@ fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record
             p.position.y *= stretch[1];
             p.velocity.x = side * v;
         }
-        series.sample(time / settings.c0(), &particles, None);
+        series.sample(&Snapshot::of(time / settings.c0(), &particles));
     }
     let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
     series.put(&mut record);

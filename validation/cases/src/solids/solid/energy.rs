@@ -1,8 +1,9 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
 use nalgebra::Vector2;
-use touchstone_base::functions::ln_1p;
-use touchstone_solver::{Numbers, Particle, Potential, State, Stepper, Symmetric};
+use touchstone_base::{absent::Absent, functions::ln_1p};
+use touchstone_harness::snapshot::{Point, Snapshot};
+use touchstone_solver::{Potential, Symmetric};
 
 use super::Material;
 
@@ -20,51 +21,74 @@ pub struct Energy {
 impl Energy {
     /// The energy of all fluid particles of a simulation. If its forces have potentials, these are used:
     /// energy of loads counts as compression, and energy of the hourglass resistance as shear.
-    pub fn of(simulation: &dyn Stepper<Symmetric>, of: &Material) -> Self {
-        if let Some(known) = Self::known(simulation) {
-            return known;
-        }
-        simulation.data().fluid().fold(Self::default(), |sum, (mass, p)| sum.with(mass, p, of))
+    pub fn of(now: &Snapshot<Symmetric>, of: &Material) -> Result<Self, Absent> {
+        let of_points = || Self::of_points(now.stored(), now, of);
+        Self::known(now).map_or_else(of_points, Ok)
     }
 
-    /// The energy of a simulation whose forces have potentials.
-    pub fn known(simulation: &dyn Stepper<Symmetric>) -> Option<Self> {
-        let Potential { compression, shear, hourglass, loads } = simulation.potential()?;
-        let half = |(mass, p): (f64, &State<Symmetric>)| 0.5 * mass * p.velocity.norm_squared();
-        let kinetic = simulation.data().fluid().map(half).fold(0.0, |sum, one| sum + one);
-        Some(Self { kinetic, compression: compression + loads, shear: shear + hourglass })
+    /// Of a method whose forces derive from energies.
+    pub fn known(now: &Snapshot<Symmetric>) -> Option<Self> {
+        let potential = now.sums(|simulation| simulation.potential()).ok()??;
+        let Potential { compression, shear, hourglass, loads } = potential;
+        let (compression, shear) = (compression + loads, shear + hourglass);
+        Some(Self { kinetic: kinetic(now.stored()), compression, shear })
     }
 
-    /// The energy of these particles.
-    pub fn of_all(particles: &[Particle<Symmetric>], of: &Material) -> Self {
-        particles.iter().fold(Self::default(), |sum, p| {
-            let Particle { position, velocity, density, extra, .. } = *p;
-            sum.with(p.mass, &State { position, velocity, density, extra }, of)
-        })
+    /// Of particles of a snapshot.
+    ///
+    /// # Errors
+    /// As [`Energy::of`].
+    pub fn of_points(
+        points: impl Iterator<Item = Point> + Clone,
+        now: &Snapshot<Symmetric>,
+        of: &Material,
+    ) -> Result<Self, Absent> {
+        let [kinetic, compression, shear] = Self::each(points, now, of);
+        Ok(Self { kinetic: kinetic?, compression: compression?, shear: shear? })
     }
 
-    /// The sum with one more particle of this mass \[kg/m\].
-    fn with(self, mass: f64, particle: &State<Symmetric>, material: &Material) -> Self {
-        let ratio = particle.density / material.density;
-        let c2 = material.bulk / material.density;
-        // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
-        let x = ratio - 1.0;
-        // Without a shear modulus there is no shear stress to hold energy.
-        let shear = if material.shear > 0.0 {
-            mass / particle.density * norm_squared(&particle.extra) / (4.0 * material.shear)
-        } else {
-            0.0
-        };
-        Self {
-            kinetic: self.kinetic + 0.5 * mass * particle.velocity.norm_squared(),
-            compression: self.compression + mass * c2 * (ln_1p(x) - x / ratio),
-            shear: self.shear + shear,
-        }
+    /// Kinetic, compression and shear energy of particles of a snapshot, each with the columns that it needs.
+    pub fn each(
+        points: impl Iterator<Item = Point> + Clone,
+        now: &Snapshot<Symmetric>,
+        of: &Material,
+    ) -> [Result<f64, Absent>; 3] {
+        let compression = now.density().map(|density| {
+            let energy = |p: Point| of.compression_energy(p.mass, density.of(&p));
+            points.clone().map(energy).fold(0.0, |sum, one| sum + one)
+        });
+        let shear = now.density().and_then(|density| {
+            let stress = now.stress()?;
+            let energy = |p: Point| of.shear_energy(p.mass / density.of(&p), &stress.of(&p));
+            Ok(points.clone().map(energy).fold(0.0, |sum, one| sum + one))
+        });
+        [Ok(kinetic(points)), compression, shear]
     }
 
     /// Total energy.
     pub fn total(&self) -> f64 {
         self.kinetic + (self.compression + self.shear)
+    }
+}
+
+/// Σ m v²/2 \[J/m\].
+pub fn kinetic(points: impl Iterator<Item = Point>) -> f64 {
+    points.fold(0.0, |sum, p| sum + 0.5 * p.mass * p.velocity.norm_squared())
+}
+
+impl Material {
+    /// m e of [`Energy::compression`] \[J/m\], of a mass \[kg/m\] at a density \[kg/m³\].
+    fn compression_energy(&self, mass: f64, density: f64) -> f64 {
+        let ratio = density / self.density;
+        let c2 = self.bulk / self.density;
+        // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
+        let x = ratio - 1.0;
+        mass * c2 * (ln_1p(x) - x / ratio)
+    }
+
+    /// Energy of a deviator in a volume \[m²\]: without a shear modulus no shear stress holds energy.
+    fn shear_energy(&self, volume: f64, stress: &Symmetric) -> f64 {
+        if self.shear > 0.0 { volume * norm_squared(stress) / (4.0 * self.shear) } else { 0.0 }
     }
 }
 
@@ -75,30 +99,32 @@ pub fn norm_squared(s: &Symmetric) -> f64 {
 }
 
 /// Angular momentum about the centre of mass \[kg m²/s per m\].
-pub fn angular_momentum<X: Numbers>(simulation: &dyn Stepper<X>) -> f64 {
-    let sums = simulation.data().fluid().fold(
+pub fn angular_momentum(now: &Snapshot<Symmetric>) -> f64 {
+    let sums = now.stored().fold(
         (0.0, Vector2::zeros(), Vector2::zeros()),
-        |(mass, first, momentum), (m, p)| {
-            (mass + m, first + p.position * m, momentum + p.velocity * m)
+        |(mass, first, momentum), p| {
+            (mass + p.mass, first + p.position * p.mass, momentum + p.velocity * p.mass)
         },
     );
     let (centre, drift) = (sums.1 / sums.0, sums.2 / sums.0);
-    let spin = |(m, p): (f64, &State<X>)| m * (p.position - centre).perp(&(p.velocity - drift));
-    simulation.data().fluid().map(spin).fold(0.0, |sum, one| sum + one)
+    let spin = |p: Point| p.mass * (p.position - centre).perp(&(p.velocity - drift));
+    now.stored().map(spin).fold(0.0, |sum, one| sum + one)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use touchstone_solver::Particle;
 
-    fn particle(density: f64, speed: f64, extra: Symmetric) -> State<Symmetric> {
+    fn particle(density: f64, speed: f64, extra: Symmetric) -> Particle<Symmetric> {
         let velocity = Vector2::new(0.6 * speed, -0.8 * speed);
-        State { position: Vector2::zeros(), velocity, density, extra }
+        Particle { density, extra, ..Particle::fluid(Vector2::zeros(), velocity, 1.0, 1.0) }
     }
 
-    fn of_one(mass: f64, particle: &State<Symmetric>, material: &Material) -> Energy {
-        Energy::default().with(mass, particle, material)
+    fn of_one(mass: f64, particle: &Particle<Symmetric>, material: &Material) -> Energy {
+        let now = Snapshot::of(0.0, &[Particle { mass, ..*particle }]);
+        Energy::of(&now, material).expect("every column")
     }
 
     #[test]

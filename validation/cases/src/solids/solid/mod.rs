@@ -12,7 +12,7 @@ mod problem;
 pub mod tests;
 
 pub use elements::{Elements, Path, Quantities, compare, quantities};
-pub use energy::{Energy, angular_momentum, norm_squared};
+pub use energy::{Energy, angular_momentum, kinetic, norm_squared};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
 pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};

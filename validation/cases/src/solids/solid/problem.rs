@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use touchstone_solver::{Domain, Particle, Role, Stepper, Symmetric};
 
 use super::lagrangian::{self, LAGRANGIAN, TOTAL};
-use super::{Energy, Material, clamp, limits};
+use super::{Material, clamp, limits};
 use touchstone_base::{
     record::Record,
     settings::{self, Settings, Values},
@@ -17,6 +17,7 @@ use touchstone_harness::{
     method::{Medium, Method, Parts, Properties},
     problem::{Asked, Brief, Calls, Problem},
     relation::View,
+    snapshot::Snapshot,
 };
 use touchstone_maths::theory::time_step::Integrator;
 
@@ -92,8 +93,8 @@ pub trait Body: Values {
     /// The particles at the start. Clamped particles are behind the plane x = 0, by which methods without
     /// clamped particles hold the body.
     fn particles(&self) -> Vec<Particle<Symmetric>>;
-    /// The observer of a run with these initial particles, and their energies if the method states them.
-    fn watch(&self, start: &[Particle<Symmetric>], energy: Option<Energy>) -> Self::Watch;
+    /// The observer of a run, of its particles before and with a deliberate error.
+    fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Self::Watch;
     /// Refuses settings that are in their ranges and make no body together.
     ///
     /// # Errors
@@ -115,11 +116,11 @@ pub trait Body: Values {
 /// Observes every step of a run and measures it.
 pub trait Watch: Serialize + DeserializeOwned {
     /// Called after every step.
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>);
-    /// Keeps the particles at a stop, if the run keeps particles; velocities may be half a step old.
-    fn keep(&self, _: &dyn Stepper<Symmetric>, _stop: usize, _: &mut Record) {}
-    /// Puts metrics and profiles; `simulation` is at its end.
-    fn measure(&mut self, simulation: &dyn Stepper<Symmetric>, record: &mut Record);
+    fn after_step(&mut self, now: &Snapshot<Symmetric>);
+    /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
+    fn keep(&self, _: &Snapshot<Symmetric>, _stop: usize, _: &mut Record) {}
+    /// Puts metrics and profiles at the end.
+    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record);
 }
 
 /// Variants of a problem.
@@ -245,28 +246,24 @@ impl<B: Body> Problem for Solid<B> {
         }
     }
 
-    fn watch(
-        &self,
-        start: &[Particle<Symmetric>],
-        simulation: &dyn Stepper<Symmetric>,
-    ) -> Self::Watch {
-        self.body.watch(start, Energy::known(simulation))
+    fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Self::Watch {
+        self.body.watch(scene, start)
     }
 
     fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
         calls
-            .after_step("measurements", |_, watch, simulation| {
-                watch.after_step(simulation);
+            .after_step("measurements", |_, watch, now| {
+                watch.after_step(now);
                 ControlFlow::Continue(())
             })
             .when(asked.particles, |calls| {
-                calls.at_positions("particles", |_, watch, simulation, stop, record| {
-                    watch.keep(simulation, stop, record);
+                calls.at_positions("particles", |_, watch, now, stop, record| {
+                    watch.keep(now, stop, record);
                 })
             })
     }
 
-    fn measure(&self, mut watch: Self::Watch, end: &dyn Stepper<Symmetric>, record: &mut Record) {
+    fn measure(&self, mut watch: Self::Watch, end: &Snapshot<Symmetric>, record: &mut Record) {
         watch.measure(end, record);
     }
 }

@@ -28,10 +28,10 @@ const LOST: f64 = 0.5;
 ///
 /// The gauge sums the wet part and does not search for the topmost drop. Exact for columns of a lattice at
 /// any position, if w is a whole number of spacings.
-fn depth<'a>(particles: impl Iterator<Item = (f64, &'a State<()>)>, x: f64, w: f64) -> f64 {
-    particles.fold(0.0, |sum, (mass, p)| {
-        let hat = (1.0 - ((p.position.x - x) / w).abs()).max(0.0);
-        sum + mass / p.density * hat / w
+fn depth(water: &[[f64; 2]], x: f64, w: f64) -> f64 {
+    water.iter().fold(0.0, |sum, [place, volume]| {
+        let hat = (1.0 - ((place - x) / w).abs()).max(0.0);
+        sum + volume * hat / w
     })
 }
 
@@ -45,21 +45,21 @@ fn probe(x: f64, spacings: f64, dx: f64, width: f64) -> (f64, f64) {
 }
 
 /// x of the foremost particle below a quarter of the height of the column \[m\]: spray is no front.
-fn foremost<'a>(particles: impl Iterator<Item = (f64, &'a State<()>)>, height: f64) -> f64 {
-    let low = particles.filter(|(_, p)| p.position.y < 0.25 * height);
-    low.map(|(_, p)| p.position.x).fold(f64::NEG_INFINITY, f64::max)
+fn foremost(water: impl Iterator<Item = Point>, height: f64) -> f64 {
+    let low = water.filter(|p| p.position.y < 0.25 * height);
+    low.map(|p| p.position.x).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The floor under water at rest \[m\]: half a spacing below its lowest particle, whose area at rest states
 /// the spacing. Variants place their lowest row half a spacing or a whole one above the surface of the wall.
-fn floor(water: &[Particle], density: f64) -> f64 {
+fn floor(water: &[Point], density: f64) -> f64 {
     let lowest = water.iter().min_by(|a, b| a.position.y.total_cmp(&b.position.y));
     lowest.map_or(f64::NAN, |p| p.position.y - 0.5 * (p.mass / density).sqrt())
 }
 
 /// Mean height of the mass of all particles \[m\].
-fn centre(water: &[Particle]) -> f64 {
-    let add = |(all, sum), p: &Particle| (all + p.mass, sum + p.mass * p.position.y);
+fn centre(water: &[Point]) -> f64 {
+    let add = |(all, sum), p: &Point| (all + p.mass, sum + p.mass * p.position.y);
     let (mass, moment) = water.iter().fold((0.0, 0.0), add);
     moment / mass
 }
@@ -70,7 +70,7 @@ pub struct Samples {
     /// x of the foremost particle at the start, and the floor under the water then \[m\].
     start: [f64; 2],
     /// t \[s\], front, residual height, levels at H1 to H4 \[m\], potential energy \[M g H/2\].
-    rows: Vec<[f64; 8]>,
+    rows: Series<8>,
     /// Height of the centre of mass at the start/(H/2) - 1.
     released: f64,
     /// Particles outside: the most at any time, and at the last.
@@ -87,7 +87,7 @@ impl Samples {
         let (start, outside, fastest) = ([f64::NAN; 2], [f64::NAN; 2], f64::NAN);
         Self {
             start,
-            rows: Vec::new(),
+            rows: Series::default(),
             released: f64::NAN,
             outside,
             fastest,
@@ -96,23 +96,25 @@ impl Samples {
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
-    pub fn sample(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) {
+    pub fn sample(&mut self, dam: &Dam, now: &Snapshot) {
         let (s, dx) = (&dam.settings, dam.medium.dx);
-        let foremost = foremost(simulation.data().fluid(), s.height);
-        // In the order of the scene: the order of storage changes, and with it the last bits of a sum.
-        let mut water = simulation.particles();
-        water.retain(|p| p.role == Role::Fluid);
+        let foremost = foremost(now.stored(), s.height);
+        // In the order of the scene: that of storage changes, and with it the last bits of a sum.
+        let water = now.moving();
         let centre = centre(&water);
         let half = 0.5 * s.height;
-        if self.rows.is_empty() {
+        if self.released.is_nan() {
             self.start = [foremost, floor(&water, dam.medium.eos.density)];
             self.released = centre / half - 1.0;
         }
         let [first, floor] = self.start;
         let width = dam.tank.width();
+        let volumes: Result<Vec<[f64; 2]>, Absent> = now
+            .density()
+            .map(|density| now.stored().map(|p| [p.position.x, p.mass / density.of(&p)]).collect());
         let depth_at = |x: f64, spacings: f64| {
             let (place, w) = probe(x, spacings, dx, width);
-            depth(simulation.data().fluid(), place, w)
+            volumes.as_ref().map(|water| depth(water, place, w)).map_err(Absent::clone)
         };
         let over = (HEIGHT_OVER * s.width / dx).round().max(2.0);
         // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
@@ -120,28 +122,28 @@ impl Samples {
         let height = depth_at(HEIGHT_AT * s.width, over);
         let [h1, h2, h3, h4] = PROBES.map(|x| depth_at(x, 2.0));
         let potential = (centre - floor) / half;
-        self.rows.push([simulation.time(), front, height, h1, h2, h3, h4, potential]);
-        self.look_at_walls(dam, simulation);
+        self.rows.push([Ok(now.time()), Ok(front), height, h1, h2, h3, h4, Ok(potential)]);
+        self.look_at_walls(dam, now);
     }
 
     /// Counts lost particles, without particles that have left over the rim: the walls are several spacings
     /// thick, so such a particle is first above them, or a dent in their upper end. Measures the speed of the
     /// water that has not left.
-    fn look_at_walls(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) {
+    fn look_at_walls(&mut self, dam: &Dam, now: &Snapshot) {
         let Dam { tank, medium, rim, .. } = dam;
         let reach = LOST * medium.dx;
         let is_lost =
             |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
         // Particles by their numbers are copies, which most samples do without.
-        if self.spilled.is_empty() && !simulation.data().fluid().any(|(_, p)| is_lost(p.position)) {
-            let speeds = simulation.data().fluid().map(|(_, p)| p.velocity.norm());
+        if self.spilled.is_empty() && !now.stored().any(|p| is_lost(p.position)) {
+            let speeds = now.stored().map(|p| p.velocity.norm());
             self.fastest = speeds.fold(self.fastest, f64::max);
             self.outside = [self.outside[0].max(0.0), 0.0];
             return;
         }
         let mut lost = 0.0;
-        let all = simulation.particles().into_iter().enumerate();
-        for (k, p) in all.filter(|(_, p)| p.role == Role::Fluid) {
+        let all = now.all().into_iter().enumerate();
+        for (k, p) in all.filter(|(_, p)| p.is_fluid()) {
             let is_lost = is_lost(p.position);
             if is_lost && p.position.y >= rim - reach {
                 self.spilled.insert(k);
@@ -160,7 +162,7 @@ impl Samples {
         let Dam { settings, tank, medium, .. } = dam;
         let wall = tank.width() - 2.0 * medium.dx;
         let (mut farthest, mut most) = (settings.width, 0.0_f64);
-        for [_, front, ..] in &self.rows {
+        for front in self.rows.column(1).unwrap_or_default() {
             most = most.max(farthest - front);
             farthest = farthest.max(*front);
             if farthest >= wall {
@@ -184,7 +186,7 @@ impl Samples {
             ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));
         let potential = ("potential", "M g H/2");
         let columns = [("t", "s"), front, height, one, two, three, four, potential];
-        record.profiles.insert("series".into(), Profile::of_rows(&columns, &self.rows));
+        record.profiles.insert("series".into(), self.rows.profile(&columns));
     }
 }
 
@@ -224,30 +226,29 @@ impl Gauge {
         Self { reach: wall - support, sensors, rows: Vec::new() }
     }
 
-    fn read(&self, dam: &Dam, simulation: &dyn Stepper<()>) -> Vec<f64> {
-        let near: Vec<(Vector2<f64>, f64, f64)> = simulation
-            .data()
-            .fluid()
-            .filter(|(_, p)| p.position.x > self.reach)
-            .map(|(mass, p)| (p.position, mass / p.density, dam.medium.eos.pressure(p.density)))
+    fn read(&self, dam: &Dam, now: &Snapshot) -> Result<Vec<f64>, Absent> {
+        let density = now.density()?;
+        let near: Vec<(Vector2<f64>, f64, f64)> = now
+            .stored()
+            .filter(|p| p.position.x > self.reach)
+            .map(|p| (p.position, p.mass / density.of(&p), dam.medium.eos.pressure(density.of(&p))))
             .collect();
         let at = |spot: &Spot| {
             let (mut wet, mut sum) = (0.0, 0.0);
             for (place, volume, pressure) in &near {
-                let w = volume * simulation.weight((place - spot.place).norm_squared());
+                let w = volume * now.weight((place - spot.place).norm_squared());
                 wet += w;
                 sum += w * pressure;
             }
             spot.share * sum / wet.max(0.5 * spot.inside)
         };
-        self.sensors.iter().map(|spots| spots.iter().map(at).sum()).collect()
+        Ok(self.sensors.iter().map(|spots| spots.iter().map(at).sum()).collect())
     }
 
     /// Reads the sensors after a step.
-    pub fn after_step(&mut self, dam: &Dam, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
-        if !self.sensors.is_empty() {
-            let p = self.read(dam, simulation);
-            self.rows.push([simulation.time(), p[0], p[1], p[2], p[3]]);
+    pub fn after_step(&mut self, dam: &Dam, now: &Snapshot) -> ControlFlow<()> {
+        if let (false, Ok(p)) = (self.sensors.is_empty(), self.read(dam, now)) {
+            self.rows.push([now.time(), p[0], p[1], p[2], p[3]]);
         }
         ControlFlow::Continue(())
     }
@@ -300,13 +301,16 @@ mod tests {
     use super::*;
     use crate::waters::dam_break::lobovsky;
     use touchstone_harness::method::Parts;
-    use touchstone_maths::metrics::budget::Metered;
     use touchstone_solver::{Particle, Smoothing, WendlandC2};
 
     impl Samples {
         /// Samples with these t, front, residual height, levels \[s, m\] and potential energy \[M g H/2\].
         pub fn made_up(rows: impl Iterator<Item = [f64; 8]>) -> Self {
-            Self { rows: rows.collect(), ..Self::new() }
+            Self { rows: rows.collect::<Vec<_>>().into(), ..Self::new() }
+        }
+
+        fn row(&self, row: usize) -> [f64; 8] {
+            std::array::from_fn(|k| self.rows.column(k).expect("a column")[row])
         }
     }
 
@@ -318,11 +322,8 @@ mod tests {
     }
 
     /// A simulation of these particles in place of the particles of a dam break, without walls.
-    fn simulation(dam: &Dam, particles: Vec<Particle>) -> Box<dyn Metered<()>> {
-        let parts = Parts { particles, ..dam.parts() };
-        let mut simulation = (dam.method.build)(parts).expect("a scene");
-        simulation.advance(0.0, 1.0, &mut ());
-        simulation
+    fn at_start(particles: Vec<Particle>) -> Snapshot<'static> {
+        Snapshot::of(0.0, &particles)
     }
 
     /// Water of the density at rest from one column to another, `rows` rows high, with this velocity.
@@ -363,7 +364,7 @@ mod tests {
             let mut all = water(&tank, from, to, rows, Vector2::zeros());
             // Spray above a quarter of the column is no front.
             all.push(Particle::fluid(Vector2::new(1.55, 0.2), Vector2::zeros(), 1e3, 1e-12));
-            samples.sample(&tank, &*simulation(&tank, all));
+            samples.sample(&tank, &at_start(all));
         }
         // Front, residual height, whose probe reads from 2 to 6 spacings, and levels.
         for (row, front, height, levels) in [
@@ -371,7 +372,7 @@ mod tests {
             (1, 20.0, 4.0 * (1.0 - 0.5 * 0.25), [4.0, 4.0, 4.0, 0.0]),
             (2, 30.0, 2.0 * 0.125, [2.0; 4]),
         ] {
-            let [_, reached, fallen, found @ .., _] = samples.rows[row];
+            let [_, reached, fallen, found @ .., _] = samples.row(row);
             is(reached, 0.6 + front * dx);
             is(fallen, height * dx);
             for (level, expected) in found.into_iter().zip(levels) {
@@ -380,9 +381,9 @@ mod tests {
         }
         // Water that ends at 45 spacings fills a part of the range of H4, from 43.42 to 47.42.
         let mut samples = Samples::new();
-        samples.sample(&tank, &*simulation(&tank, water(&tank, 30, 45, 3, Vector2::zeros())));
+        samples.sample(&tank, &at_start(water(&tank, 30, 45, 3, Vector2::zeros())));
         let hat = |k: f64| (1.0 - (k + 0.5 - 1.3625 / dx).abs() / 2.0) / 2.0;
-        is(samples.rows[0][6], 3.0 * dx * (hat(44.0) + hat(43.0)));
+        is(samples.row(0)[6], 3.0 * dx * (hat(44.0) + hat(43.0)));
     }
 
     /// A table that lost its heights passed every gate: front, heights and levels are areas over x.
@@ -402,11 +403,11 @@ mod tests {
                 // An equal mass on fewer rows, or all over the floor.
                 let mut all = water(&free, 0, 200 / rows, rows, Vector2::zeros());
                 all.iter_mut().for_each(|p| p.position.y = place(p.position.y));
-                samples.sample(&free, &*simulation(&free, all));
+                samples.sample(&free, &at_start(all));
             }
             let record = record(&free, |record| samples.measure(&free, record));
             is(record.value(metrics::RELEASED).expect("a metric"), released);
-            let [start, end] = [0, 1].map(|k| samples.rows[k][7]);
+            let [start, end] = [0, 1].map(|k| samples.row(k)[7]);
             let row = |k: usize| place((k as f64 + 0.5) * dx);
             let mean = |rows: usize| (0..rows).map(row).sum::<f64>() / rows as f64;
             let floor = row(0) - 0.5 * dx;
@@ -423,7 +424,7 @@ mod tests {
         let mut particles = water(&free, 0, 10, 20, Vector2::zeros());
         particles[7].velocity = Vector2::new(0.3, -0.4);
         let mut samples = Samples::new();
-        samples.sample(&free, &*simulation(&free, particles.clone()));
+        samples.sample(&free, &at_start(particles.clone()));
         // Half a spacing is a dent; more than that is lost.
         particles.extend([
             at(-0.495, 3.0),
@@ -431,9 +432,9 @@ mod tests {
             at(3.0, -2.5),
             at(width / dx + 0.75, 5.0),
         ]);
-        samples.sample(&free, &*simulation(&free, particles.clone()));
+        samples.sample(&free, &at_start(particles.clone()));
         particles.truncate(202);
-        samples.sample(&free, &*simulation(&free, particles));
+        samples.sample(&free, &at_start(particles));
         let record = record(&free, |record| samples.measure(&free, record));
         let value = |metric| record.value(metric).expect("a metric");
         assert_eq!((value(metrics::OUTSIDE), value(metrics::OUTSIDE_END)), (3.0, 1.0));
@@ -460,7 +461,7 @@ mod tests {
             let mut all = water(&dam, 0, 10, 20, Vector2::zeros());
             let fall = if over[1] < rim - dx { -2.0 } else { -0.2 };
             all.extend([at(over, fall), at(through, 0.5)]);
-            samples.sample(&dam, &*simulation(&dam, all));
+            samples.sample(&dam, &at_start(all));
         }
         let record = record(&dam, |record| samples.measure(&dam, record));
         let value = |metric| record.value(metric).expect("a metric");
@@ -488,18 +489,21 @@ mod tests {
                     ..Particle::fluid(x, Vector2::zeros(), density, 1.0)
                 }
             };
-            simulation(&tank, touchstone_solver::lattice(first, dx, 10, 60).map(at).collect())
+            let particles = touchstone_solver::lattice(first, dx, 10, 60).map(at).collect();
+            let parts = Parts { particles, ..tank.parts() };
+            (tank.method.build)(parts).expect("a scene")
         };
         let full = wall(1.0);
         let gauge = Gauge::new(&tank, 2.0 * tank.medium.h, &|r2| full.weight(r2));
-        let read = gauge.read(&tank, &*full);
+        let read = gauge.read(&tank, &Snapshot::ours(&*full)).expect("densities");
         for (value, height) in read.iter().zip(SENSORS) {
             let error = (value / pressure(height) - 1.0).abs();
             assert!(error < 2e-3, "{height} m: {error}");
         }
         // Only the highest sensor has no floor in its reach: a half of its kernel is in the tank, and a
         // quarter of this is wet, half of the full value.
-        let dry = gauge.read(&tank, &*wall(0.25))[3] / read[3];
+        let dry = wall(0.25);
+        let dry = gauge.read(&tank, &Snapshot::ours(&*dry)).expect("densities")[3] / read[3];
         assert!((dry - 0.5).abs() < 5e-3, "{dry}");
     }
 
@@ -525,26 +529,17 @@ mod tests {
         }
     }
 
-    fn still(x: f64, y: f64) -> State<()> {
-        let (position, velocity) = (Vector2::new(x, y), Vector2::zeros());
-        State { position, velocity, density: 1000.0, extra: () }
-    }
-
     #[test]
     fn depth_is_exact_for_a_lattice_wherever_the_probe_is() {
         let dx = 0.1;
         let water: Vec<_> = touchstone_solver::lattice(Vector2::new(0.05, 0.05), dx, 20, 7)
-            .map(|p| still(p.x, p.y))
+            .map(|p| [p.x, dx * dx])
             .collect();
-        let all = || water.iter().map(|p| (1000.0 * dx * dx, p));
         for x in [0.2, 0.73, 1.111, 1.8] {
-            assert!((depth(all(), x, 2.0 * dx) - 0.7).abs() < 1e-12);
+            assert!((depth(&water, x, 2.0 * dx) - 0.7).abs() < 1e-12);
         }
-        assert!((depth(all(), 2.0, 2.0 * dx) - 0.35).abs() < 1e-12, "half of the probe is dry");
-        assert_eq!(depth(all(), 3.0, 2.0 * dx), 0.0);
-        let spray = still(9.0, 5.0);
-        let with_spray = all().chain([(1.0, &spray)]);
-        assert!((foremost(with_spray, 0.6) - 1.95).abs() < 1e-12);
+        assert!((depth(&water, 2.0, 2.0 * dx) - 0.35).abs() < 1e-12, "half of the probe is dry");
+        assert_eq!(depth(&water, 3.0, 2.0 * dx), 0.0);
     }
 
     /// With two spacings to either side at n = 6 it reached behind the back wall, where there is no water,
@@ -557,9 +552,9 @@ mod tests {
             for first in [0.5, 1.0] {
                 let corner = Vector2::new(first * dx, 0.5 * dx);
                 let water: Vec<_> = touchstone_solver::lattice(corner, dx, 3 * n, 2 * n)
-                    .map(|p| still(p.x, p.y))
+                    .map(|p| [p.x, dx * dx])
                     .collect();
-                let height = depth(water.iter().map(|p| (1000.0 * dx * dx, p)), place, w);
+                let height = depth(&water, place, w);
                 assert!(
                     (height - 2.0).abs() < 1e-12,
                     "n = {n}, first column at {first} dx: {height}"

@@ -12,6 +12,13 @@ pub struct Distance {
     pub shift: MetricKey,
 }
 
+impl Distance {
+    /// The metrics of the distance.
+    pub fn metrics(self) -> [MetricKey; 3] {
+        [self.rms, self.rms_shifted, self.shift]
+    }
+}
+
 const fn distance(
     [rms, rms_shifted, shift]: [&'static str; 3],
     formula_shifted: &'static str,

@@ -16,13 +16,15 @@ mod run;
 mod setup;
 
 use nalgebra::Vector2;
-use touchstone_base::{gate::*, mutation::*, record::*};
+use touchstone_base::{absent::Absent, gate::*, mutation::*, record::*};
 use touchstone_harness::{
     case::*,
     composed::*,
     method::*,
     pictures,
     problem::{Asked, Brief, Calls, Problem},
+    series::Series,
+    snapshot::{Point, Snapshot},
     studies::{causes::*, *},
     table,
 };

@@ -261,12 +261,36 @@ pub fn until(curve: &[(f64, f64)], end: f64) -> Points {
 
 /// Adds to a record with series and pressures the distance from the experiment of its settings, if they are
 /// an experiment's, and from the same model by volume of fluid.
-pub fn compare(dam: &Dam, record: &mut Record) {
+pub fn compare(dam: &Dam, end: &Snapshot, record: &mut Record) {
+    let (absent, s) = (end.density().err(), &dam.settings);
+    let mut resting = Vec::new();
     if dam.is_martin_moyce() {
-        with_martin_moyce(&dam.settings, record);
+        front_of_martin_moyce(s, record);
+        match absent {
+            None => height_of_martin_moyce(s, record),
+            Some(_) => {
+                let all = [&HEIGHT.metrics()[..], &[HEIGHT_AWAY]].concat();
+                resting.extend(all.into_iter().map(MetricName::from));
+            }
+        }
     }
     if dam.is_lobovsky() {
-        with_lobovsky(&dam.settings, record);
+        front_of_lobovsky(s, record);
+        match absent {
+            None => {
+                levels_of_lobovsky(s, record);
+                pressures_of_lobovsky(record);
+            }
+            Some(_) => {
+                let all = [&LEVELS.metrics()[..], &LEVEL_AWAY, &[ARRIVAL, PEAK]].concat();
+                resting.extend(all.into_iter().map(MetricName::from));
+                let impulses = [IMPULSE, IMPULSE_AWAY].concat();
+                resting.extend(WINDOWS.iter().flat_map(|w| impulses.iter().map(|of| of.at(*w))));
+            }
+        }
+    }
+    for (metric, absent) in resting.into_iter().zip(absent.iter().cycle()) {
+        record.leave_out(metric, absent.clone());
     }
 }
 
@@ -276,36 +300,41 @@ fn with_potential(model: &[(f64, f64)], end: f64, s: &DamSettings, record: &mut 
     record.put(POTENTIAL_AWAY, rms(&computed, &until(model, end.min(s.end)), 0.0));
 }
 
-fn with_martin_moyce(s: &DamSettings, record: &mut Record) {
+fn front_of_martin_moyce(s: &DamSettings, record: &mut Record) {
     with_potential(&POTENTIAL[0], s.end, s, record);
     let front = front(record);
-    let height_of = |unit| height(record, unit);
-    let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
-    let [measured_front, measured_height] = &*MARTIN_MOYCE;
     let reached = end_of(&front);
     for t in FREE_TIMES {
         let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE[0], t);
         put_if_reached(record, FRONT_AWAY.at(t), [reached, t], away);
     }
-    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
     for (t, ..) in PEERS {
         put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
     }
-    let measured = until(measured_front, reached);
+    let measured = until(&MARTIN_MOYCE[0], reached);
     put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
-    let measured = until(measured_height, end_of(&height));
+}
+
+fn height_of_martin_moyce(s: &DamSettings, record: &mut Record) {
+    let height_of = |unit| height(record, unit);
+    let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
+    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
+    let measured = until(&MARTIN_MOYCE[1], end_of(&height));
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
     put_distance(record, HEIGHT, &[(height, measured)], 1.0, what);
 }
 
-fn with_lobovsky(s: &DamSettings, record: &mut Record) {
+fn front_of_lobovsky(s: &DamSettings, record: &mut Record) {
     with_potential(&POTENTIAL[1], POTENTIAL_UNTIL, s, record);
     let [front, from_wall] = [s.width, 0.0].map(|place| front_from(record, place));
     let away = || value(&from_wall, TANK_TIME) - value(&MODEL.front, TANK_TIME);
     put_if_reached(record, FRONT_AWAY.at(TANK_TIME), [end_of(&from_wall), TANK_TIME], away);
     let measured = until(&LOBOVSKY.front, s.end);
     put_distance(record, FRONT, &[(front, measured)], 0.6, "x of the tip from the gate/H");
+}
+
+fn levels_of_lobovsky(s: &DamSettings, record: &mut Record) {
     let pair = |k| (depth(record, k), LOBOVSKY.level(k, s.end));
     let pairs = [0, 1, 2, 3].map(pair);
     for (k, (computed, _)) in pairs.iter().enumerate() {
@@ -315,6 +344,9 @@ fn with_lobovsky(s: &DamSettings, record: &mut Record) {
         record.put_or(LEVEL_AWAY[k], has_come.then(|| rms(computed, &model, 0.0)), DRY);
     }
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
+}
+
+fn pressures_of_lobovsky(record: &mut Record) {
     let pressures = [0, 1, 2, 3].map(|k| pressure(record, k));
     let [ours, theirs, models] =
         [&pressures, &LOBOVSKY.pressure, &MODEL.pressure].map(|pressure| arrival(&pressure[0]));
@@ -402,7 +434,7 @@ mod tests {
         );
         Samples::made_up(samples).measure(dam, &mut record);
         Gauge::made_up(pressures).measure(dam, &mut record);
-        compare(dam, &mut record);
+        compare(dam, &Snapshot::of(0.0, &[]), &mut record);
         let value = move |metric: MetricName| record.value(metric.clone());
         Box::new(move |metric| value(metric.clone()).unwrap_or_else(|| panic!("no {metric:?}")))
     }

@@ -1,8 +1,6 @@
 //! One run of the collapse: scene, stepping, record.
 
 use serde::{Deserialize, Serialize};
-use touchstone_base::absent::NOT_ASKED;
-
 use touchstone_maths::metrics::budget::Metered;
 
 use super::{
@@ -45,10 +43,11 @@ pub struct Watch {
 }
 
 /// Keeps the particles with their pressure for a picture.
-fn picture(dam: &Dam, simulation: &dyn Metered<()>, record: &mut Record) {
+fn picture(dam: &Dam, now: &Snapshot, record: &mut Record) {
+    let Ok(density) = now.density() else { return };
     let (height, unit) = (dam.settings.height, dam.unit_pressure());
-    let value = |p: &State<()>| dam.medium.eos.pressure(p.density) / unit;
-    let fluid = simulation.data().fluid().map(|(_, p)| (p.position / height, value(p)));
+    let value = |p: &Point| dam.medium.eos.pressure(density.of(p)) / unit;
+    let fluid = now.stored().map(|p| (p.position / height, value(&p)));
     pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
 }
 
@@ -73,13 +72,13 @@ impl Problem for Dam {
         Ok(self.parts())
     }
 
-    fn watch(&self, _: &[Particle], simulation: &dyn Metered<()>) -> Watch {
+    fn watch(&self, _: &Snapshot, start: &Snapshot) -> Watch {
         let support = self.method.properties.support * self.medium.h;
         Watch {
-            gauge: Gauge::new(self, support, &|r2| simulation.weight(r2)),
+            gauge: Gauge::new(self, support, &|r2| start.weight(r2)),
             samples: Samples::new(),
             ledger: Ledger::default(),
-            filled: water_mass(&simulation.particles()),
+            filled: water_mass(start),
             pictured: stops(self).1,
         }
     }
@@ -87,17 +86,21 @@ impl Problem for Dam {
     fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
         calls
             .when(self.is_lobovsky(), |calls| {
-                calls.after_step("pressure gauges", |dam, watch, s| watch.gauge.after_step(dam, s))
+                calls.after_step("pressure gauges", |dam, watch, now| {
+                    watch.gauge.after_step(dam, now)
+                })
             })
-            .at_positions("front and levels", |dam, watch, s, _, _| watch.samples.sample(dam, s))
+            .at_positions("front and levels", |dam, watch, now, _, _| {
+                watch.samples.sample(dam, now);
+            })
             .when(asked.all, |calls| {
                 let name = "energy ledger and momentum";
-                calls.at(name, |dam, watch, s, _, _| watch.ledger.sample(&dam.medium, s))
+                calls.of_ours(name, |dam, watch, s| watch.ledger.sample(&dam.medium, s))
             })
             .when(asked.particles, |calls| {
-                calls.at_positions("picture", |dam, watch, s, k, record| {
+                calls.at_positions("picture", |dam, watch, now, k, record| {
                     if k == watch.pictured {
-                        picture(dam, s, record);
+                        picture(dam, now, record);
                     }
                 })
             })
@@ -106,32 +109,32 @@ impl Problem for Dam {
     fn measure(
         &self,
         Watch { gauge, samples, ledger, filled, .. }: Watch,
-        end: &dyn Metered<()>,
+        end: &Snapshot,
         record: &mut Record,
     ) {
         let DamSettings { gravity, height, .. } = self.settings;
         record.put(REACHED, end.time() / (self.settings.end * self.settings.unit_time()));
-        let mass = water_mass(&end.particles());
+        let mass = water_mass(end);
         samples.measure(self, record);
         record.put(MASS_ERROR, (mass / filled - 1.0).abs());
         let of_what = "M g H/2, the potential energy of the column";
         let column = 0.5 * mass * gravity * height;
-        ledger.measure(column, of_what, record);
+        ledger.measure(end, column, of_what, record);
         let gap = ledger.unexplained_momentum() / (mass * (gravity * height).sqrt());
-        record.put_or(MOMENTUM_GAP, (!ledger.is_empty()).then_some(gap), NOT_ASKED);
+        record.put_or_absent(MOMENTUM_GAP, ledger.sampled(end).map(|()| gap));
         if record.status == Status::Completed {
             if self.is_lobovsky() {
                 gauge.measure(self, record);
             }
-            reference::compare(self, record);
+            reference::compare(self, end, record);
         }
     }
 }
 
 /// Mass of the water \[kg/m\], added in the order of the scene: the order of storage changes, and with it the
 /// last bits.
-fn water_mass(particles: &[Particle]) -> f64 {
-    particles.iter().filter(|p| p.role == Role::Fluid).map(|p| p.mass).sum()
+fn water_mass(now: &Snapshot) -> f64 {
+    now.moving().iter().map(|p| p.mass).sum()
 }
 
 /// Times of samples \[s\], ascending, a whole number of steps apart, so that no step is shortened; and the

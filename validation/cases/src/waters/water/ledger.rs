@@ -3,8 +3,11 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::record::{MetricKey, Profile, Record};
-use touchstone_harness::method::Medium;
+use touchstone_base::{
+    absent::Absent,
+    record::{MetricKey, Profile, Record},
+};
+use touchstone_harness::{method::Medium, snapshot::Snapshot};
 use touchstone_maths::metrics::{
     budget::{Metered, Powers},
     energy::{Energy, Water, water_slope},
@@ -93,9 +96,13 @@ impl Ledger {
         if self.rows.is_empty() { f64::NAN } else { self.unexplained }
     }
 
-    /// Whether no sample was taken, because the balances were not requested.
-    pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+    /// Were samples taken until this end?
+    ///
+    /// # Errors
+    /// Why not: the run is of another code, or nobody asked for the balances.
+    pub fn sampled(&self, end: &Snapshot) -> Result<(), Absent> {
+        end.simulation()?;
+        if self.rows.is_empty() { Err(Absent::NotAsked) } else { Ok(()) }
     }
 
     /// The largest |E(t) − E(0) − work(t)| so far \[J/m\].
@@ -105,10 +112,10 @@ impl Ledger {
         self.rows.iter().map(|row| (balance(row) - start).abs()).fold(0.0, f64::max)
     }
 
-    /// Metrics relative to a scale \[J/m\], and the series, if samples were taken.
-    pub fn measure(&self, scale: f64, of_what: &str, record: &mut Record) {
-        if self.is_empty() {
-            return record.leave_unasked(&METRICS);
+    /// Metrics relative to a scale \[J/m\], and the series, if samples were taken of our run.
+    pub fn measure(&self, end: &Snapshot, scale: f64, of_what: &str, record: &mut Record) {
+        if let Err(absent) = self.sampled(end) {
+            return record.leave_all_out(&METRICS, &absent);
         }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
         for (k, work) in WORKS.into_iter().enumerate() {
@@ -176,7 +183,9 @@ mod tests {
         assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
-        ledger.measure(50.0, "it", &mut record);
+        let end = particles(&medium, 0.0, Vector2::zeros());
+        let end = Snapshot::ours(&*end);
+        ledger.measure(&end, 50.0, "it", &mut record);
         let gap = record.value(ENERGY_GAP).expect("a metric");
         assert!((gap - 27.0 / 50.0).abs() < 1e-12);
         // Each term with a power that rises at its own rate for 3 s.
@@ -187,7 +196,7 @@ mod tests {
             ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e]);
             ledger.powers = powers;
         }
-        ledger.measure(50.0, "it", &mut record);
+        ledger.measure(&end, 50.0, "it", &mut record);
         for (k, metric) in WORKS.into_iter().enumerate() {
             let work = record.value(metric).expect("a metric");
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");

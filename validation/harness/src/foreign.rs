@@ -1,0 +1,269 @@
+//! Particles at times that another code handed in, as snapshots.
+
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+
+use nalgebra::Vector2;
+use touchstone_base::absent::Absent;
+use touchstone_solver::{
+    Checkpoint, Domain, InvalidState, Limits, Numbers, Outcome, Particle, Progress, Role, Stepper,
+};
+
+use crate::{
+    error::RunError,
+    method::Properties,
+    snapshot::{Columns, DENSITY, Sums},
+};
+
+/// A particle of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// Number of the particle in the problem.
+    pub id: u32,
+    /// \[m\].
+    pub position: Vector2<f64>,
+    /// \[m/s\].
+    pub velocity: Vector2<f64>,
+    /// \[kg/m³\], if it was handed in.
+    pub density: Option<f64>,
+}
+
+/// The particles at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// \[s\].
+    pub time: f64,
+    /// The particles that moved; the others are where they were.
+    pub particles: Vec<Placed>,
+}
+
+impl Frame {
+    /// Does it count for this time of a run to this end?
+    pub(crate) fn is_at(&self, time: f64, end: f64) -> bool {
+        (self.time - time).abs() <= SAME_TIME * end
+    }
+}
+
+/// A particle that another code chose itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Own {
+    /// Its role in the scene.
+    pub role: Role,
+    /// Mass per unit depth \[kg/m\].
+    pub mass: f64,
+    /// Where it starts.
+    pub start: Placed,
+}
+
+/// Frames of another code, ascending in time.
+#[derive(Clone, Debug, Default)]
+pub struct Foreign<'a> {
+    /// The frames.
+    pub frames: &'a [Frame],
+    /// The particles in place of the particles of the problem, by their numbers; none of a code that took
+    /// the particles of the problem.
+    pub own: Vec<Own>,
+    /// Where particles are put inside the period before anything is measured.
+    pub domain: Domain,
+    /// A coordinate beyond this is of a particle that the code has lost \[m\].
+    pub reach: f64,
+    /// Densities and speeds beyond these are of a run that diverged.
+    pub limits: Limits,
+    /// Density at rest \[kg/m³\].
+    pub density: f64,
+}
+
+/// A frame counts for a time that differs from its own by at most this share of the end of the run.
+const SAME_TIME: f64 = 1e-6;
+
+/// Side of the squares in which particles are counted, in spacings, and the most of the density that may be
+/// in the square of the median particle: a lattice has 1.4 at most, particles at random 1.2.
+const SQUARE: f64 = 2.5;
+const MOST_CROWDED: f64 = 2.0;
+
+impl Foreign<'_> {
+    /// The particles at the start that the code chose itself; `None` of a code that took the particles of the
+    /// problem.
+    pub(crate) fn own_start<X: Numbers>(&self) -> Option<Columns<X>> {
+        let of = |own: &Own| (own.role, own.mass, [self.inside(&own.start), own.start.velocity]);
+        let densities = self.own.iter().map(|own| own.start.density).collect();
+        let extras = extras(self.own.len());
+        let start = Columns { densities, extras, ..Columns::of(self.own.iter().map(of)) };
+        (!self.own.is_empty()).then_some(start)
+    }
+
+    /// The particles that the code chose itself, without stress; `None` if one has no density.
+    pub(crate) fn own_particles<X: Numbers>(&self) -> Option<Vec<Particle<X>>> {
+        let particle = |own: &Own| {
+            let Own { role, mass, start: Placed { velocity, density, .. } } = *own;
+            let (position, extra) = (self.inside(&own.start), X::default());
+            Some(Particle { role, position, velocity, density: density?, mass, extra })
+        };
+        self.own.iter().map(particle).collect()
+    }
+
+    /// The place of a particle, inside the period.
+    fn inside(&self, placed: &Placed) -> Vector2<f64> {
+        self.domain.wrap(placed.position)
+    }
+
+    /// Does every particle of every frame have a density?
+    pub(crate) fn has_densities(&self) -> bool {
+        self.frames.iter().flat_map(|frame| &frame.particles).all(|placed| placed.density.is_some())
+    }
+
+    /// The particles of a frame, and the particles at the start that it does not name; without densities if
+    /// `start` has none.
+    ///
+    /// # Errors
+    /// If an id is none of the start.
+    pub(crate) fn columns<X: Numbers>(
+        &self,
+        frame: &Frame,
+        start: &Columns<X>,
+    ) -> Result<Columns<X>, RunError> {
+        let mut points = start.points.clone();
+        let mut densities = start.densities.clone();
+        let most = points.len();
+        for placed in &frame.particles {
+            let Placed { id, velocity, density, .. } = placed;
+            let Some(point) = points.get_mut(*id as usize) else {
+                let what = format!("id is {id}; the problem has ids below {most}");
+                return Err(RunError::Foreign(format!("frame at t = {} s: {what}", frame.time)));
+            };
+            (point.position, point.velocity) = (self.inside(placed), *velocity);
+            if let (Some(densities), Some(density)) = (&mut densities, density) {
+                densities[*id as usize] = *density;
+            }
+        }
+        Ok(Columns { points, densities, extras: extras(most) })
+    }
+
+    /// The first particle of a frame that is beyond the limits of the run and of its scene.
+    pub(crate) fn lost(&self, frame: &Frame, of_scene: &Limits) -> Option<InvalidState> {
+        let least = self.limits.density[0].max(of_scene.density[0]);
+        let most = self.limits.density[1].min(of_scene.density[1]);
+        let fastest = self.limits.speed.min(of_scene.speed);
+        frame.particles.iter().find_map(|placed| {
+            let fault = |field, value| Some(InvalidState { particle: placed.id, field, value });
+            let (far, speed) = (placed.position.amax(), placed.velocity.norm());
+            match placed.density {
+                _ if far > self.reach => fault("position", far),
+                Some(density) if !(least..=most).contains(&density) => fault("density", density),
+                _ if speed > fastest => fault("velocity", speed),
+                _ => None,
+            }
+        })
+    }
+
+    /// The particle of a frame in place of the median by what is in its square, if that is more than any
+    /// density: particles of whatever densities that lie on a line or in a corner.
+    pub(crate) fn crowded<X>(&self, frame: &Frame, all: &Columns<X>) -> Option<InvalidState> {
+        let moving: Vec<_> =
+            frame.particles.iter().map(|of| (of.id, all.points[of.id as usize])).collect();
+        let mass = moving.iter().fold(0.0, |sum, (_, p)| sum + p.mass) / moving.len() as f64;
+        let side = SQUARE * (mass / self.density).sqrt();
+        let square = |x: Vector2<f64>| [x.x, x.y].map(|x| (x / side).floor() as i64);
+        let mut masses: BTreeMap<[i64; 2], f64> = BTreeMap::new();
+        moving.iter().for_each(|(_, p)| *masses.entry(square(p.position)).or_default() += p.mass);
+        let density = |x: Vector2<f64>| masses[&square(x)] / (side * side);
+        let mut found: Vec<_> = moving.iter().map(|(id, p)| (density(p.position), *id)).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (value, particle) = *found.get(found.len() / 2)?;
+        let is_crowded = value > MOST_CROWDED * self.density;
+        is_crowded.then_some(InvalidState { particle, field: "density of the places", value })
+    }
+}
+
+/// The further fields of so many particles: a method without such fields lacks none.
+fn extras<X: Numbers>(count: usize) -> Option<Vec<X>> {
+    X::default().stress().is_none().then(|| vec![X::default(); count])
+}
+
+/// The times that have no frame \[s\], of a run that ends with the last of them.
+pub fn missing(frames: &[Frame], times: &[f64]) -> Vec<f64> {
+    let end = times.last().copied().unwrap_or_default();
+    let has = |time: &&f64| frames.iter().any(|frame| frame.is_at(**time, end));
+    times.iter().filter(|time| !has(time)).copied().collect()
+}
+
+/// The first frame that is before the start, after the end, or at the time of the one before it, and why.
+pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str)> {
+    let end = times.last().copied().unwrap_or_default();
+    let why = |k: usize| match &frames[k] {
+        frame if frame.time < 0.0 => Some("it is before the start; expected times from 0 on"),
+        frame if frame.time > end && !frame.is_at(end, end) => {
+            Some("it is after the end; expected no later times than those of the problem")
+        }
+        frame if k > 0 && frame.is_at(frames[k - 1].time, 2.0 * end) => Some(
+            "it is the time of the frame before it but for round-off; expected one frame a time",
+        ),
+        _ => None,
+    };
+    (0..frames.len()).find_map(|k| Some(k).zip(why(k)))
+}
+
+/// A simulation of our method, into which particles of another code are put when a measure asks for sums.
+pub(crate) struct OurSums<D: ?Sized> {
+    /// None if the code chose its own particles and gives them no densities.
+    simulation: Option<RefCell<Box<D>>>,
+    /// W \[1/m²\] of r² \[m²\].
+    kernel: Box<dyn Fn(f64) -> f64>,
+    /// Do places and velocities determine all else, by the deformation from a reference?
+    is_lagrangian: bool,
+}
+
+impl<D: ?Sized> OurSums<D> {
+    /// Sums of a simulation of a method with this smoothing length \[m\].
+    pub fn new(simulation: Option<Box<D>>, of: &Properties, h: f64) -> Self {
+        let (simulation, kernel) = (simulation.map(RefCell::new), Box::new(of.kernel(h)));
+        Self { simulation, kernel, is_lagrangian: of.law.is_some() }
+    }
+
+    /// The particles of the simulation.
+    pub fn particles<X: Numbers>(&self) -> Option<Columns<X>>
+    where
+        D: Stepper<X>,
+    {
+        let mut simulation = self.simulation.as_ref()?.borrow_mut();
+        Some(Columns::all(&simulation.stepper().particles()))
+    }
+}
+
+impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
+    fn weight(&self, r2: f64) -> f64 {
+        (self.kernel)(r2)
+    }
+    fn read(
+        &self,
+        time: f64,
+        particles: &Columns<X>,
+        read: &mut dyn FnMut(&dyn Stepper<X>),
+    ) -> Result<(), Absent> {
+        let none = || Absent::NotGiven(DENSITY.into());
+        let mut simulation = self.simulation.as_ref().ok_or_else(none)?.borrow_mut();
+        let simulation = simulation.stepper();
+        let mut state = simulation.checkpoint();
+        for (id, particle) in &mut state.particles {
+            let (id, point) = (*id as usize, particles.points[*id as usize]);
+            (particle.position, particle.velocity) = (point.position, point.velocity);
+            if !self.is_lagrangian {
+                particle.density = particles.densities()?[id];
+                particle.extra = particles.extras()?[id];
+            }
+        }
+        if !self.is_lagrangian {
+            state.built_at = state.particles.iter().map(|(_, p)| p.position).collect();
+        }
+        let progress = Progress { time, ..Progress::default() };
+        state = Checkpoint { progress, lag: 0.0, past: Vec::new(), ..state };
+        simulation.restore(&state)?;
+        match simulation.advance(time, 1.0, &mut ()) {
+            Outcome::Diverged(divergence) => Err(divergence.to_string().into()),
+            Outcome::Reached | Outcome::Stopped => {
+                read(simulation);
+                Ok(())
+            }
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! Particles at one time, as the measures of a case read them: particles of our simulation, or particles that
+//! another code handed in, which may lack columns.
+
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+use touchstone_base::absent::Absent;
+use touchstone_solver::{Numbers, Particle, Role, State, Stepper, Symmetric};
+
+use crate::checkpoint::RoleNames;
+
+/// Name of the column of densities.
+pub const DENSITY: &str = "density";
+/// Name of the column of stresses.
+pub const STRESS: &str = "stress";
+
+/// A particle of a snapshot: the quantities that no snapshot lacks.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Index of its values in the optional columns of its snapshot.
+    index: usize,
+    /// Role in the scene.
+    #[serde(with = "RoleNames")]
+    pub role: Role,
+    /// Mass per unit depth \[kg/m\].
+    pub mass: f64,
+    /// Position \[m\].
+    pub position: Vector2<f64>,
+    /// Velocity \[m/s\]; of a wall particle, the velocity of the wall.
+    pub velocity: Vector2<f64>,
+}
+
+impl Point {
+    /// Is it a particle that moves by the equations of the scene?
+    pub fn is_fluid(&self) -> bool {
+        self.role == Role::Fluid
+    }
+}
+
+/// Total momentum of the moving particles per unit depth \[kg/s\], summed in the order given.
+pub fn momentum(points: &[Point]) -> Vector2<f64> {
+    let moving = points.iter().filter(|point| point.is_fluid());
+    moving.fold(Vector2::zeros(), |sum, point| sum + point.velocity * point.mass)
+}
+
+/// An optional column of a snapshot.
+#[derive(Clone, Copy)]
+pub enum Column<'a, X, T> {
+    /// A quantity of the particles of our simulation, as they are stored.
+    Ours(&'a [State<X>], fn(&State<X>) -> T),
+    /// A column that was handed in.
+    Given(&'a [T]),
+}
+
+impl<X, T: Copy> Column<'_, X, T> {
+    /// The value of a point of the same snapshot.
+    pub fn of(&self, point: &Point) -> T {
+        match self {
+            Self::Ours(particles, value) => value(&particles[point.index]),
+            Self::Given(values) => values[point.index],
+        }
+    }
+}
+
+/// Particles as arrays in the order of the scene. Optional columns are absent if they were not handed in.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Columns<X = ()> {
+    /// The particles.
+    pub points: Vec<Point>,
+    /// Densities \[kg/m³\].
+    pub densities: Option<Vec<f64>>,
+    /// Further fields that a method integrates, such as stress.
+    pub extras: Option<Vec<X>>,
+}
+
+impl<X: Numbers> Columns<X> {
+    /// Particles with masses \[kg/m\], positions \[m\] and velocities \[m/s\], without optional columns.
+    pub fn of(particles: impl Iterator<Item = (Role, f64, [Vector2<f64>; 2])>) -> Self {
+        let mut points = Vec::new();
+        for (index, (role, mass, [position, velocity])) in particles.enumerate() {
+            points.push(Point { index, role, mass, position, velocity });
+        }
+        Self { points, densities: None, extras: None }
+    }
+
+    /// Particles with every column.
+    pub fn all(particles: &[Particle<X>]) -> Self {
+        let of = particles.iter().map(|p| (p.role, p.mass, [p.position, p.velocity]));
+        let densities = Some(particles.iter().map(|p| p.density).collect());
+        let extras = Some(particles.iter().map(|p| p.extra).collect());
+        Self { densities, extras, ..Self::of(of) }
+    }
+
+    /// The density of each particle.
+    ///
+    /// # Errors
+    /// [`Absent::NotGiven`] without the column.
+    pub fn densities(&self) -> Result<&[f64], Absent> {
+        self.densities.as_deref().ok_or_else(|| Absent::NotGiven(DENSITY.into()))
+    }
+
+    /// The further fields of each particle.
+    ///
+    /// # Errors
+    /// [`Absent::NotGiven`] without the column.
+    pub fn extras(&self) -> Result<&[X], Absent> {
+        self.extras.as_deref().ok_or_else(|| Absent::NotGiven(STRESS.into()))
+    }
+}
+
+/// Our method, which sums over the neighbours of particles that were handed in.
+pub trait Sums<X: Numbers> {
+    /// The kernel W \[1/m²\] of r² \[m²\].
+    fn weight(&self, r2: f64) -> f64;
+
+    /// Calls `read` with the simulation at a time \[s\].
+    ///
+    /// # Errors
+    /// The column that the method needs and the particles lack, or why the method refuses the particles.
+    fn read(
+        &self,
+        time: f64,
+        particles: &Columns<X>,
+        read: &mut dyn FnMut(&dyn Stepper<X>),
+    ) -> Result<(), Absent>;
+}
+
+/// No method sums over the neighbours.
+struct NoMethod;
+
+impl<X: Numbers> Sums<X> for NoMethod {
+    fn weight(&self, _: f64) -> f64 {
+        f64::NAN
+    }
+    fn read(
+        &self,
+        _: f64,
+        _: &Columns<X>,
+        _: &mut dyn FnMut(&dyn Stepper<X>),
+    ) -> Result<(), Absent> {
+        Err(Absent::OwnTerms)
+    }
+}
+
+/// Particles at one time.
+pub struct Snapshot<'a, X: Numbers = ()> {
+    time: f64,
+    source: Source<'a, X>,
+}
+
+enum Source<'a, X: Numbers> {
+    Ours(&'a dyn Stepper<X>),
+    Given(Columns<X>, &'a dyn Sums<X>),
+}
+
+impl<'a, X: Numbers> Snapshot<'a, X> {
+    /// The particles of our simulation.
+    pub fn ours(simulation: &'a dyn Stepper<X>) -> Self {
+        Self { time: simulation.time(), source: Source::Ours(simulation) }
+    }
+
+    /// Particles with every column at a time \[s\], without a method: the kernel is not a number.
+    pub fn of(time: f64, particles: &[Particle<X>]) -> Self {
+        Self::given(time, Columns::all(particles), &NoMethod)
+    }
+
+    /// Particles that were handed in for a time \[s\], and our method, which sums over their neighbours.
+    pub fn given(time: f64, columns: Columns<X>, sums: &'a dyn Sums<X>) -> Self {
+        Self { time, source: Source::Given(columns, sums) }
+    }
+
+    /// \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// All particles in the order of the scene.
+    pub fn all(&self) -> Vec<Point> {
+        let simulation = match &self.source {
+            Source::Given(columns, _) => return columns.points.clone(),
+            Source::Ours(simulation) => simulation,
+        };
+        let nothing = Point {
+            index: 0,
+            role: Role::Fluid,
+            mass: 0.0,
+            position: Vector2::zeros(),
+            velocity: Vector2::zeros(),
+        };
+        let mut all = vec![nothing; simulation.data().state().len()];
+        for (index, (id, p)) in simulation.data().stored().enumerate() {
+            let Particle { role, mass, position, velocity, .. } = p;
+            all[id as usize] = Point { index, role, mass, position, velocity };
+        }
+        all
+    }
+
+    /// The moving particles in the order of the scene.
+    pub fn moving(&self) -> Vec<Point> {
+        let mut all = self.all();
+        all.retain(Point::is_fluid);
+        all
+    }
+
+    /// The moving particles as they are stored, without order; for sums.
+    pub fn stored(&self) -> impl Iterator<Item = Point> + Clone {
+        let (ours, given) = match &self.source {
+            Source::Ours(simulation) => (Some(simulation.data().fluid()), None),
+            Source::Given(columns, _) => (None, Some(&columns.points)),
+        };
+        let point = |(index, (mass, p)): (usize, (f64, &State<X>))| {
+            let State { position, velocity, .. } = *p;
+            Point { index, role: Role::Fluid, mass, position, velocity }
+        };
+        let ours = ours.into_iter().flatten().enumerate().map(point);
+        let given = given.into_iter().flatten().copied().filter(Point::is_fluid);
+        ours.chain(given)
+    }
+
+    /// Density \[kg/m³\].
+    ///
+    /// # Errors
+    /// [`Absent::NotGiven`] without the column.
+    pub fn density(&self) -> Result<Column<'_, X, f64>, Absent> {
+        Ok(match &self.source {
+            Source::Ours(simulation) => Column::Ours(simulation.data().state(), |p| p.density),
+            Source::Given(columns, _) => Column::Given(columns.densities()?),
+        })
+    }
+
+    /// The particles as arrays.
+    pub fn columns(&self) -> Columns<X> {
+        let mut points = self.all();
+        let density = |density: Column<X, f64>| points.iter().map(|p| density.of(p)).collect();
+        let densities = self.density().ok().map(density);
+        let extras = match &self.source {
+            Source::Ours(simulation) => {
+                let state = simulation.data().state();
+                Some(points.iter().map(|p| state[p.index].extra).collect())
+            }
+            Source::Given(columns, _) => columns.extras.clone(),
+        };
+        points.iter_mut().enumerate().for_each(|(index, point)| point.index = index);
+        Columns { points, densities, extras }
+    }
+
+    /// Our simulation.
+    ///
+    /// # Errors
+    /// [`Absent::OwnTerms`] of particles that were handed in.
+    pub fn simulation(&self) -> Result<&'a dyn Stepper<X>, Absent> {
+        match &self.source {
+            Source::Ours(simulation) => Ok(*simulation),
+            Source::Given(..) => Err(Absent::OwnTerms),
+        }
+    }
+
+    /// The kernel W \[1/m²\] of r² \[m²\] of our method.
+    pub fn weight(&self, r2: f64) -> f64 {
+        match &self.source {
+            Source::Ours(simulation) => simulation.weight(r2),
+            Source::Given(_, sums) => sums.weight(r2),
+        }
+    }
+
+    /// Reads sums over neighbours, with the kernel and the walls of our method.
+    ///
+    /// # Errors
+    /// The column that these sums need and the snapshot lacks, or why our method refuses the particles.
+    pub fn sums<R>(&self, read: impl FnOnce(&dyn Stepper<X>) -> R) -> Result<R, Absent> {
+        let (columns, sums) = match &self.source {
+            Source::Ours(simulation) => return Ok(read(*simulation)),
+            Source::Given(columns, sums) => (columns, sums),
+        };
+        let (mut read, mut found) = (Some(read), None);
+        sums.read(self.time, columns, &mut |simulation| {
+            found = read.take().map(|read| read(simulation));
+        })?;
+        found.ok_or(Absent::OwnTerms)
+    }
+}
+
+impl Snapshot<'_, Symmetric> {
+    /// Deviatoric stress \[Pa\].
+    ///
+    /// # Errors
+    /// [`Absent::NotGiven`] without the column.
+    pub fn stress(&self) -> Result<Column<'_, Symmetric, Symmetric>, Absent> {
+        Ok(match &self.source {
+            Source::Ours(simulation) => Column::Ours(simulation.data().state(), |p| p.extra),
+            Source::Given(columns, _) => Column::Given(columns.extras()?),
+        })
+    }
+}
