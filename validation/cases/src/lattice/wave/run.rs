@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 use std::iter::once;
-use std::ops::ControlFlow;
 
 use nalgebra::Vector2;
 use touchstone_base::{
