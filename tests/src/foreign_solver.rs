@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde_json::Map;
 use touchstone_base::submission::Division;
 use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
-use touchstone_harness::foreign::Placed;
+use touchstone_harness::foreign::ForeignParticle;
 
 /// u_t = ν u_yy with central differences in space and forward Euler in time.
 pub struct FiniteDifferences {
@@ -24,7 +24,7 @@ impl Solver for FiniteDifferences {
         }
     }
 
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System {
+    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System {
         let outline = &problem.outline;
         let [low, high] = [0, 1].map(|k| &outline.mirrors[k]);
         let dy = (high.point.y - low.point.y) / self.cells as f64;
@@ -54,7 +54,7 @@ impl Solver for FiniteDifferences {
             (now, steps) = (time, steps + count as usize);
             let placed = |(k, place): (usize, &Vector2<f64>)| {
                 let velocity = Vector2::new(at(&u, place.y), 0.0);
-                Placed { id: k as u32, position: *place, velocity, density: None }
+                ForeignParticle { id: k as u32, position: *place, velocity, density: None }
             };
             tell(time, places.iter().enumerate().map(placed).collect());
         }

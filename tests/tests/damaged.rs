@@ -10,7 +10,7 @@ use touchstone_cases::{CASES, page};
 use touchstone_harness::{
     case::{Case, Planned, Tier},
     context::Context,
-    make::{self, Job, Made, Making},
+    make::{self, BatchOptions, BatchResult, Job},
     plan, suite,
 };
 
@@ -53,7 +53,7 @@ const TRIED: usize = 4;
 /// Runs of a case, the shortest first.
 pub fn shortest_first(case: &'static dyn Case, planned: Vec<Planned>) -> Vec<Planned> {
     let mut jobs: Vec<Job> = planned.into_iter().map(|planned| Job { case, planned }).collect();
-    make::estimate(&mut jobs, &Making::new(Tier::Quick, &|_| String::new()));
+    make::estimate(&mut jobs, &BatchOptions::new(Tier::Quick, &|_| String::new()));
     jobs.sort_by(|a, b| a.planned.seconds.total_cmp(&b.planned.seconds));
     jobs.into_iter().map(|job| job.planned).collect()
 }
@@ -77,7 +77,11 @@ fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
 }
 
 /// Damaged records of a case as the records of all its runs.
-fn made(case: &'static dyn Case, damage: Damage, records: &BTreeMap<String, Record>) -> Made {
+fn made(
+    case: &'static dyn Case,
+    damage: Damage,
+    records: &BTreeMap<String, Record>,
+) -> BatchResult {
     let of = |planned: Planned| {
         let any = || records.values().next();
         let mut record = damaged(records.get(&planned.spec.variant).or_else(any)?, damage);
@@ -85,11 +89,11 @@ fn made(case: &'static dyn Case, damage: Damage, records: &BTreeMap<String, Reco
         Some((planned.spec.key(), record))
     };
     let records = plan::of_case(case, Tier::Quick).into_iter().filter_map(of).collect();
-    Made { records, ..Made::default() }
+    BatchResult { records, ..BatchResult::default() }
 }
 
 /// Faults of judging these records: a panic, or a gate that is none.
-fn faults(case: &'static dyn Case, damage: &str, made: Made) -> Vec<String> {
+fn faults(case: &'static dyn Case, damage: &str, made: BatchResult) -> Vec<String> {
     let tier = Tier::Quick;
     let plans = suite::plans(&[case], tier);
     let judged = catch_unwind(AssertUnwindSafe(|| {

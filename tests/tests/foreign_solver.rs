@@ -4,8 +4,8 @@ use serde_json::json;
 use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
 use touchstone_harness::{
     case::{Case, Tier, spec},
-    foreign::Placed,
-    make::Made,
+    foreign::ForeignParticle,
+    make::BatchResult,
     suite,
 };
 use touchstone_tests::foreign_solver::FiniteDifferences;
@@ -32,7 +32,7 @@ fn a_solver_of_another_library_is_judged_and_has_a_section() {
         assert!(apply.len() >= 4, "{name}: {} gates apply", apply.len());
         let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure());
         assert_eq!(failed.map(|judged| &judged.gate.id).collect::<Vec<_>>(), Vec::<&String>::new());
-        let made = Made { submissions: vec![record(32)], ..Made::default() };
+        let made = BatchResult { submissions: vec![record(32)], ..BatchResult::default() };
         let suite = suite::judge(vec![(case, Vec::new())], Tier::Quick, made);
         let section =
             suite.cases[0].sections.iter().find(|s| s.id == format!("{name}-submissions"));
@@ -81,7 +81,7 @@ impl Solver for Other {
         method
     }
 
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System {
+    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System {
         let mut other = self.problem();
         assert_eq!(other.outline.times, problem.outline.times);
         other.outline.medium.nu *= self.viscosity;
@@ -120,7 +120,7 @@ impl Solver for Twice {
         FiniteDifferences { cells: 8 }.method()
     }
 
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System {
+    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System {
         FiniteDifferences { cells: 8 }.solve(problem, &mut |time, mut placed| {
             placed.extend(placed.last().copied());
             tell(time, placed);

@@ -2,7 +2,7 @@
 
 use crate::decay::DECAY;
 use touchstone_harness::case::Tier;
-use touchstone_harness::make::Making;
+use touchstone_harness::make::BatchOptions;
 use touchstone_harness::studies::Accuracy;
 use touchstone_harness::suite;
 use touchstone_solver::{Continuity, CubicSpline};
@@ -30,7 +30,7 @@ fn a_new_term_conserves_both_momenta() {
 
 #[test]
 fn a_new_case_has_order_cost_budget_and_step_limit() {
-    let making = Making::new(Tier::Quick, &|_| "these".into());
+    let making = BatchOptions::new(Tier::Quick, &|_| "these".into());
     let suite = suite::run(&[&DECAY], &making);
     let [results] = &suite.cases[..] else { panic!("one case") };
     let ids: Vec<&str> = results.sections.iter().map(|section| section.id.as_str()).collect();

@@ -9,7 +9,7 @@ use touchstone_base::spec::{RunSpec, Task};
 use touchstone_cases::CASES;
 use touchstone_harness::{
     case::{self, Case, Planned, RunError, Tier},
-    make::Made,
+    make::BatchResult,
     plan,
     sealed::{self, Drawn, Draws},
     studies::{Accuracy, Budgets, Change, FINER, Map, STARTS},
@@ -150,7 +150,7 @@ fn sealed_problems_are_judged_as_judged_runs_are() {
 #[test]
 fn studies_ask_for_no_more_than_is_planned() {
     for tier in [Tier::Quick, Tier::Full, Tier::Deep] {
-        suite::judge(suite::plans(CASES, tier), tier, Made::default());
+        suite::judge(suite::plans(CASES, tier), tier, BatchResult::default());
     }
 }
 
@@ -232,7 +232,7 @@ fn a_budget_compares_each_change_with_the_run_that_it_names() {
 
 /// The gates of a case, of its runs and of its studies; without a record every gate fails, and is there.
 fn gates(case: &'static dyn Case, tier: Tier) -> Vec<Gate> {
-    let suite = suite::judge(suite::plans(&[case], tier), tier, Made::default());
+    let suite = suite::judge(suite::plans(&[case], tier), tier, BatchResult::default());
     suite.judged().map(|of| of.judged.gate.clone()).collect()
 }
 

@@ -26,7 +26,7 @@ struct Entry {
 }
 
 /// Result of a submission.
-struct Said {
+struct SubmissionResult {
     code: i32,
     text: String,
     /// Gates by name, with the verdict.
@@ -76,7 +76,7 @@ impl Entry {
     }
 
     /// Submits these rows of some columns.
-    fn submit(&self, head: &[String], rows: &[Vec<String>]) -> Said {
+    fn submit(&self, head: &[String], rows: &[Vec<String>]) -> SubmissionResult {
         let text: String = std::iter::once(head)
             .chain(rows.iter().map(Vec::as_slice))
             .map(|row| row.join(",") + "\n")
@@ -94,11 +94,11 @@ impl Entry {
         let file = fs::read_dir(store.path()).unwrap().flatten().next();
         let record = file.map(|file| fs::read_to_string(file.path()).unwrap());
         let record = record.map(|text| Record::from_json(&text).unwrap());
-        Said { code, gates: verdicts.collect(), text, record }
+        SubmissionResult { code, gates: verdicts.collect(), text, record }
     }
 
     /// Submits the rows with other numbers in some cells of a column.
-    fn edited(&self, cells: &[(usize, usize)], to: impl Fn(usize, f64) -> f64) -> Said {
+    fn edited(&self, cells: &[(usize, usize)], to: impl Fn(usize, f64) -> f64) -> SubmissionResult {
         let mut rows = self.rows.clone();
         for &(row, column) in cells {
             rows[row][column] = format!("{:?}", to(row, self.number(row, column)));
@@ -107,7 +107,7 @@ impl Entry {
     }
 
     /// Submits the rows without a column.
-    fn without(&self, column: &str) -> Said {
+    fn without(&self, column: &str) -> SubmissionResult {
         let column = self.column(column);
         let but = |row: &Vec<String>| {
             let all = row.iter().enumerate().filter(|(k, _)| *k != column);
@@ -498,7 +498,7 @@ impl Entry {
     }
 
     /// Submits the changed particles.
-    fn altered(&self, alter: Alter) -> Said {
+    fn altered(&self, alter: Alter) -> SubmissionResult {
         let text = fs::read_to_string(self.folder.join("particles.csv")).unwrap();
         let mut lines = text.lines().map(cells);
         let head = lines.next().unwrap();
@@ -721,7 +721,7 @@ const ABSURD: [fn(f64) -> f64; 14] = [
 ];
 
 /// An honest submission with one absurdity: one particle or all, in one frame or all, in one column.
-fn absurd(own: &Entry, random: &mut Random) -> (String, Said) {
+fn absurd(own: &Entry, random: &mut Random) -> (String, SubmissionResult) {
     let mut one_of = |count: usize| (random.uniform() * count as f64) as usize % count;
     let columns: Vec<usize> = ["x", "y", "u", "v", "density"].map(|name| own.column(name)).into();
     let (column, t) = (columns[one_of(5)], own.column("t"));
@@ -749,7 +749,7 @@ fn no_absurd_number_evades_its_verdict() {
         let own = Entry::own(problem);
         let honest = own.submit(&own.head, &own.rows);
         assert!(honest.code < 2 && !honest.gates.is_empty(), "{problem}: {}", honest.text);
-        let judged = |said: &Said| said.gates.keys().cloned().collect::<Vec<_>>();
+        let judged = |said: &SubmissionResult| said.gates.keys().cloned().collect::<Vec<_>>();
         let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
         for _ in 0..tries.unwrap_or(5) {
             let (what, said) = absurd(&own, &mut random);

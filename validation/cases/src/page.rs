@@ -207,7 +207,7 @@ fn provenance(made_by: &Manifest) -> String {
     let cores = counted(made_by.cores, "core", "cores");
     let threads = counted(made_by.threads, "thread", "threads");
     format!(
-        "Made by touchstone {touchstone} at {state} ({profile} build, {}) on {}, \
+        "BatchResult by touchstone {touchstone} at {state} ({profile} build, {}) on {}, \
          {cores}, {threads}.",
         plain(rustc),
         plain(cpu)

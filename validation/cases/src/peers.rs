@@ -2,7 +2,7 @@
 //! `references/peers`, which the program contains.
 
 use touchstone_base::{pack, record::Record, spec::RunKey, submission::SESSION};
-use touchstone_harness::{make::Made, suite::Plans};
+use touchstone_harness::{make::BatchResult, suite::Plans};
 
 /// Packed by the build script.
 const RECORDS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/peers"));
@@ -20,7 +20,7 @@ pub fn records() -> impl Iterator<Item = Record> {
 }
 
 /// Adds the records for the cases of the plans, except where the store has a run of the same code and method.
-pub fn add(made: &mut Made, plans: &Plans) {
+pub fn add(made: &mut BatchResult, plans: &Plans) {
     let is_planned = |of: &Record| plans.iter().any(|(case, _)| case.name() == of.run.case);
     // Its results may be new.
     let key = |of: &Record| {

@@ -1,7 +1,7 @@
 //! Digits of submitted numbers: rates over a short time, and equality to round-off, need all digits of a
 //! double.
 
-use touchstone_harness::foreign::{Frame, Placed};
+use touchstone_harness::foreign::{ForeignParticle, Frame};
 
 /// Numbers with at most this many digits count as rounded: of unrounded numbers one in 10⁵ is as short.
 const FEW: usize = 11;
@@ -14,8 +14,8 @@ pub const ROUND_OFF: f64 = 1e-6;
 pub const NAMES: [&str; 5] = ["x", "y", "u", "v", "density"];
 
 /// The numbers of a particle; NaN for missing ones.
-pub fn of(placed: &Placed) -> [f64; 5] {
-    let Placed { position, velocity, density, .. } = placed;
+pub fn of(placed: &ForeignParticle) -> [f64; 5] {
+    let ForeignParticle { position, velocity, density, .. } = placed;
     [position.x, position.y, velocity.x, velocity.y, density.unwrap_or(f64::NAN)]
 }
 
@@ -63,7 +63,7 @@ mod tests {
         let x = |id: u32| 0.25 * f64::from(id);
         let start = |id: u32| Some([x(id), 0.0, 0.0, 0.0, 1000.0]);
         let frame = |u: f64| {
-            let placed = |id: u32| Placed {
+            let placed = |id: u32| ForeignParticle {
                 id,
                 position: Vector2::new(x(id), 0.0),
                 velocity: Vector2::new(f64::from(id) * u, 0.0),

@@ -3,7 +3,7 @@
 use touchstone_base::{record::Record, reference::sha256, spec::RunSpec};
 use touchstone_harness::{
     case::{Case, RunError},
-    foreign::{Frame, Placed},
+    foreign::{ForeignParticle, Frame},
 };
 
 use crate::{
@@ -19,10 +19,10 @@ pub trait Solver {
     fn method(&self) -> Method;
     /// Solves the problem, and passes the moving particles at each of its times, ascending, to `tell`;
     /// returns the machine and the cost.
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<Placed>)) -> System;
+    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System;
 }
 
-/// The record of a solver for a run of a case. Put into [`touchstone_harness::make::Made::submissions`] it
+/// The record of a solver for a run of a case. Put into [`touchstone_harness::make::BatchResult::submissions`] it
 /// has a section of the report.
 ///
 /// # Errors

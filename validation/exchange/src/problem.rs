@@ -12,7 +12,7 @@ use touchstone_base::{
 use touchstone_harness::{
     case::{self, Case, RunError},
     facts::{Curve, Facts, Parameter},
-    method::{Knob, Medium, Properties},
+    method::{Medium, MediumSetting, Properties},
     outline::Outline,
     plan,
     relation::Relation,
@@ -604,7 +604,7 @@ fn material(m: &Medium, method: &Properties) -> Value {
             ("background_pressure", with_unit(m.eos.background, "Pa")),
         ],
     };
-    if m.shear_modulus == 0.0 && method.uses.contains(&Knob::Alpha) {
+    if m.shear_modulus == 0.0 && method.uses.contains(&MediumSetting::Alpha) {
         own.push(("artificial_viscosity_alpha", with_unit(m.alpha, "-")));
     }
     let mut all = serde_json::Map::new();

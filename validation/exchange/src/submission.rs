@@ -20,7 +20,7 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{Case, RunError},
-    foreign::{self, Foreign, Frame, Own, Placed},
+    foreign::{self, Foreign, ForeignParticle, Frame, OwnParticle},
     medium::Medium,
     outline::{Outline, role},
     suite,
@@ -469,8 +469,9 @@ impl Entry {
             flaw("mass", what.into());
         }
         let Medium { dx, eos, .. } = &problem.outline.medium;
-        let share = |own: &Own| own.mass / own.start.density.unwrap_or(eos.density) / (dx * dx);
-        let is_usual = |own: &&Own| own.mass.is_nan() || VOLUMES.contains(&share(own));
+        let share =
+            |own: &OwnParticle| own.mass / own.start.density.unwrap_or(eos.density) / (dx * dx);
+        let is_usual = |own: &&OwnParticle| own.mass.is_nan() || VOLUMES.contains(&share(own));
         if let Some(own) = own.iter().find(|own| !is_usual(own)) {
             let [mass, share, low, high] =
                 [own.mass, share(own), *VOLUMES.start(), *VOLUMES.end()].map(number);
@@ -506,12 +507,13 @@ impl Entry {
         let mut digests = String::new();
         let mut add = |bytes: Vec<u8>| digests += &sha256(&bytes);
         for frame in &self.results.frames {
-            let mut particles: Vec<&Placed> = frame.particles.iter().collect();
+            let mut particles: Vec<&ForeignParticle> = frame.particles.iter().collect();
             particles.sort_by_key(|placed| placed.id);
-            let numbers = |&Placed { id, position: at, velocity, density }: &Placed| {
-                let density = density.unwrap_or(f64::NAN);
-                [f64::from(id), at.x, at.y, velocity.x, velocity.y, density]
-            };
+            let numbers =
+                |&ForeignParticle { id, position: at, velocity, density }: &ForeignParticle| {
+                    let density = density.unwrap_or(f64::NAN);
+                    [f64::from(id), at.x, at.y, velocity.x, velocity.y, density]
+                };
             let numbers = particles.into_iter().flat_map(numbers);
             add([frame.time].into_iter().chain(numbers).flat_map(f64::to_le_bytes).collect());
         }

@@ -43,7 +43,9 @@ fn read_text(text: &str, map: &[(&str, &str)]) -> Result<Vec<(f64, Vec<Row>)>, S
         touchstone_exchange::flaw::lines(&flaws).join("\n")
     };
     let results = read(folder.path(), &renamed.collect::<Renamed>()).map_err(lines)?;
-    let row = |p: &touchstone_harness::foreign::Placed| (p.id, p.position, p.velocity, p.density);
+    let row = |p: &touchstone_harness::foreign::ForeignParticle| {
+        (p.id, p.position, p.velocity, p.density)
+    };
     let frame =
         |of: &touchstone_harness::foreign::Frame| (of.time, of.particles.iter().map(row).collect());
     Ok(results.frames.iter().map(frame).collect())

@@ -14,7 +14,7 @@ use crate::{
     case::{Case, RunError, Tier, Variant},
     context::Context,
     facts::Facts,
-    method::{Knob, Method},
+    method::{MediumSetting, Method},
     problem::{Posed, Problem},
     rules::state_steps,
     study::Studies,
@@ -108,7 +108,7 @@ impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
         method: Method<X, D>,
         adjust: fn(&mut T),
     ) -> Self {
-        let lacks = Knob::others(&method.properties.uses, T::all());
+        let lacks = MediumSetting::others(&method.properties.uses, T::all());
         self.lacking([name, about], method, lacks, adjust)
     }
 }

@@ -78,13 +78,13 @@ pub fn run(
 }
 
 /// An error and the gates that detect it.
-type Found = (f64, Vec<String>);
+type Detection = (f64, Vec<String>);
 
 /// The smallest detected error, and the largest smaller one that is not detected.
 fn smallest(
     detect: &Detect,
     mut failed_at: impl FnMut(f64) -> Result<Vec<String>, Ended>,
-) -> Result<(Option<Found>, Option<f64>), Ended> {
+) -> Result<(Option<Detection>, Option<f64>), Ended> {
     let allowed = detect.of.allowed();
     let mut middle = ERRORS.iter().position(|error| *error >= allowed).unwrap_or_default();
     let (mut low, mut high) = match detect.only_allowed {

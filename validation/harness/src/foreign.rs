@@ -17,7 +17,7 @@ use crate::{
 
 /// A particle of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placed {
+pub struct ForeignParticle {
     /// Number of the particle in the problem.
     pub id: u32,
     /// \[m\].
@@ -34,7 +34,7 @@ pub struct Frame {
     /// \[s\].
     pub time: f64,
     /// The particles that moved; the others are where they were.
-    pub particles: Vec<Placed>,
+    pub particles: Vec<ForeignParticle>,
 }
 
 impl Frame {
@@ -46,13 +46,13 @@ impl Frame {
 
 /// A particle that another code chose itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Own {
+pub struct OwnParticle {
     /// Its role in the scene.
     pub role: Role,
     /// Mass per unit depth \[kg/m\].
     pub mass: f64,
     /// Where it starts.
-    pub start: Placed,
+    pub start: ForeignParticle,
 }
 
 /// Frames of another code, ascending in time.
@@ -62,7 +62,7 @@ pub struct Foreign<'a> {
     pub frames: &'a [Frame],
     /// The particles in place of the particles of the problem, by their numbers; none of a code that took
     /// the particles of the problem.
-    pub own: Vec<Own>,
+    pub own: Vec<OwnParticle>,
     /// Where particles are put inside the period before anything is measured.
     pub domain: Domain,
     /// A coordinate beyond this is of a particle that the code has lost \[m\].
@@ -85,7 +85,8 @@ impl Foreign<'_> {
     /// The particles at the start that the code chose itself; `None` of a code that took the particles of the
     /// problem.
     pub(crate) fn own_start<X: Numbers>(&self) -> Option<Columns<X>> {
-        let of = |own: &Own| (own.role, own.mass, [self.inside(&own.start), own.start.velocity]);
+        let of =
+            |own: &OwnParticle| (own.role, own.mass, [self.inside(&own.start), own.start.velocity]);
         let densities = self.own.iter().map(|own| own.start.density).collect();
         let extras = extras(self.own.len());
         let start = Columns { densities, extras, ..Columns::of(self.own.iter().map(of)) };
@@ -94,8 +95,8 @@ impl Foreign<'_> {
 
     /// The particles that the code chose itself, without stress; `None` if one has no density.
     pub(crate) fn own_particles<X: Numbers>(&self) -> Option<Vec<Particle<X>>> {
-        let particle = |own: &Own| {
-            let Own { role, mass, start: Placed { velocity, density, .. } } = *own;
+        let particle = |own: &OwnParticle| {
+            let OwnParticle { role, mass, start: ForeignParticle { velocity, density, .. } } = *own;
             let (position, extra) = (self.inside(&own.start), X::default());
             Some(Particle { role, position, velocity, density: density?, mass, extra })
         };
@@ -103,7 +104,7 @@ impl Foreign<'_> {
     }
 
     /// The place of a particle, inside the period.
-    fn inside(&self, placed: &Placed) -> Vector2<f64> {
+    fn inside(&self, placed: &ForeignParticle) -> Vector2<f64> {
         self.domain.wrap(placed.position)
     }
 
@@ -126,7 +127,7 @@ impl Foreign<'_> {
         let mut densities = start.densities.clone();
         let most = points.len();
         for placed in &frame.particles {
-            let Placed { id, velocity, density, .. } = placed;
+            let ForeignParticle { id, velocity, density, .. } = placed;
             let Some(point) = points.get_mut(*id as usize) else {
                 let what = format!("id is {id}; the problem has ids below {most}");
                 return Err(RunError::Foreign(format!("frame at t = {} s: {what}", frame.time)));

@@ -27,7 +27,7 @@ use crate::{
     problem::Steps,
     runs::{Planned, Sorted, Tier, entry},
     size::Size,
-    store::{Begun, Store},
+    store::{RunLease, Store},
     studies::Card,
 };
 
@@ -60,11 +60,11 @@ pub struct Done<'a> {
 pub type Progress<'a> = dyn Fn(Done) + Sync + 'a;
 
 /// Called each time that all runs of a case have ended, with the results so far.
-pub type Finished<'a> = dyn Fn(Made) + Sync + 'a;
+pub type Finished<'a> = dyn Fn(BatchResult) + Sync + 'a;
 
 /// How runs are made.
 #[derive(Clone, Copy)]
-pub struct Making<'a> {
+pub struct BatchOptions<'a> {
     /// How much is run: the quick tier repeats fewer timings.
     pub tier: Tier,
     /// Records that exist, and where new ones are kept; without one they are kept in memory alone.
@@ -85,7 +85,7 @@ pub struct Making<'a> {
     pub interrupt: Option<&'a AtomicBool>,
 }
 
-impl<'a> Making<'a> {
+impl<'a> BatchOptions<'a> {
     /// Is it to stop?
     pub fn is_interrupted(&self) -> bool {
         self.interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed))
@@ -93,7 +93,7 @@ impl<'a> Making<'a> {
 
     /// Makes every run and keeps the records in memory alone.
     pub fn new(tier: Tier, sources: &'a (dyn Fn(&str) -> String + Sync)) -> Self {
-        Making {
+        BatchOptions {
             tier,
             store: None,
             sources,
@@ -109,7 +109,7 @@ impl<'a> Making<'a> {
 
 /// Records of a plan, and where they come from.
 #[derive(Debug, Default)]
-pub struct Made {
+pub struct BatchResult {
     /// The records by the key of their run.
     pub records: BTreeMap<RunKey, Record>,
     /// Runs whose record the store had.
@@ -146,9 +146,9 @@ fn timed_again_below(tier: Tier) -> f64 {
 
 /// The stored runs of a plan, and the missing ones.
 #[derive(Default)]
-pub struct Stored {
+pub struct StoredRuns {
     /// Records found.
-    pub made: Made,
+    pub made: BatchResult,
     /// The runs that it lacks.
     pub missing: Vec<Job>,
     /// Runs of which only a record from other sources exists.
@@ -157,10 +157,10 @@ pub struct Stored {
 
 /// Looks up the records of the jobs. A record made from other sources does not serve unless allowed, nor does
 /// the record of a refused run if longer runs are allowed now: trying again takes no time. The record of a
-/// timed run must have been made while no other run was. After an interrupt, see [`Made::interrupted`], the
+/// timed run must have been made while no other run was. After an interrupt, see [`BatchResult::interrupted`], the
 /// result may be incomplete.
-pub fn stored(jobs: &[Job], making: &Making) -> Stored {
-    let mut stored = Stored::default();
+pub fn stored(jobs: &[Job], making: &BatchOptions) -> StoredRuns {
+    let mut stored = StoredRuns::default();
     for job in jobs {
         if making.is_interrupted() {
             stored.made.interrupted = true;
@@ -211,7 +211,7 @@ pub fn stored(jobs: &[Job], making: &Making) -> Stored {
 const SIMULATIONS: f64 = 3.0;
 
 /// Gives each job the time that its run states before its first step. A run that is refused takes none.
-pub fn estimate(jobs: &mut [Job], making: &Making) {
+pub fn estimate(jobs: &mut [Job], making: &BatchOptions) {
     jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
         if let Some(size) = size(job, making.allow_long) {
             job.planned.seconds = time(&job.planned.spec, &size);
@@ -233,8 +233,8 @@ pub fn size(job: &Job, allow_long: bool) -> Option<Size> {
 }
 
 /// Makes the runs that the store lacks. A refused or diverged run has a record; a run that fails otherwise
-/// has none, see [`Made::failed`]. For records that the store cannot keep see [`Made::not_kept`].
-pub fn make(Stored { made, missing, .. }: Stored, making: &Making) -> Made {
+/// has none, see [`BatchResult::failed`]. For records that the store cannot keep see [`BatchResult::not_kept`].
+pub fn make(StoredRuns { made, missing, .. }: StoredRuns, making: &BatchOptions) -> BatchResult {
     let mut tally = Tally::default();
     for job in &missing {
         let expected = of_batch(job, making, job.planned.seconds);
@@ -270,7 +270,7 @@ fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
 
 /// The part of a run in the wall time of the batch \[s\]: its whole time with repetitions if it runs alone,
 /// otherwise its part of the time of all threads.
-fn of_batch(job: &Job, making: &Making, seconds: f64) -> f64 {
+fn of_batch(job: &Job, making: &BatchOptions, seconds: f64) -> f64 {
     match job.planned.timed {
         true if seconds < timed_again_below(making.tier) => REPETITIONS as f64 * seconds,
         true => seconds,
@@ -381,9 +381,9 @@ impl Tally {
 
 /// The runs in progress, and the callbacks.
 struct Batch<'a> {
-    making: &'a Making<'a>,
+    making: &'a BatchOptions<'a>,
     tally: Mutex<Tally>,
-    made: Mutex<Made>,
+    made: Mutex<BatchResult>,
 }
 
 impl Batch<'_> {
@@ -428,10 +428,16 @@ impl Batch<'_> {
         let Some(finished) = self.making.finished.filter(|_| is_last) else { return };
         if !self.making.is_interrupted() {
             let made = lock(&self.made);
-            let Made { reused, of_other_sources, .. } = *made;
+            let BatchResult { reused, of_other_sources, .. } = *made;
             let (records, submissions) = (made.records.clone(), made.submissions.clone());
             drop(made);
-            finished(Made { records, submissions, reused, of_other_sources, ..Made::default() });
+            finished(BatchResult {
+                records,
+                submissions,
+                reused,
+                of_other_sources,
+                ..BatchResult::default()
+            });
         }
     }
 
@@ -442,7 +448,7 @@ impl Batch<'_> {
         let begun = self.making.store.map(|store| store.begin(spec));
         let is_one = spec.task == Task::Simulate;
         let show = |progress: context::Progress| {
-            begun.iter().for_each(Begun::beat);
+            begun.iter().for_each(RunLease::beat);
             if !is_one {
                 return; // of a bisection nobody knows how many simulations are left
             }
@@ -596,9 +602,10 @@ mod tests {
         let last = Mutex::new(Vec::new());
         let progress = |done: Done| last.lock().unwrap().push(done.last.to_string());
         let sources = |_: &str| "one".to_string();
-        let making = Making { progress: Some(&progress), ..Making::new(Tier::Quick, &sources) };
-        let finished = |_: Made| ();
-        made(&all, &Making { finished: Some(&finished), ..making });
+        let making =
+            BatchOptions { progress: Some(&progress), ..BatchOptions::new(Tier::Quick, &sources) };
+        let finished = |_: BatchResult| ();
+        made(&all, &BatchOptions { finished: Some(&finished), ..making });
         let order: Vec<String> = last.into_inner().unwrap();
         let first = order.iter().find(|name| !name.is_empty()).expect("a run");
         assert!(first.contains("cheap"), "{order:?}");
@@ -611,7 +618,7 @@ mod tests {
     }
 
     /// Makes the runs that a store lacks, by a build of these sources.
-    fn made(jobs: &[Job], making: &Making) -> Made {
+    fn made(jobs: &[Job], making: &BatchOptions) -> BatchResult {
         make(stored(jobs, making), making)
     }
 
@@ -625,8 +632,11 @@ mod tests {
         // sources.
         let build = |sources: &'static str, reuse_other: bool| {
             let of = move |_: &str| sources.to_string();
-            let making =
-                Making { store: Some(&store), reuse_other, ..Making::new(Tier::Quick, &of) };
+            let making = BatchOptions {
+                store: Some(&store),
+                reuse_other,
+                ..BatchOptions::new(Tier::Quick, &of)
+            };
             let made = made(&jobs, &making);
             let first = made.records[&jobs[0].planned.spec.key()].manifest.sources.clone();
             (made.reused, made.of_other_sources, first)
@@ -648,15 +658,16 @@ mod tests {
         let store = Store::open(folder.path()).unwrap();
         let jobs: Vec<Job> = (0..50).map(|k| job(&k.to_string())).collect();
         let sources = |_: &str| "one".to_string();
-        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let making =
+            BatchOptions { store: Some(&store), ..BatchOptions::new(Tier::Quick, &sources) };
         made(&jobs, &making);
         let (stop, fresh) = (AtomicBool::new(false), true);
         let progress = |done: Done| stop.store(done.runs > 0, Ordering::Relaxed);
         let (interrupt, progress): (_, Option<&Progress>) = (Some(&stop), Some(&progress));
-        let cut = made(&jobs, &Making { interrupt, progress, fresh, ..making });
+        let cut = made(&jobs, &BatchOptions { interrupt, progress, fresh, ..making });
         assert!(cut.interrupted && (1..50).contains(&cut.records.len()), "{}", cut.records.len());
         assert_eq!(Store::all(store.path()).unwrap().len(), 50);
-        let again = made(&jobs, &Making { fresh, ..making });
+        let again = made(&jobs, &BatchOptions { fresh, ..making });
         assert_eq!((again.reused, again.records.len()), (0, 50));
     }
 
@@ -666,7 +677,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
         let (jobs, sources) = ([job("1"), job("2")], |_: &str| "one".to_string());
-        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let making =
+            BatchOptions { store: Some(&store), ..BatchOptions::new(Tier::Quick, &sources) };
         made(&jobs, &making);
         let path = store.path().join(Store::name(&jobs[1].planned.spec));
         let whole = std::fs::read_to_string(&path).unwrap();
@@ -686,9 +698,9 @@ mod tests {
         let sources = |_: &str| "one".to_string();
         let mut jobs = ["1", "panic", "2", "file", "3", "long"].map(job);
         jobs[4].planned.timed = true;
-        let beside = made(&jobs, &Making::new(Tier::Quick, &sources));
+        let beside = made(&jobs, &BatchOptions::new(Tier::Quick, &sources));
         jobs.iter_mut().for_each(|job| job.planned.timed = true);
-        let alone = made(&jobs, &Making::new(Tier::Quick, &sources));
+        let alone = made(&jobs, &BatchOptions::new(Tier::Quick, &sources));
         std::panic::set_hook(hook);
         for made in [beside, alone] {
             let failed: Vec<_> = [1, 3]
@@ -714,7 +726,9 @@ mod tests {
         let progress = |done: Done| shares.lock().unwrap().push(done.share);
         let progress: Option<&Progress> = Some(&progress);
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        one.install(|| made(&jobs, &Making { progress, ..Making::new(Tier::Quick, &sources) }));
+        one.install(|| {
+            made(&jobs, &BatchOptions { progress, ..BatchOptions::new(Tier::Quick, &sources) })
+        });
         assert_eq!(shares.into_inner().unwrap(), [0.0, 0.7, 0.9, 1.0]);
     }
 
@@ -724,14 +738,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
         let (jobs, sources) = ([job("long")], |_: &str| "one".to_string());
-        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
-        let completed = |making: &Making| {
+        let making =
+            BatchOptions { store: Some(&store), ..BatchOptions::new(Tier::Quick, &sources) };
+        let completed = |making: &BatchOptions| {
             let made = made(&jobs, making);
             (made.reused, made.records.values().all(|r| r.status == Status::Completed))
         };
         assert_eq!(completed(&making), (0, false));
         assert_eq!(completed(&making), (1, false));
-        assert_eq!(completed(&Making { allow_long: true, ..making }), (0, true));
+        assert_eq!(completed(&BatchOptions { allow_long: true, ..making }), (0, true));
     }
 
     /// An interrupted lookup must not fail the gates of records that it has not read.
@@ -740,8 +755,9 @@ mod tests {
         let sources = |_: &str| "one".to_string();
         let looked = |stop: bool| {
             let stop = AtomicBool::new(stop);
-            let making = Making { interrupt: Some(&stop), ..Making::new(Tier::Quick, &sources) };
-            let Stored { made, missing, .. } = stored(&[job("1")], &making);
+            let making =
+                BatchOptions { interrupt: Some(&stop), ..BatchOptions::new(Tier::Quick, &sources) };
+            let StoredRuns { made, missing, .. } = stored(&[job("1")], &making);
             (made.interrupted, missing.len())
         };
         assert_eq!([false, true].map(looked), [(false, 1), (true, 0)]);
@@ -754,10 +770,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
         let sources = |_: &str| "one".to_string();
-        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let making =
+            BatchOptions { store: Some(&store), ..BatchOptions::new(Tier::Quick, &sources) };
         let plain = job("1");
         let timed = Job { planned: plain.planned.clone().timed(), ..plain.clone() };
-        let alone = |job: &Job, making: &Making| {
+        let alone = |job: &Job, making: &BatchOptions| {
             let made = made(std::slice::from_ref(job), making);
             (made.reused, made.records[&job.planned.spec.key()].cost.alone_s.clone())
         };
@@ -772,7 +789,7 @@ mod tests {
         let sources = |_: &str| "one".to_string();
         let timings = |tier: Tier, k: &str| {
             let job = Job { planned: job(k).planned.timed(), ..job(k) };
-            let made = made(std::slice::from_ref(&job), &Making::new(tier, &sources));
+            let made = made(std::slice::from_ref(&job), &BatchOptions::new(tier, &sources));
             made.records[&job.planned.spec.key()].cost.alone_s.len()
         };
         assert_eq!([Tier::Quick, Tier::Full].map(|tier| timings(tier, "1")), [3, 3]);
@@ -785,7 +802,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::open(folder.path()).unwrap();
         let sources = |_: &str| "one".to_string();
-        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &sources) };
+        let making =
+            BatchOptions { store: Some(&store), ..BatchOptions::new(Tier::Quick, &sources) };
         let cut = job("cut").planned.spec;
         let bisect =
             Bisect { setting: "dt".into(), guess: 1.0, unit: 1.0, resolution: 0.1, end: None };
@@ -809,10 +827,10 @@ mod tests {
         std::fs::write(&path, "in the way").unwrap();
         let shown = Mutex::new(Vec::new());
         let show = |done: Done| shown.lock().unwrap().push((done.runs, done.all));
-        let making = Making {
+        let making = BatchOptions {
             store: Some(&store),
             progress: Some(&show),
-            ..Making::new(Tier::Quick, &|_| "abc".into())
+            ..BatchOptions::new(Tier::Quick, &|_| "abc".into())
         };
         let suite = suite::run(&[&Quick], &making);
         let values = suite.cases[0].runs.all.iter().map(|run| run.record.value(ERROR));
@@ -882,7 +900,10 @@ mod tests {
         let store = Store::open(&folder.path().join("records")).unwrap();
         std::fs::remove_dir(store.path()).unwrap();
         let jobs = jobs(suite::plans(&[&Quick], Tier::Quick));
-        let making = Making { store: Some(&store), ..Making::new(Tier::Quick, &|_| "abc".into()) };
+        let making = BatchOptions {
+            store: Some(&store),
+            ..BatchOptions::new(Tier::Quick, &|_| "abc".into())
+        };
         let made = make(stored(&jobs, &making), &making);
         assert_eq!((made.records.len(), made.not_kept.len()), (3, 0));
         assert_eq!(Store::all(store.path()).unwrap().len(), 3);

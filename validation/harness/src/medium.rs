@@ -49,11 +49,11 @@ pub struct Medium {
 }
 
 impl Medium {
-    /// With the values that settings have by the names of [`Knob`]s.
+    /// With the values that settings have by the names of [`MediumSetting`]s.
     #[must_use]
     pub fn set_by(mut self, settings: &dyn Values) -> Self {
         for (field, value) in settings.fields().iter().zip(settings.values()) {
-            let knob = Knob::ALL.into_iter().find(|(_, name, _)| *name == field.name);
+            let knob = MediumSetting::ALL.into_iter().find(|(_, name, _)| *name == field.name);
             match (knob, value) {
                 (Some((.., set)), Value::Real(value)) => set(&mut self, value),
                 (Some((.., set)), Value::Count(value)) => set(&mut self, value as f64),
@@ -74,16 +74,19 @@ impl Medium {
     }
 
     /// The parameters on which waves in the medium depend, for terms that read these settings.
-    pub fn waves(&self, uses: &[Knob]) -> time_step::Medium {
+    pub fn waves(&self, uses: &[MediumSetting]) -> time_step::Medium {
         let used = |knob, value| if uses.contains(&knob) { value } else { 0.0 };
-        let (alpha, delta) = (used(Knob::Alpha, self.alpha), used(Knob::Diffusion, self.diffusion));
+        let (alpha, delta) = (
+            used(MediumSetting::Alpha, self.alpha),
+            used(MediumSetting::Diffusion, self.diffusion),
+        );
         time_step::Medium { c0: self.sound_speed, h: self.h, nu: self.nu, alpha, delta }
     }
 }
 
 /// A setting that only some terms or walls read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Knob {
+pub enum MediumSetting {
     /// η² of the viscous term.
     Eta2,
     /// α of the artificial viscosity.
@@ -109,7 +112,7 @@ pub enum Knob {
 /// Puts a number where a medium has it.
 type Set = fn(&mut Medium, f64);
 
-impl Knob {
+impl MediumSetting {
     /// All settings with their names, and the setters of a medium.
     const ALL: [(Self, &'static str, Set); 10] = [
         (Self::Eta2, "eta2_over_h2", |medium, value| medium.eta2_over_h2 = value),

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// An order, or why there is none.
-pub type Found = Result<Convergence, String>;
+pub type FittedOrder = Result<Convergence, String>;
 
 /// Something that is refined.
 pub struct Refinement {
@@ -54,7 +54,7 @@ pub fn add(
     let panels = all.iter().map(panel);
     let found = |line: &Line| convergence(&line.levels, Some(line.formal));
     let figure = Figure::new(section.id.clone(), figure).columns(2).panel_size(330.0, 260.0);
-    type Row<'a> = (&'a str, &'a Line, Found);
+    type Row<'a> = (&'a str, &'a Line, FittedOrder);
     let rows: Vec<Row> = all
         .iter()
         .flat_map(|of| of.lines.iter().map(|line| (of.title, line, found(line))))
@@ -112,7 +112,7 @@ fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {
 impl<'a, T> Columns<'a, T> {
     /// More columns: the order of an item, how sure it is, and whether to believe it.
     #[must_use]
-    pub fn order(self, found: impl Fn(&T) -> &Found + Copy + 'a) -> Self {
+    pub fn order(self, found: impl Fn(&T) -> &FittedOrder + Copy + 'a) -> Self {
         let of = |show: fn(&Convergence) -> String| {
             move |item: &T| found(item).as_ref().map_or("–".into(), show)
         };

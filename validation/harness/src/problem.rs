@@ -18,7 +18,7 @@ use crate::{
     error::RunError,
     foreign::{self, Foreign, OurSums},
     frames,
-    medium::{Knob, Medium},
+    medium::{Medium, MediumSetting},
     method::{Method, Parts, see},
     outline::Outline,
     relation::{Relation, TIME, View},
@@ -427,7 +427,7 @@ trait Parted: Problem {
     ) -> Result<View, RunError> {
         let refused = |reason| RunError::NoSymmetry { relation, reason };
         let view = see(parts, relation).map_err(refused)?;
-        let shifts = self.method().properties.uses.contains(&Knob::Shift);
+        let shifts = self.method().properties.uses.contains(&MediumSetting::Shift);
         let shifts = shifts && parts.medium.shift > 0.0;
         if relation == Relation::Boosted && steps == Steps::Early && shifts {
             return Err(refused("its shifting takes the largest speed of the scene"));

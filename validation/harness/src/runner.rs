@@ -1,6 +1,6 @@
 //! Steps a simulation through the times of interest: the only time loop of the program. It measures the cost,
 //! shows progress, writes frames and stops at an interrupt; cases contain only their own measurements. The
-//! loop accesses a run of a case only through `Observed`, so it is compiled once for all cases of fluids, and
+//! loop accesses a run of a case only through `ObservedRun`, so it is compiled once for all cases of fluids, and
 //! once for solids.
 
 use std::ops::ControlFlow;
@@ -65,9 +65,9 @@ pub(crate) fn diverged(Divergence { step, time, fault }: Divergence) -> Status {
 }
 
 /// A simulation and all that is observed of it.
-trait Observed<X: Numbers> {
+trait ObservedRun<X: Numbers> {
     /// The simulation, and the observers of its steps.
-    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>);
+    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Observations<X>);
     /// Calls the k-th of the functions that are called at times, at this one of the times.
     fn at(&mut self, k: usize, reached: usize);
     /// Restores changes of the simulation by a case that are not part of a checkpoint.
@@ -75,7 +75,7 @@ trait Observed<X: Numbers> {
 }
 
 /// The observations of a run.
-trait Seen<X: Numbers> {
+trait Observations<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> ControlFlow<()>;
     /// Everything that changes of it, as bytes.
@@ -85,10 +85,10 @@ trait Seen<X: Numbers> {
 }
 
 /// A run that is under way.
-type Running<'a, X> = &'a mut dyn Observed<X>;
+type RunMut<'a, X> = &'a mut dyn ObservedRun<X>;
 
 /// Times and callbacks of a run, with their names in a profile.
-struct Course<'a> {
+struct Schedule<'a> {
     dt: f64,
     /// Steps to each of the times at least.
     least: usize,
@@ -102,9 +102,9 @@ struct Course<'a> {
     at: Vec<(&'static str, bool)>,
 }
 
-impl Course<'_> {
+impl Schedule<'_> {
     /// Steps a run through the times.
-    fn run<X: Numbers>(&self, run: Running<X>, context: &Context) -> Result<Ended, RunError> {
+    fn run<X: Numbers>(&self, run: RunMut<X>, context: &Context) -> Result<Ended, RunError> {
         let (simulation, _) = run.parts();
         let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
         let (dt, least) = (self.dt * factor, self.least as f64 / factor);
@@ -147,12 +147,12 @@ impl Course<'_> {
     }
 
     /// The watch over a run that begins.
-    fn watch<'a>(&'a self, context: &'a Context<'a>) -> Result<Watch<'a>, RunError> {
+    fn watch<'a>(&'a self, context: &'a Context<'a>) -> Result<Monitor<'a>, RunError> {
         let end = self.times.last().copied().unwrap_or_default();
         let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, &self.pressure));
-        Ok(Watch {
+        Ok(Monitor {
             context,
-            course: self,
+            schedule: self,
             end,
             shown: Instant::now(),
             saved: context.now().wall,
@@ -169,9 +169,9 @@ impl Course<'_> {
 
 /// Handles every step: calls the observers, writes frames and checkpoints, shows the progress, and stops at
 /// an interrupt after the present step, however long steps take.
-struct Watch<'a> {
+struct Monitor<'a> {
     context: &'a Context<'a>,
-    course: &'a Course<'a>,
+    schedule: &'a Schedule<'a>,
     end: f64,
     shown: Instant,
     /// Wall time of the last checkpoint \[s\].
@@ -190,7 +190,7 @@ struct Watch<'a> {
     synchronises: bool,
 }
 
-impl Watch<'_> {
+impl Monitor<'_> {
     fn show<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.data().fluid_count() as u64;
@@ -242,15 +242,15 @@ impl Watch<'_> {
     fn observe<X: Numbers>(
         &mut self,
         simulation: &dyn Stepper<X>,
-        seen: &mut dyn Seen<X>,
+        seen: &mut dyn Observations<X>,
     ) -> ControlFlow<()> {
-        let is_seen = !self.course.after_step.is_empty() || self.frames.is_some();
+        let is_seen = !self.schedule.after_step.is_empty() || self.frames.is_some();
         if !is_seen && self.context.checkpoints.is_none() {
             return ControlFlow::Continue(());
         }
         let now = self.context.now();
         let mut flow = ControlFlow::Continue(());
-        for (k, name) in self.course.after_step.iter().enumerate() {
+        for (k, name) in self.schedule.after_step.iter().enumerate() {
             self.profiler.iter().for_each(|profiler| profiler.observe(name));
             if seen.after_step(k, simulation) == ControlFlow::Break(()) {
                 flow = ControlFlow::Break(());
@@ -278,11 +278,11 @@ impl Watch<'_> {
     }
 
     /// Steps to a time; how the run ended, if it did not get there.
-    fn step_to<X: Numbers>(&mut self, run: Running<X>, until: f64, dt: f64) -> Option<Status> {
+    fn step_to<X: Numbers>(&mut self, run: RunMut<X>, until: f64, dt: f64) -> Option<Status> {
         let (simulation, seen) = run.parts();
         (self.start, self.steps) = (self.context.now(), simulation.work().steps);
         self.profiler.iter().for_each(Profiler::step);
-        let outcome = simulation.advance(until, dt, &mut Watching { watch: self, seen });
+        let outcome = simulation.advance(until, dt, &mut MonitoredSteps { watch: self, seen });
         self.profiler.iter().for_each(Profiler::pause);
         self.cost = self.cost(simulation, self.context.now() - self.start);
         if let Some(profiler) = &mut self.profiler {
@@ -300,8 +300,8 @@ impl Watch<'_> {
 
     /// Steps through the remaining times, with steps of at most `dt` \[s\] and at least `least` to each,
     /// observes each, and writes the last frame.
-    fn step_through<X: Numbers>(&mut self, run: Running<X>, dt: f64, least: f64) -> Ended {
-        let Course { times, at, .. } = self.course;
+    fn step_through<X: Numbers>(&mut self, run: RunMut<X>, dt: f64, least: f64) -> Ended {
+        let Schedule { times, at, .. } = self.schedule;
         while let Some(&until) = times.get(self.reached) {
             let start = self.reached.checked_sub(1).map_or(0.0, |before| times[before]);
             let dt = if until > start { dt.min((until - start) / least) } else { dt };
@@ -314,7 +314,7 @@ impl Watch<'_> {
             }
             let start = self.context.now();
             if let Some(tell) = self.context.at_times {
-                tell(until, frames::columns(&run.parts().0.particles(), &self.course.pressure));
+                tell(until, frames::columns(&run.parts().0.particles(), &self.schedule.pressure));
             }
             for (k, (name, _)) in at.iter().enumerate() {
                 self.profiler.iter().for_each(|profiler| profiler.observe(name));
@@ -332,15 +332,15 @@ impl Watch<'_> {
     }
 
     /// Goes on from a checkpoint if there is one; how the simulation ended, if it did.
-    fn go_on<X: Numbers>(&mut self, run: Running<X>) -> Result<Option<Status>, RunError> {
+    fn go_on<X: Numbers>(&mut self, run: RunMut<X>) -> Result<Option<Status>, RunError> {
         let bytes = self.context.checkpoints.and_then(Checkpoints::next);
         let Some(bytes) = bytes else { return Ok(None) };
         let (simulation, seen) = run.parts();
         let (Stage { reached, cost, frames, ended }, earlier) =
             checkpoint::restore(&bytes, simulation)?;
         seen.restore(&earlier)?;
-        let next = self.course.times.get(reached).unwrap_or(&self.end);
-        if reached > self.course.times.len() || simulation.time() > *next {
+        let next = self.schedule.times.get(reached).unwrap_or(&self.end);
+        if reached > self.schedule.times.len() || simulation.time() > *next {
             return Err(RunError::Checkpoint("times of another run"));
         }
         let resumed = cost.resumed + u32::from(ended.is_none());
@@ -362,12 +362,12 @@ impl Watch<'_> {
 }
 
 /// A watch with the observations of the run.
-struct Watching<'w, 'a, X: Numbers> {
-    watch: &'w mut Watch<'a>,
-    seen: &'w mut dyn Seen<X>,
+struct MonitoredSteps<'w, 'a, X: Numbers> {
+    watch: &'w mut Monitor<'a>,
+    seen: &'w mut dyn Observations<X>,
 }
 
-impl<X: Numbers> Observer<X> for Watching<'_, '_, X> {
+impl<X: Numbers> Observer<X> for MonitoredSteps<'_, '_, X> {
     #[inline]
     fn after_step(&mut self, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
         let Self { watch, seen } = self;
@@ -417,12 +417,12 @@ type At<'a, D, S> = Box<dyn Fn(&mut S, &mut D, usize) + 'a>;
 type Resumed<'a, D, S> = Box<dyn Fn(&S, &mut D) + 'a>;
 
 /// The observations of a run, and the calls after every step.
-struct Seeing<'a, X: Numbers, S> {
+struct CaseObservations<'a, X: Numbers, S> {
     seen: &'a mut S,
     after_step: Vec<AfterStep<'a, X, S>>,
 }
 
-impl<X: Numbers, S: Serialize + DeserializeOwned> Seen<X> for Seeing<'_, X, S> {
+impl<X: Numbers, S: Serialize + DeserializeOwned> Observations<X> for CaseObservations<'_, X, S> {
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
         self.after_step[k](self.seen, simulation)
     }
@@ -438,18 +438,18 @@ impl<X: Numbers, S: Serialize + DeserializeOwned> Seen<X> for Seeing<'_, X, S> {
 /// A simulation with the functions of a case.
 struct Run<'a, X: Numbers, D: ?Sized, S> {
     simulation: &'a mut D,
-    seeing: Seeing<'a, X, S>,
+    seeing: CaseObservations<'a, X, S>,
     at: Vec<At<'a, D, S>>,
     resumed: Resumed<'a, D, S>,
 }
 
-impl<X, D, S> Observed<X> for Run<'_, X, D, S>
+impl<X, D, S> ObservedRun<X> for Run<'_, X, D, S>
 where
     X: Numbers,
     D: Stepper<X> + ?Sized,
     S: Serialize + DeserializeOwned,
 {
-    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Seen<X>) {
+    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Observations<X>) {
         (self.simulation.stepper(), &mut self.seeing)
     }
     fn at(&mut self, k: usize, reached: usize) {
@@ -465,7 +465,7 @@ where
 /// The functions of a case cannot change their captures: all changing data is in `S`, which checkpoints hold.
 pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
     run: Run<'a, X, D, S>,
-    course: Course<'a>,
+    schedule: Schedule<'a>,
 }
 
 impl<'a, X, D, S> Drive<'a, X, D, S>
@@ -483,17 +483,17 @@ where
         eos: impl EquationOfState,
         seen: &'a mut S,
     ) -> Self {
-        let seeing = Seeing { seen, after_step: Vec::new() };
+        let seeing = CaseObservations { seen, after_step: Vec::new() };
         let run = Run { simulation, seeing, at: Vec::new(), resumed: Box::new(|_, _| {}) };
         let (least, sweeps, after_step, at) = (1, 2.0, Vec::new(), Vec::new());
         let pressure = Box::new(move |density| eos.pressure(density));
-        Self { run, course: Course { dt, least, sweeps, times, pressure, after_step, at } }
+        Self { run, schedule: Schedule { dt, least, sweeps, times, pressure, after_step, at } }
     }
 
     /// Makes at least `least` steps from each time to the next, and states the pair sweeps of a step for the
     /// estimate of the cost.
     pub fn steps(mut self, least: usize, sweeps: f64) -> Self {
-        (self.course.least, self.course.sweeps) = (least, sweeps);
+        (self.schedule.least, self.schedule.sweeps) = (least, sweeps);
         self
     }
 
@@ -504,14 +504,14 @@ where
         call: impl Fn(&mut S, &dyn Stepper<X>) -> ControlFlow<()> + 'a,
     ) -> Self {
         self.run.seeing.after_step.push(Box::new(call));
-        self.course.after_step.push(name);
+        self.schedule.after_step.push(name);
         self
     }
 
     /// Calls a function at each of the times, with its number.
     pub fn at(mut self, name: &'static str, call: impl Fn(&mut S, &mut D, usize) + 'a) -> Self {
         self.run.at.push(Box::new(call));
-        self.course.at.push((name, true));
+        self.schedule.at.push((name, true));
         self
     }
 
@@ -523,7 +523,7 @@ where
         call: impl Fn(&mut S, &mut D, usize) + 'a,
     ) -> Self {
         self.run.at.push(Box::new(call));
-        self.course.at.push((name, false));
+        self.schedule.at.push((name, false));
         self
     }
 
@@ -541,7 +541,7 @@ where
     /// checkpoint does not fit. A frame or a checkpoint that cannot be written is reported to
     /// [`Context::lost`].
     pub fn run(mut self, context: &Context) -> Result<Ended, RunError> {
-        self.course.run(&mut self.run, context)
+        self.schedule.run(&mut self.run, context)
     }
 }
 

@@ -50,13 +50,13 @@ pub enum Pending {
 }
 
 /// A run under way, as its store reports it to other processes. A failure to write this file stops no run.
-pub struct Begun<'a> {
+pub struct RunLease<'a> {
     folder: &'a OutputFolder,
     name: String,
     last: Mutex<Instant>,
 }
 
-impl Begun<'_> {
+impl RunLease<'_> {
     /// Makes the file anew: writing through a link would empty its target, and a pipe would block.
     fn sign(&self) {
         self.remove();
@@ -163,9 +163,9 @@ impl Store {
     }
 
     /// Marks a run as under way.
-    pub fn begin(&self, spec: &RunSpec) -> Begun<'_> {
+    pub fn begin(&self, spec: &RunSpec) -> RunLease<'_> {
         let name = format!("{BEGUN}{}", Self::name(spec));
-        let begun = Begun { folder: &self.folder, name, last: Mutex::new(Instant::now()) };
+        let begun = RunLease { folder: &self.folder, name, last: Mutex::new(Instant::now()) };
         begun.sign();
         begun
     }

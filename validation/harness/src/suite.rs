@@ -11,7 +11,7 @@ use touchstone_report::{Counts, Subject};
 
 use crate::{
     case::{Case, Facts, Planned, Tier},
-    make::{self, Made, Making},
+    make::{self, BatchOptions, BatchResult},
     plan,
     runs::{Judged, JudgedRun, Runs, counts},
     sealed,
@@ -92,7 +92,7 @@ pub struct Suite {
     /// One entry per case.
     pub cases: Vec<CaseResults>,
     /// How its records came about; they themselves are in the cases. Nothing is judged if it was interrupted.
-    pub made: Made,
+    pub made: BatchResult,
 }
 
 impl Suite {
@@ -134,14 +134,14 @@ pub fn plans(cases: &[&'static dyn Case], tier: Tier) -> Plans {
 }
 
 /// Plans the cases, makes the missing runs of the store, and judges.
-pub fn run(cases: &[&'static dyn Case], making: &Making) -> Suite {
+pub fn run(cases: &[&'static dyn Case], making: &BatchOptions) -> Suite {
     let plans = plans(cases, making.tier);
     let made = make::make(make::stored(&make::jobs(plans.clone()), making), making);
     judge(plans, making.tier, made)
 }
 
 /// Judges the records of plans: gates run by run, then studies. A pure function of the records.
-pub fn judge(plans: Plans, tier: Tier, mut made: Made) -> Suite {
+pub fn judge(plans: Plans, tier: Tier, mut made: BatchResult) -> Suite {
     if made.interrupted {
         return Suite { tier, cases: Vec::new(), made }; // nothing can be said of runs that were cut short
     }

@@ -7,7 +7,7 @@ use touchstone_base::{record::Profile, spec::RunSpec};
 use crate::{
     case::{Case, RunError},
     context::Context,
-    foreign::{Frame, Placed},
+    foreign::{ForeignParticle, Frame},
     outline::Outline,
     problem::Steps,
     relation::{DENSITY, Relation, TIME},
@@ -51,16 +51,16 @@ fn moves(outline: &Outline) -> Vec<bool> {
 
 /// Moving particles at the k-th of the times of the problem as the first observer would have them, by their
 /// numbers there.
-fn told((outline, frames): Seen, k: usize) -> Vec<Placed> {
+fn told((outline, frames): Seen, k: usize) -> Vec<ForeignParticle> {
     let (view, moves) = (&outline.view, moves(outline));
     let (numbers, time) = (view.numbers(&moves), outline.times[k]);
     let apart = |frame: &&Frame| (frame.time - time).abs();
     let nearest = frames.iter().min_by(|a, b| apart(a).total_cmp(&apart(b)));
-    let back = |placed: &Placed| {
+    let back = |placed: &ForeignParticle| {
         let of = [placed.position, placed.velocity];
         let [position, velocity] = view.back(time / view.scale(TIME), of);
         let density = placed.density.map(|density| density / view.scale(DENSITY));
-        Placed { id: numbers[placed.id as usize] as u32, position, velocity, density }
+        ForeignParticle { id: numbers[placed.id as usize] as u32, position, velocity, density }
     };
     let all = nearest.into_iter().flat_map(|frame| &frame.particles);
     let moving = all.filter(|placed| moves.get(placed.id as usize) == Some(&true));
@@ -140,7 +140,7 @@ pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
     for (k, &time) in times.iter().enumerate() {
         let floor = size * (steps * time / times[times.len() - 1]).powi(2);
         let (ours, theirs) = (told(base, k), told(other, k));
-        let ids = |all: &[Placed]| all.iter().map(|placed| placed.id).collect::<Vec<_>>();
+        let ids = |all: &[ForeignParticle]| all.iter().map(|placed| placed.id).collect::<Vec<_>>();
         if ours.is_empty() || ids(&ours) != ids(&theirs) {
             // One run diverged.
             worst = Difference { time, value: f64::NAN, floor, ..worst }.or(worst);
@@ -166,7 +166,7 @@ fn seen(case: &dyn Case, spec: &RunSpec, by: Relation) -> Result<(Outline, Vec<F
     let mut frames = Vec::new();
     let mut at_time = |time: f64, particles: Profile| {
         let of = |name, k: usize| particles.column(name)[k];
-        let placed = |k| Placed {
+        let placed = |k| ForeignParticle {
             id: k as u32,
             position: Vector2::new(of("x", k), of("y", k)),
             velocity: Vector2::new(of("u", k), of("v", k)),
@@ -205,14 +205,14 @@ pub fn size(specs: &[(&dyn Case, RunSpec)]) -> Size {
 const UNDERFLOW: f64 = 1e-150;
 
 /// Result of a relation: the largest difference, or why it does not apply.
-pub type Found = (Relation, Result<Difference, RunError>);
+pub type RelationResult = (Relation, Result<Difference, RunError>);
 
 /// Results of all relations for our own run of a spec. Relations that round nothing must give equal bits, up
 /// to underflow.
 ///
 /// # Errors
 /// If the run is refused, or is none of a scene.
-pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<Found>, RunError> {
+pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<RelationResult>, RunError> {
     // A relation is tested at a few early times, which a scene passes even if it fails later.
     let spec = &spec.clone().allow_unstable();
     let (base, frames) = seen(case, spec, Relation::Same)?;

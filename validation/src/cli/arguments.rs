@@ -377,7 +377,7 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 /// How the runs of a plan are made.
 #[derive(Clone, Copy, Debug, Default, Args)]
-pub struct Making {
+pub struct MakeArguments {
     /// Also reuse records made by a build of other sources; the report then says so
     #[arg(long)]
     pub any_build: bool,
@@ -419,7 +419,7 @@ pub struct Verify {
     #[arg(long, conflicts_with_all = ["fresh", "threads"])]
     pub no_runs: bool,
     #[command(flatten)]
-    pub making: Making,
+    pub making: MakeArguments,
 }
 
 #[derive(Debug, Args)]
@@ -455,7 +455,7 @@ pub struct Report {
     #[arg(long, requires = "store")]
     pub partial: bool,
     #[command(flatten)]
-    pub making: Making,
+    pub making: MakeArguments,
     /// Write the verdicts as JUnit XML, one test case per gate
     #[arg(long, value_name = "FILE")]
     pub junit: Option<PathBuf>,

@@ -21,7 +21,7 @@ use touchstone_harness::{
 };
 
 use super::{
-    Exit, Failure, Outcome, World, arguments,
+    Exit, Failure, Outcome, Session, arguments,
     judged::{self, SubmissionVerdicts, VERDICTS, Verdicts},
     output,
 };
@@ -34,7 +34,7 @@ struct Side {
 }
 
 impl Side {
-    fn read(path: &Path, world: &World) -> Result<Self, Failure> {
+    fn read(path: &Path, session: &Session) -> Result<Self, Failure> {
         let mut submissions = Vec::new();
         let verdicts = match judged::read(path)? {
             Some(text) => {
@@ -61,7 +61,7 @@ impl Side {
         let records = records.map(|records| {
             let (others, ours): (Vec<Record>, Vec<Record>) =
                 records.into_iter().partition(|record| record.run.submission.is_some());
-            others.into_iter().for_each(|record| add(&mut submissions, record, world));
+            others.into_iter().for_each(|record| add(&mut submissions, record, session));
             ours.into_iter().map(name).collect()
         });
         Ok(Self { verdicts, records, submissions })
@@ -79,13 +79,13 @@ struct Submitted {
 }
 
 /// Adds a record to the verdicts on it, or judges it where there are none.
-fn add(all: &mut Vec<Submitted>, record: Record, world: &World) {
+fn add(all: &mut Vec<Submitted>, record: Record, session: &Session) {
     let key = record.run.key().to_string();
     if let Some(known) = all.iter_mut().find(|known| known.of.key == key) {
         known.record = Some(record);
         return;
     }
-    let case = world.cases.iter().find(|case| case.name() == record.run.case);
+    let case = session.cases.iter().find(|case| case.name() == record.run.case);
     let judged = case.and_then(|case| {
         let run = suite::submitted(*case, record.clone());
         SubmissionVerdicts::of(*case, &run, false)
@@ -195,9 +195,9 @@ const NOTABLE: f64 = 1.1;
 /// Number of metrics of a run that are named.
 const TOLD: usize = 3;
 
-pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
+pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
     let (before, after) =
-        (Side::read(&arguments.before, world)?, Side::read(&arguments.after, world)?);
+        (Side::read(&arguments.before, session)?, Side::read(&arguments.after, session)?);
     let mut changes = Vec::new();
     match (&before.verdicts, &after.verdicts) {
         (Some(old), Some(new)) => changes.extend(paired(old, new, |_, was, is| of_gate(was, is))),
@@ -210,7 +210,7 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
     }
     match (&before.records, &after.records) {
         (Some(old), Some(new)) => {
-            let bounds = bounds(world, new);
+            let bounds = bounds(session, new);
             changes.extend(paired(old, new, |name, was, is| of_run(name, was, is, &bounds)));
         }
         (None, None) => {}
@@ -228,9 +228,9 @@ pub fn compare(arguments: &arguments::Compare, world: &World) -> Outcome {
 /// The bounds of the gates of these runs, by run and metric.
 type Bounds = BTreeMap<(String, String), Bound>;
 
-fn bounds(world: &World, records: &BTreeMap<String, Record>) -> Bounds {
+fn bounds(session: &Session, records: &BTreeMap<String, Record>) -> Bounds {
     let is_asked = |case: &&&'static dyn Case| records.values().any(|r| r.run.case == case.name());
-    let plans = world.cases.iter().filter(is_asked).flat_map(|case| {
+    let plans = session.cases.iter().filter(is_asked).flat_map(|case| {
         [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(*case, tier))
     });
     let of_run = |planned: Planned| {

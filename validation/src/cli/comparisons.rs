@@ -1,7 +1,7 @@
 //! Comparisons with references for other programs: a part of the verdicts.
 
 use serde::{Deserialize, Serialize};
-use touchstone_harness::studies::validation::{Comparison, Comparisons, Found};
+use touchstone_harness::studies::validation::{Comparison, ComparisonResult, Comparisons};
 use touchstone_harness::suite::{CaseResults, Suite};
 
 /// A comparison with a reference. A number that is not known, or has no meaning, is missing.
@@ -54,7 +54,7 @@ pub fn of(suite: &Suite) -> Vec<ComparisonVerdict> {
         of_case.map(move |comparison| (results, comparison))
     });
     let one = |(results, comparison): (&CaseResults, &Comparison)| {
-        let found = Found::of(comparison, &results.runs);
+        let found = ComparisonResult::of(comparison, &results.runs);
         let uncertain = |value: f64| known(value).filter(|_| found.exact.is_none());
         let order = found.exact.as_ref().and_then(|order| order.as_ref().ok());
         ComparisonVerdict {
@@ -70,7 +70,7 @@ pub fn of(suite: &Suite) -> Vec<ComparisonVerdict> {
             u_input: uncertain(found.input),
             u_reference: uncertain(found.reference),
             u_val: uncertain(found.uncertainty()),
-            verdict: found.said().name().into(),
+            verdict: found.conclusion().name().into(),
             words: found.in_words(),
         }
     };

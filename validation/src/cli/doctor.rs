@@ -8,18 +8,18 @@ use touchstone_base::reference::Reference;
 use touchstone_harness::{case, context::Context};
 use touchstone_schemes::bench;
 
-use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
+use super::{Exit, Failure, Outcome, Session, arguments, on_threads, output};
 
-pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
+pub fn doctor(arguments: &arguments::Doctor, session: &Session) -> Outcome {
     let manifest = Manifest::of_this_process(rayon::current_num_threads());
     output::print(&about(&manifest, arguments.verbose))?;
     let (mut is_sound, mut can_write) = (true, true);
     for (what, check) in [
-        ("references", references as fn(&arguments::Doctor, &World) -> Result<String, Failure>),
+        ("references", references as fn(&arguments::Doctor, &Session) -> Result<String, Failure>),
         ("writing", writing),
         ("self-check", self_check),
     ] {
-        let (mark, words) = match check(arguments, world) {
+        let (mark, words) = match check(arguments, session) {
             Ok(words) => ("ok  ", words),
             Err(Failure { reason, .. }) => {
                 match what {
@@ -30,13 +30,13 @@ pub fn doctor(arguments: &arguments::Doctor, world: &World) -> Outcome {
             }
         };
         output::print(&format!("{what:<11} {mark} {words}\n"))?;
-        world.go_on("the checks are not complete; the same command begins again")?;
+        session.go_on("the checks are not complete; the same command begins again")?;
     }
     if !is_sound {
         return Err(Failure::bug("a check of doctor failed, see above"));
     }
     if arguments.bench {
-        bench(world)?;
+        bench(session)?;
     }
     Ok(if can_write { Exit::Pass } else { Exit::Usage })
 }
@@ -61,7 +61,7 @@ fn about(manifest: &Manifest, is_verbose: bool) -> String {
 }
 
 /// Every embedded reference, read and checked against its hash.
-fn references(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> {
+fn references(arguments: &arguments::Doctor, _: &Session) -> Result<String, Failure> {
     let (mut count, mut hashes) = (0, String::new());
     for name in Reference::names() {
         for resource in &Reference::load(name)?.package.resources {
@@ -73,7 +73,7 @@ fn references(arguments: &arguments::Doctor, _: &World) -> Result<String, Failur
     Ok(format!("{count} tables as described{hashes}"))
 }
 
-fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> {
+fn writing(arguments: &arguments::Doctor, _: &Session) -> Result<String, Failure> {
     OutputFolder::check(&arguments.out)?;
     Ok(format!("into {}", arguments.out.display()))
 }
@@ -82,12 +82,12 @@ fn writing(arguments: &arguments::Doctor, _: &World) -> Result<String, Failure> 
 const BOUND: f64 = 0.02;
 
 /// A small Couette flow against its series, twice: the error is small, and the bits are equal.
-fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
+fn self_check(_: &arguments::Doctor, session: &Session) -> Result<String, Failure> {
     let start = Instant::now();
     let set = ["rows=10".to_string(), "end=0.1".to_string()];
     let case = touchstone_cases::find("couette")?;
     let spec = case::spec(case, "seed", &set)?;
-    let context = Context { interrupt: Some(world.interrupt), ..Context::default() };
+    let context = Context { interrupt: Some(session.interrupt), ..Context::default() };
     let (first, second) = (case.run(&spec, &context)?, case.run(&spec, &context)?);
     let error = first.metric("l2@0.1").unwrap_or(f64::NAN);
     let took = touchstone_report::seconds(start.elapsed().as_secs_f64());
@@ -107,7 +107,7 @@ fn self_check(_: &arguments::Doctor, world: &World) -> Result<String, Failure> {
 /// Seconds that one measurement may take.
 const BUDGET: f64 = 2.0;
 
-fn bench(world: &World) -> Result<(), Failure> {
+fn bench(session: &Session) -> Result<(), Failure> {
     let all = std::thread::available_parallelism().map_or(1, usize::from);
     output::print(
         "\nSpeed: continuity, pressure and Morris viscosity in one sum, cubic spline, h/dx 1.2, 20 \
@@ -129,7 +129,7 @@ fn bench(world: &World) -> Result<(), Failure> {
             row.extend(
                 [speed.rate, speed.list_rate].map(|rate| touchstone_report::sig(rate / 1e6, 3)),
             );
-            world.go_on("the measurements are not complete; the same command begins again")?;
+            session.go_on("the measurements are not complete; the same command begins again")?;
         }
         rows.push(row);
     }

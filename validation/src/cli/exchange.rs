@@ -30,14 +30,14 @@ use touchstone_harness::{
     suite, symmetry,
 };
 
-use super::{Exit, Failure, Outcome, World, arguments, output, submitted};
+use super::{Exit, Failure, Outcome, Session, arguments, output, submitted};
 
-pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failure> {
+pub fn export(arguments: &arguments::Export, session: &Session) -> Result<(), Failure> {
     let of = &arguments.of;
     if let (Some(seed), Some(method)) = (arguments.sealed, &arguments.method) {
-        return sealed(of, seed, method, world);
+        return sealed(of, seed, method, session);
     }
-    let case = touchstone_cases::find_in(world.cases, &of.case)?;
+    let case = touchstone_cases::find_in(session.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     let spec = case::spec(case, variant, &arguments.set)?;
     if arguments.solve {
@@ -52,7 +52,7 @@ pub fn export(arguments: &arguments::Export, world: &World) -> Result<(), Failur
     let folder = prepare(of, &files, if arguments.solve { &RESULTING } else { &[] })?;
     let mut names = put(&files, &folder)?;
     if arguments.solve {
-        names.extend(solve(case, &problem, &folder, arguments.allow_long, world)?);
+        names.extend(solve(case, &problem, &folder, arguments.allow_long, session)?);
     }
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
     Ok(())
@@ -141,7 +141,7 @@ fn solve(
     problem: &Problem,
     folder: &OutputFolder,
     allow_long: bool,
-    world: &World,
+    session: &Session,
 ) -> Result<Vec<String>, Failure> {
     let spec = &problem.spec;
     // Mass and role are for codes that choose their own particles.
@@ -159,7 +159,7 @@ fn solve(
             column.values.extend(particles.column(&column.name));
         }
     };
-    let interrupt = Some(world.interrupt);
+    let interrupt = Some(session.interrupt);
     let context = Context { spec: spec.clone(), allow_long, interrupt, ..Context::default() };
     let record = match problem.relation {
         Some(relation) => {
@@ -171,7 +171,7 @@ fn solve(
         }
         None => case.run(spec, &Context { at_times: Some(&tell), ..context })?,
     };
-    world.go_on("the problem is written, its results are not")?;
+    session.go_on("the problem is written, its results are not")?;
     let Record { cost, manifest, .. } = &record;
     let counted = |of: Value| if of.as_f64() > Some(0.0) { of } else { json!("unknown") };
     let system = json!({
@@ -206,9 +206,9 @@ pub fn sealed(
     of: &arguments::Written,
     seed: u64,
     method: &Path,
-    world: &World,
+    session: &Session,
 ) -> Result<(), Failure> {
-    let case = touchstone_cases::find_in(world.cases, &of.case)?;
+    let case = touchstone_cases::find_in(session.cases, &of.case)?;
     let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
     case.settings(variant, &[])?;
     let (method, text) = submission::method(method).map_err(|flaws| {
@@ -231,9 +231,9 @@ pub fn sealed(
     Ok(())
 }
 
-pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
-    let case = touchstone_cases::find_in(world.cases, &arguments.case)?;
-    world.check_references(&[case])?;
+pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
+    let case = touchstone_cases::find_in(session.cases, &arguments.case)?;
+    session.check_references(&[case])?;
     let mut entry = read(&arguments.folder, &arguments.map)?;
     let problem = problem(case, &entry, arguments)?;
     let coarse = entry.scene(case, &problem)?;
@@ -244,7 +244,7 @@ pub fn submit(arguments: &arguments::Submit, world: &World) -> Outcome {
     let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
         refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
     })?;
-    record.manifest.sources = (world.sources)(case.name());
+    record.manifest.sources = (session.sources)(case.name());
     // To look whether it is complete is no verdict, but one that diverged is not complete.
     if arguments.check && record.status == Status::Completed {
         output::say("complete: every fact that a submission needs is there; nothing was recorded");
@@ -343,9 +343,9 @@ pub fn relate(
     [base, turned]: [&Path; 2],
     map: &[(String, String)],
     allow_long: bool,
-    world: &World,
+    session: &Session,
 ) -> Outcome {
-    let case = touchstone_cases::find_in(world.cases, case)?;
+    let case = touchstone_cases::find_in(session.cases, case)?;
     let observed = |folder: &Path| -> Result<_, Failure> {
         let entry = read(folder, map)?;
         let usage = |what: &str| Failure::usage(format!("{}: {what}", folder.display()));

@@ -8,14 +8,14 @@ use touchstone_base::record;
 use touchstone_base::settings::by_similarity;
 use touchstone_base::text::short;
 use touchstone_harness::case::{self, Case, Tier};
-use touchstone_harness::make::Stored;
+use touchstone_harness::make::StoredRuns;
 use touchstone_harness::plan;
 use touchstone_harness::runs::{self, Judged};
 use touchstone_harness::store::Store;
 use touchstone_harness::suite::{self, JudgedOf, Of};
 
 use super::{
-    Failure, World, arguments,
+    Failure, Session, arguments,
     judged::{self, Verdicts, tier_name},
     output,
 };
@@ -38,9 +38,9 @@ impl Known {
     }
 }
 
-pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Failure> {
+pub fn explain(arguments: &arguments::Explain, session: &Session) -> Result<(), Failure> {
     let asked = arguments.gate.as_deref().unwrap_or_default();
-    let verdicts = last_verdicts(&arguments.reports, asked, world)?;
+    let verdicts = last_verdicts(&arguments.reports, asked, session)?;
     if let Some(status) = arguments.status {
         let Some(verdicts) = verdicts else {
             return Err(Failure::usage(format!(
@@ -52,11 +52,11 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Fail
         let begins = |judged: &&Judged| judged.gate.id.starts_with(asked);
         let of_name: Vec<&Judged> = verdicts.judged().filter(begins).collect();
         if of_name.is_empty() {
-            return Err(unknown(asked, &all(world, Some(&verdicts))));
+            return Err(unknown(asked, &all(session, Some(&verdicts))));
         }
         return output::print(&listed(of_name, status));
     }
-    let gates = all(world, verdicts.as_ref());
+    let gates = all(session, verdicts.as_ref());
     let mut chosen: Vec<&Known> = gates.iter().filter(|known| known.gate.id == asked).collect();
     if chosen.is_empty() {
         chosen.extend(gates.iter().filter(|known| known.gate.id.starts_with(asked)));
@@ -70,17 +70,21 @@ pub fn explain(arguments: &arguments::Explain, world: &World) -> Result<(), Fail
 
 /// The verdicts of the last report or, without one, of the records that `verify` keeps: for the cases with
 /// gates that may begin with `asked`, if all runs of the quick tier are stored.
-fn last_verdicts(reports: &Path, asked: &str, world: &World) -> Result<Option<Verdicts>, Failure> {
+fn last_verdicts(
+    reports: &Path,
+    asked: &str,
+    session: &Session,
+) -> Result<Option<Verdicts>, Failure> {
     let text = judged::read(reports)?.unwrap_or_default();
     if let Ok(verdicts) = serde_json::from_str(&text) {
         return Ok(Some(verdicts)); // of another version: none
     }
     let is_asked =
         |case: &&'static dyn Case| case.name().starts_with(asked) || asked.starts_with(case.name());
-    let cases: Vec<&'static dyn Case> = world.cases.iter().copied().filter(is_asked).collect();
+    let cases: Vec<&'static dyn Case> = session.cases.iter().copied().filter(is_asked).collect();
     let mut plans = suite::plans(&cases, Tier::Quick);
     let store = Store::to_read(&reports.join("records"));
-    let Stored { made, missing, .. } = world.stored(&plans, &store, false);
+    let StoredRuns { made, missing, .. } = session.stored(&plans, &store, false);
     if made.interrupted {
         return Err(Failure::interrupted("no gate is shown"));
     }
@@ -104,9 +108,9 @@ fn of_study(title: &str, case: &str) -> String {
 }
 
 /// Gates of the plans, then gates on several runs, whose names only a report has.
-fn all(world: &World, verdicts: Option<&Verdicts>) -> Vec<Known> {
+fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<Known> {
     let mut gates: Vec<Known> = Vec::new();
-    for case in world.cases {
+    for case in session.cases {
         for tier in [Tier::Quick, Tier::Full] {
             for planned in plan::of_case(*case, tier) {
                 let on = case::command(*case, &planned.spec);

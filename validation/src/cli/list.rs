@@ -4,19 +4,19 @@ use serde_json::{Value, json};
 use touchstone_base::settings::Field;
 use touchstone_harness::case::{Case, Recommended, Variant};
 
-use super::{Failure, World, arguments, output};
+use super::{Failure, Session, arguments, output};
 
-pub fn list(arguments: &arguments::List, world: &World) -> Result<(), Failure> {
+pub fn list(arguments: &arguments::List, session: &Session) -> Result<(), Failure> {
     let Some(name) = &arguments.case else {
-        let all = || world.cases.iter().map(|case| json(*case)).collect();
-        return output::answer(arguments.json, all, || overview(world));
+        let all = || session.cases.iter().map(|case| json(*case)).collect();
+        return output::answer(arguments.json, all, || overview(session));
     };
-    let case = touchstone_cases::find_in(world.cases, name)?;
+    let case = touchstone_cases::find_in(session.cases, name)?;
     output::answer(arguments.json, || json(case), || details(case))
 }
 
 /// A line a case: the problem, and the variants for it; then why the case recommends it.
-fn overview(world: &World) -> String {
+fn overview(session: &Session) -> String {
     let row = |case: &&dyn Case| {
         let Recommended { variant, papers, .. } = case.recommended();
         let names = [case.name(), case.problem(), variant, papers.unwrap_or_default()];
@@ -28,8 +28,8 @@ fn overview(world: &World) -> String {
         let words = format!("{} {}: {}", case.name(), recommended.variant, recommended.reason());
         format!("  {}", output::wrap(&words, "    ").trim_start())
     };
-    let reasons: String = world.cases.iter().map(reason).collect();
-    output::table(&heads, world.cases.iter().map(row))
+    let reasons: String = session.cases.iter().map(reason).collect();
+    output::table(&heads, session.cases.iter().map(row))
         + "\nThe recommended variant runs unless another one is named. No variant has the\nsmallest error \
            in every case; the reasons:\n"
         + &reasons

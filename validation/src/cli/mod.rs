@@ -48,7 +48,7 @@ use touchstone_base::manifest::{Known, Source, UNKNOWN, tell_source};
 use touchstone_base::reference::{Reference, ReferenceError};
 use touchstone_base::spec::RunKey;
 use touchstone_harness::case::{Case, RunError, Tier};
-use touchstone_harness::make::{self, Done, Job, Made, Making, Stored};
+use touchstone_harness::make::{self, BatchOptions, BatchResult, Done, Job, StoredRuns};
 use touchstone_harness::store::Store;
 use touchstone_harness::suite::Plans;
 
@@ -106,14 +106,14 @@ impl<E: std::error::Error> From<E> for Failure {
 type Outcome = Result<Exit, Failure>;
 
 /// Shows the results before all runs are made; returns a message if it did.
-type Early<'a> = dyn Fn(Made) -> Option<String> + Sync + 'a;
+type Early<'a> = dyn Fn(BatchResult) -> Option<String> + Sync + 'a;
 
 /// A reference that is not as it was described, and the names of the cases that are compared with it.
 type WrongReference = (ReferenceError, &'static [&'static str]);
 
 /// The cases and stores that commands use.
 #[derive(Clone, Copy)]
-pub struct World {
+pub struct Session {
     /// The cases to choose from.
     cases: &'static [&'static dyn Case],
     /// Digest of the sources that determine the results of a case.
@@ -124,7 +124,7 @@ pub struct World {
     interrupt: &'static AtomicBool,
 }
 
-impl World {
+impl Session {
     /// The named cases, or all.
     fn choose(&self, names: &[String]) -> Result<Vec<&'static dyn Case>, RunError> {
         if names.is_empty() {
@@ -141,16 +141,19 @@ impl World {
     }
 
     /// Default options for making runs.
-    fn making(&self, tier: Tier) -> Making<'_> {
-        Making { interrupt: Some(self.interrupt), ..Making::new(tier, &self.sources) }
+    fn making(&self, tier: Tier) -> BatchOptions<'_> {
+        BatchOptions { interrupt: Some(self.interrupt), ..BatchOptions::new(tier, &self.sources) }
     }
 
     /// The stored runs of plans, whether or not timed runs were made alone.
-    fn stored(&self, plans: &Plans, store: &Store, any_build: bool) -> Stored {
+    fn stored(&self, plans: &Plans, store: &Store, any_build: bool) -> StoredRuns {
         let mut jobs = make::jobs(plans.clone());
         jobs.iter_mut().for_each(|job| job.planned.timed = false);
         let store = Some(store);
-        make::stored(&jobs, &Making { store, reuse_other: any_build, ..self.making(Tier::Quick) })
+        make::stored(
+            &jobs,
+            &BatchOptions { store, reuse_other: any_build, ..self.making(Tier::Quick) },
+        )
     }
 
     /// Makes the runs that a store lacks, on a pool of threads, with a progress bar, and reports failures.
@@ -158,20 +161,20 @@ impl World {
     fn make(
         &self,
         jobs: &[Job],
-        making: Making,
+        making: BatchOptions,
         threads: Option<u16>,
         early: Option<&Early>,
-    ) -> Result<Made, Failure> {
+    ) -> Result<BatchResult, Failure> {
         let bar = progress::Bar::new();
         let show = |done: Done| bar.show_runs(done);
         let finished = early.map(|early| {
-            |made: Made| early(made).into_iter().for_each(|words: String| bar.say(&words))
+            |made: BatchResult| early(made).into_iter().for_each(|words: String| bar.say(&words))
         });
         let made = on_threads(threads, || {
             let mut stored = make::stored(jobs, &making);
             make::estimate(&mut stored.missing, &making);
             let finished = finished.as_ref().map(|finished| finished as _);
-            Ok(make::make(stored, &Making { progress: Some(&show), finished, ..making }))
+            Ok(make::make(stored, &BatchOptions { progress: Some(&show), finished, ..making }))
         });
         bar.clear();
         let made = made?;
@@ -216,7 +219,7 @@ fn tell(lines: &[String]) {
 }
 
 /// Reports records that could not be read, kept or made.
-fn tell_trouble(made: &Made) {
+fn tell_trouble(made: &BatchResult) {
     let again = |(_, error): &(RunKey, FileError)| {
         format!("{error}; a record in this place does not count")
     };
@@ -230,7 +233,7 @@ fn tell_trouble(made: &Made) {
 }
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.
-fn trouble(made: &Made) -> Option<Exit> {
+fn trouble(made: &BatchResult) -> Option<Exit> {
     match made.failed.iter().any(|(_, failed)| matches!(failed, RunError::Bug)) {
         true => Some(Exit::Bug),
         false => (!made.failed.is_empty() || !made.not_kept.is_empty()).then_some(Exit::Usage),
@@ -279,8 +282,12 @@ pub fn main() -> ExitCode {
             return code(conclude(|| printed.map(|()| Exit::Pass)));
         }
     };
-    let world =
-        World { cases: touchstone_cases::CASES, sources, references, interrupt: interrupt::flag() };
+    let session = Session {
+        cases: touchstone_cases::CASES,
+        sources,
+        references,
+        interrupt: interrupt::flag(),
+    };
     let threads = default_threads();
     if threads > 0 {
         output::say(&format!(
@@ -290,7 +297,7 @@ pub fn main() -> ExitCode {
     if let Err(error) = interrupt::listen() {
         output::say(&format!("note: an interrupt will end the program at once ({error})"));
     }
-    code(conclude(|| dispatch(&arguments.command, &world)))
+    code(conclude(|| dispatch(&arguments.command, &session)))
 }
 
 fn code(exit: Exit) -> ExitCode {
@@ -313,44 +320,44 @@ fn conclude(command: impl FnOnce() -> Outcome) -> Exit {
     }
 }
 
-fn dispatch(command: &Command, world: &World) -> Outcome {
+fn dispatch(command: &Command, session: &Session) -> Outcome {
     let done = |()| Exit::Pass;
     use Command::{Completions, Doctor, Explain, List, Man};
     if !matches!(command, List(_) | Explain(_) | Doctor(_) | Completions(_) | Man(_)) {
         start_threads()?;
     }
     match command {
-        Command::List(arguments) => list::list(arguments, world).map(done),
-        Command::Run(arguments) => run::run(arguments, world),
-        Command::Plan(arguments) => plan::plan(arguments, world).map(done),
-        Command::Verify(arguments) => verify::verify(arguments, world),
+        Command::List(arguments) => list::list(arguments, session).map(done),
+        Command::Run(arguments) => run::run(arguments, session),
+        Command::Plan(arguments) => plan::plan(arguments, session).map(done),
+        Command::Verify(arguments) => verify::verify(arguments, session),
         Command::Judge(arguments) => {
             renamed("judge", "verify --no-runs");
-            verify::judge(arguments, world)
+            verify::judge(arguments, session)
         }
-        Command::Report(arguments) => report::report(arguments, world),
-        Command::Export(arguments) => exchange::export(arguments, world).map(done),
+        Command::Report(arguments) => report::report(arguments, session),
+        Command::Export(arguments) => exchange::export(arguments, session).map(done),
         Command::Challenge(arguments::Challenge { of, seed, method }) => {
             renamed("challenge", "export --sealed");
-            exchange::sealed(of, *seed, method, world).map(done)
+            exchange::sealed(of, *seed, method, session).map(done)
         }
-        Command::Submit(arguments) => exchange::submit(arguments, world),
+        Command::Submit(arguments) => exchange::submit(arguments, session),
         Command::Symmetry(of) => match of.results.as_deref() {
             Some([same, other]) => match &of.cases[..] {
-                [case] => exchange::relate(case, [same, other], &of.map, of.allow_long, world),
+                [case] => exchange::relate(case, [same, other], &of.map, of.allow_long, session),
                 _ => Err(Failure::usage("--results are those of one case; name one")),
             },
-            _ => symmetry::symmetry(of, world),
+            _ => symmetry::symmetry(of, session),
         },
         Command::Relate(arguments) => {
             renamed("relate", "symmetry --results");
             let arguments::Relate { case, same, other, allow_long, map } = arguments;
-            exchange::relate(case, [same, other], map, *allow_long, world)
+            exchange::relate(case, [same, other], map, *allow_long, session)
         }
-        Command::Compare(arguments) => compare::compare(arguments, world),
-        Command::Stability(arguments) => stability::stability(arguments, world),
-        Command::Explain(arguments) => explain::explain(arguments, world).map(done),
-        Command::Doctor(arguments) => doctor::doctor(arguments, world),
+        Command::Compare(arguments) => compare::compare(arguments, session),
+        Command::Stability(arguments) => stability::stability(arguments, session),
+        Command::Explain(arguments) => explain::explain(arguments, session).map(done),
+        Command::Doctor(arguments) => doctor::doctor(arguments, session),
         Command::Completions(arguments) => completions(arguments).map(done),
         Command::Man(arguments) => man::man(arguments).map(done),
     }

@@ -6,7 +6,7 @@ use std::path::Path;
 use touchstone_base::spec::RunKey;
 use touchstone_harness::{
     case::{self, Tier},
-    make::{self, Job, Made, Stored},
+    make::{self, BatchResult, Job, StoredRuns},
     runs,
     section::Section,
     store::{Pending, Store},
@@ -15,14 +15,14 @@ use touchstone_harness::{
 use touchstone_report::counted;
 
 /// A run without a record, and the reason.
-type Lacking = (Job, Pending);
+type MissingRun = (Job, Pending);
 
 /// Message about missing runs: their number and their cases; `None` if all records exist.
 type Told = Option<[String; 2]>;
 
 /// The suite of the complete cases, and a message about the others, which are not drawn because this would
 /// take seconds each time.
-pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite, Told) {
+pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: BatchResult) -> (Suite, Told) {
     let mut missing = make::jobs(plans.clone());
     missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
     let lacking = lacking(missing, path, &made);
@@ -33,14 +33,19 @@ pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: Made) -> (Suite,
 }
 
 /// The suite of the stored runs, a list of the missing ones, and a message about them.
-pub fn partial(plans: Plans, tier: Tier, store: &Path, stored: Stored) -> (Suite, String, Told) {
-    let Stored { made, missing, .. } = stored;
+pub fn partial(
+    plans: Plans,
+    tier: Tier,
+    store: &Path,
+    stored: StoredRuns,
+) -> (Suite, String, Told) {
+    let StoredRuns { made, missing, .. } = stored;
     let lacking = lacking(missing, store, &made);
     let told = tell(&plans, &lacking);
     (judge(plans, tier, made, &lacking), list(lacking.values().collect()), told)
 }
 
-fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lacking> {
+fn lacking(missing: Vec<Job>, path: &Path, made: &BatchResult) -> BTreeMap<RunKey, MissingRun> {
     let why = |job: &Job| match runs::find(&made.unsound, &job.planned.spec.key()) {
         Some(error) => Pending::Failed(error.to_string()),
         None => Store::to_read(path).pending(&job.planned.spec),
@@ -51,14 +56,19 @@ fn lacking(missing: Vec<Job>, path: &Path, made: &Made) -> BTreeMap<RunKey, Lack
 
 /// Runs without a record are not judged, nor are the studies of a case that lacks one: a study of half its
 /// runs would give a meaningless number.
-fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, Lacking>) -> Suite {
+fn judge(
+    mut plans: Plans,
+    tier: Tier,
+    made: BatchResult,
+    lacking: &BTreeMap<RunKey, MissingRun>,
+) -> Suite {
     let planned = plans.iter_mut().flat_map(|(_, plan)| plan);
     let without = planned.filter(|planned| lacking.contains_key(&planned.spec.key()));
     without.for_each(|planned| planned.gates.clear());
     let mut suite = suite::judge(plans, tier, made);
     for results in &mut suite.cases {
         let name = results.case.name();
-        let of_case: Vec<&Lacking> =
+        let of_case: Vec<&MissingRun> =
             lacking.values().filter(|(job, _)| job.case.name() == name).collect();
         if of_case.is_empty() {
             continue;
@@ -76,7 +86,7 @@ fn judge(mut plans: Plans, tier: Tier, made: Made, lacking: &BTreeMap<RunKey, La
     suite
 }
 
-fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, Lacking>) -> Told {
+fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, MissingRun>) -> Told {
     let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
     let names: Vec<&str> =
         plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();
@@ -98,16 +108,16 @@ fn word(why: &Pending) -> (&'static str, &str) {
 }
 
 /// Numbers of runs by state, as `3 missing, 1 running`.
-fn counts(lacking: &[&Lacking]) -> String {
+fn counts(lacking: &[&MissingRun]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     lacking.iter().for_each(|(_, why)| *counts.entry(word(why).0).or_default() += 1);
     counts.iter().map(|(word, count)| format!("{count} {word}")).collect::<Vec<_>>().join(", ")
 }
 
 /// A line for each run, failed runs with their reasons last, then the number of each kind.
-fn list(mut lacking: Vec<&Lacking>) -> String {
+fn list(mut lacking: Vec<&MissingRun>) -> String {
     lacking.sort_by(|(_, a), (_, b)| a.cmp(b));
-    let line = |(job, why): &&Lacking| {
+    let line = |(job, why): &&MissingRun| {
         let (spec, set) = (&job.planned.spec, case::changed(job.case, &job.planned.spec).join(" "));
         let (word, reason) = word(why);
         let words = format!("{word} {} {} {} {set} {reason}", spec.key(), spec.case, spec.variant);

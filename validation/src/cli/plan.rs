@@ -13,17 +13,17 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{self, Case, Planned, Tier},
-    make::{Job, Made, Making, size, time},
+    make::{BatchOptions, BatchResult, Job, size, time},
     plan,
     size::{self, Size},
     store::Store,
 };
 use touchstone_report::{counted, seconds, sig};
 
-use super::{Exit, Failure, Outcome, World, arguments, output, tell, trouble};
+use super::{Exit, Failure, Outcome, Session, arguments, output, tell, trouble};
 
-pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
-    let cases = world.choose(&arguments.cases)?;
+pub fn plan(arguments: &arguments::Plan, session: &Session) -> Result<(), Failure> {
+    let cases = session.choose(&arguments.cases)?;
     let jobs = if arguments.set.is_empty() && arguments.variant.is_empty() {
         let of_case = |case| {
             plan::of_case(case, arguments.tier)
@@ -37,14 +37,14 @@ pub fn plan(arguments: &arguments::Plan, world: &World) -> Result<(), Failure> {
                 "--set and --variant ask for a sweep over the settings of one case; name one case",
             ));
         };
-        sweep(case, &arguments.variant, &arguments.set, world)?
+        sweep(case, &arguments.variant, &arguments.set, session)?
     };
     if arguments.estimates.is_some() || arguments.tier == Tier::Deep {
-        let making = world.making(Tier::Quick);
+        let making = session.making(Tier::Quick);
         let of = |job: &Job| if making.is_interrupted() { None } else { size(job, true) };
         let mut sizes: Vec<Option<Size>> = Vec::new();
         jobs.par_iter().map(of).collect_into_vec(&mut sizes);
-        world.go_on("no plan is printed")?;
+        session.go_on("no plan is printed")?;
         if let Some(path) = &arguments.estimates {
             files::write_atomically(path, table(&jobs, &sizes).to_csv().as_bytes())?;
         }
@@ -62,7 +62,7 @@ fn sweep(
     case: &'static dyn Case,
     variants: &[String],
     set: &[String],
-    world: &World,
+    session: &Session,
 ) -> Result<Vec<Job>, Failure> {
     let default = [case.recommended().variant.to_string()];
     let variants = if variants.is_empty() { &default } else { variants };
@@ -89,7 +89,7 @@ fn sweep(
     let mut jobs = Vec::new();
     for variant in variants {
         for set in &combinations {
-            world.go_on("no plan is printed")?;
+            session.go_on("no plan is printed")?;
             jobs.push(Job { case, planned: Planned::new(case::spec(case, variant, set)?) });
         }
     }
@@ -126,23 +126,23 @@ fn sum(jobs: &[Job], sizes: &[Option<Size>]) -> String {
 }
 
 /// Makes the runs of a plan, one record each.
-pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, world: &World) -> Outcome {
-    let (planned, refused) = planned(file, arguments, world)?;
+pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, session: &Session) -> Outcome {
+    let (planned, refused) = planned(file, arguments, session)?;
     tell(&refused);
     if planned.is_empty() {
         return Err(Failure::usage(format!("{} describes no run", file.display())));
     }
     let lines = planned.len() + refused.len();
     let job = |planned: Planned| -> Result<Job, Failure> {
-        Ok(Job { case: touchstone_cases::find_in(world.cases, &planned.spec.case)?, planned })
+        Ok(Job { case: touchstone_cases::find_in(session.cases, &planned.spec.case)?, planned })
     };
     let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
-    world.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
+    session.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
     let store = Store::open(store)?;
     let allow_long = arguments.allow_long;
     // Seconds are not compared here.
-    let making = Making { store: Some(&store), allow_long, ..world.making(Tier::Quick) };
-    let made = world.make(&jobs, making, arguments.threads, None)?;
+    let making = BatchOptions { store: Some(&store), allow_long, ..session.making(Tier::Quick) };
+    let made = session.make(&jobs, making, arguments.threads, None)?;
     // Records that the store could not keep are printed.
     for record in made.not_kept.iter().filter_map(|(key, _)| made.records.get(key)) {
         output::print_whole(&record.to_json().map_err(Failure::bug)?)?;
@@ -159,7 +159,7 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, world: &World
 }
 
 /// How runs ended: in words, and the exit code of all lines.
-fn ended(made: &Made, is_a_line_refused: bool) -> (String, Exit) {
+fn ended(made: &BatchResult, is_a_line_refused: bool) -> (String, Exit) {
     let count =
         |of: fn(&Status) -> bool| made.records.values().filter(|record| of(&record.status)).count();
     let completed = count(|status| *status == Status::Completed);
@@ -180,7 +180,7 @@ fn ended(made: &Made, is_a_line_refused: bool) -> (String, Exit) {
 fn planned(
     file: &Path,
     arguments: &arguments::Run,
-    world: &World,
+    session: &Session,
 ) -> Result<(Vec<Planned>, Vec<String>), Failure> {
     let text = read(file)
         .map_err(|reason| Failure::usage(format!("cannot read {}: {reason}", file.display())))?;
@@ -201,8 +201,8 @@ fn planned(
     }
     let (mut planned, mut refused) = (Vec::new(), Vec::new());
     for (number, line) in lines {
-        world.go_on("no run was made")?;
-        match spec(line, world) {
+        session.go_on("no run was made")?;
+        match spec(line, session) {
             Ok(spec) => planned.push(Planned::new(spec)),
             Err(why) => refused.push(format!("line {} of {}: {why}", number + 1, file.display())),
         }
@@ -232,13 +232,13 @@ fn read(file: &Path) -> io::Result<String> {
 }
 
 /// The run of a line, or the fault of the line.
-fn spec(line: &str, world: &World) -> Result<RunSpec, String> {
+fn spec(line: &str, session: &Session) -> Result<RunSpec, String> {
     let spec = serde_json::from_str::<RunSpec>(line).map_err(|error| {
         let words = error.to_string();
         let (what, column) = words.split_once(" at line 1 column ").unwrap_or((&words, "1"));
         format!("{what} (column {column})")
     })?;
     let case =
-        touchstone_cases::find_in(world.cases, &spec.case).map_err(|error| error.to_string())?;
+        touchstone_cases::find_in(session.cases, &spec.case).map_err(|error| error.to_string())?;
     case::resolved(case, spec).map_err(|error| error.to_string())
 }

@@ -15,14 +15,14 @@ use touchstone_base::{
 use touchstone_cases::{page, peers};
 use touchstone_harness::{
     case::{Case, Tier},
-    make::Made,
+    make::BatchResult,
     store::Store,
     suite::{Plans, Suite},
 };
 use touchstone_report::{Page, check_page};
 
 use super::{
-    Exit, Failure, Outcome, World, arguments,
+    Exit, Failure, Outcome, Session, arguments,
     judged::{self, VERDICTS},
     output,
     partial::{of_made, partial},
@@ -37,16 +37,16 @@ const PAGE: &str = "index.html";
 /// More than this is no page \[bytes\].
 const MOST_BYTES: u64 = 1 << 28;
 
-pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
+pub fn report(arguments: &arguments::Report, session: &Session) -> Outcome {
     let start = Instant::now();
     let (tier, any_build) = (arguments.tier, arguments.making.any_build);
     let reports = || arguments.out.as_deref().unwrap_or(Path::new(REPORTS));
     let (folder, suite, listed, lacking, made_from);
     match &arguments.store {
         Some(store) => {
-            let (plans, stored) = verify::stored(world.cases, tier, store, any_build, world)?;
+            let (plans, stored) = verify::stored(session.cases, tier, store, any_build, session)?;
             let judges = arguments.partial || arguments.junit.is_some();
-            let sweep = || sweep::of(&plans, &stored, tier, store, world);
+            let sweep = || sweep::of(&plans, &stored, tier, store, session);
             if let Some(cases) = (!judges).then(sweep).flatten() {
                 return report_sweep(&cases, store, arguments);
             }
@@ -63,11 +63,11 @@ pub fn report(arguments: &arguments::Report, world: &World) -> Outcome {
         None => {
             (folder, made_from) = place(reports(), None, arguments)?;
             let store = Store::open(&folder.path().join(RECORDS))?;
-            let plans = verify::plans(world.cases, tier, world)?;
+            let plans = verify::plans(session.cases, tier, session)?;
             let last = Mutex::new(None);
             let early = |made| early(plans.clone(), tier, &store, made, &folder, &last);
             let (making, early) = (arguments.making, Some(&early as _));
-            suite = verify::run(plans.clone(), tier, &store, making, early, world)?;
+            suite = verify::run(plans.clone(), tier, &store, making, early, session)?;
             (listed, lacking) = (String::new(), None);
         }
     }
@@ -175,7 +175,7 @@ fn early(
     plans: Plans,
     tier: Tier,
     store: &Store,
-    mut made: Made,
+    mut made: BatchResult,
     folder: &OutputFolder,
     last: &Mutex<Option<(Instant, Duration)>>,
 ) -> Option<String> {

@@ -28,7 +28,7 @@ use touchstone_harness::{
 };
 
 use super::{
-    Exit, Failure, Outcome, World, arguments,
+    Exit, Failure, Outcome, Session, arguments,
     checkpoint::{self, Asked, CHECKPOINT},
     interrupt::Hold,
     judged, on_threads, output, profile,
@@ -36,22 +36,22 @@ use super::{
     summary::outcome,
 };
 
-pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
+pub fn run(arguments: &arguments::Run, session: &Session) -> Outcome {
     if let (Some(file), Some(store)) = (&arguments.specs, &arguments.store) {
-        return super::plan::make(file, store, arguments, world);
+        return super::plan::make(file, store, arguments, session);
     }
     if let Some(path) = &arguments.resume {
-        let (asked, earlier) = checkpoint::read(path, world.sources)?;
-        let case = touchstone_cases::find_in(world.cases, &asked.spec.case)?;
-        world.check_references(&[case])?;
+        let (asked, earlier) = checkpoint::read(path, session.sources)?;
+        let case = touchstone_cases::find_in(session.cases, &asked.spec.case)?;
+        session.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
         let asked = Asked { every: arguments.checkpoint_every.or(asked.every), ..asked };
         output::GOES_ON.store(true, Ordering::Relaxed);
-        return carry_out(case, asked, earlier, Some(folder), arguments, world);
+        return carry_out(case, asked, earlier, Some(folder), arguments, session);
     }
     let case =
-        touchstone_cases::find_in(world.cases, arguments.case.as_deref().unwrap_or_default())?;
-    world.check_references(&[case])?;
+        touchstone_cases::find_in(session.cases, arguments.case.as_deref().unwrap_or_default())?;
+    session.check_references(&[case])?;
     let variant = arguments.variant.as_deref().unwrap_or(case.recommended().variant);
     let rows = arguments.rows.iter().map(|rows| format!("rows={rows}"));
     let set: Vec<String> = arguments.set.iter().cloned().chain(rows).collect();
@@ -64,10 +64,10 @@ pub fn run(arguments: &arguments::Run, world: &World) -> Outcome {
         ));
     }
     let folder = Folder::of(arguments, case.name(), variant)?;
-    let sources = (world.sources)(case.name());
+    let sources = (session.sources)(case.name());
     let &arguments::Run { vtk, allow_long, checkpoint_every: every, .. } = arguments;
     let asked = Asked { spec, sources, every, vtk, allow_long };
-    carry_out(case, asked, Vec::new(), folder, arguments, world)
+    carry_out(case, asked, Vec::new(), folder, arguments, session)
 }
 
 /// Runs, writes and judges; may continue from the simulations of a checkpoint.
@@ -77,12 +77,12 @@ fn carry_out(
     earlier: Vec<Vec<u8>>,
     folder: Option<Folder>,
     arguments: &arguments::Run,
-    world: &World,
+    session: &Session,
 ) -> Outcome {
     let good = folder.as_ref().and_then(Folder::checkpointed);
     let lost = Lost { count: AtomicUsize::new(0), good: Mutex::new(good) };
     let computed = on_threads(arguments.threads, || {
-        compute(case, &asked, earlier, arguments, (folder.as_ref(), &lost), world)
+        compute(case, &asked, earlier, arguments, (folder.as_ref(), &lost), session)
     });
     let (record, last) = match computed {
         Ok(made) => made,
@@ -191,7 +191,7 @@ fn compute(
     earlier: Vec<Vec<u8>>,
     arguments: &arguments::Run,
     (folder, lost): (Option<&Folder>, &Lost),
-    world: &World,
+    session: &Session,
 ) -> Result<(Record, Option<Profile>), Failure> {
     let _hold = asked.every.map(|_| Hold::new());
     let bar = Bar::new();
@@ -222,7 +222,7 @@ fn compute(
         estimate: Some(&tell),
         at_the_end: folder.map(|_| &last),
         progress: Some(&show),
-        interrupt: Some(world.interrupt),
+        interrupt: Some(session.interrupt),
         ..Context::default()
     };
     let record = case.run(&asked.spec, &context);

@@ -11,7 +11,7 @@ use touchstone_harness::{
 
 use touchstone_cases::stiffness::Row;
 
-use super::{Exit, Failure, Outcome, World, arguments, output, trouble};
+use super::{Exit, Failure, Outcome, Session, arguments, output, trouble};
 
 /// A declared limit and the case that it is of.
 struct Declared {
@@ -19,9 +19,9 @@ struct Declared {
     limit: StepLimit,
 }
 
-pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
-    let cases = world.choose(&arguments.cases)?;
-    world.check_references(&cases)?;
+pub fn stability(arguments: &arguments::Stability, session: &Session) -> Outcome {
+    let cases = session.choose(&arguments.cases)?;
+    session.check_references(&cases)?;
     if arguments.theory {
         return theory(&cases, arguments.json).map(|()| Exit::Pass);
     }
@@ -41,7 +41,7 @@ pub fn stability(arguments: &arguments::Stability, world: &World) -> Outcome {
         planned: Planned::new(limit.spec.clone()),
     };
     let jobs: Vec<Job> = declared.iter().map(job).collect();
-    let mut made = world.make(&jobs, world.making(arguments.tier), arguments.threads, None)?;
+    let mut made = session.make(&jobs, session.making(arguments.tier), arguments.threads, None)?;
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined; the same command begins again"));
     }

@@ -11,7 +11,7 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{Case, Tier},
-    make::Stored,
+    make::StoredRuns,
     plan, section,
     store::Store,
     studies::sweep,
@@ -19,16 +19,16 @@ use touchstone_harness::{
 };
 use touchstone_report::{Block, Page, Section, Table, counted};
 
-use super::{Failure, World, output, tell};
+use super::{Failure, Session, output, tell};
 
 /// The runs of a store that holds some that no tier plans, and not all runs of any case of this tier; none of
 /// another store, whose runs are judged.
 pub fn of(
     plans: &Plans,
-    stored: &Stored,
+    stored: &StoredRuns,
     tier: Tier,
     path: &Path,
-    world: &World,
+    session: &Session,
 ) -> Option<Vec<(&'static dyn Case, Vec<Record>)>> {
     let lacks = |case: &dyn Case| stored.missing.iter().any(|job| job.case.name() == case.name());
     if !plans.iter().all(|(case, _)| lacks(*case)) {
@@ -45,7 +45,7 @@ pub fn of(
         (*case, of.cloned().collect::<Vec<Record>>())
     };
     let cases: Vec<_> =
-        world.cases.iter().map(of_case).filter(|(_, records)| !records.is_empty()).collect();
+        session.cases.iter().map(of_case).filter(|(_, records)| !records.is_empty()).collect();
     let is_other = |(case, records): &(&'static dyn Case, Vec<Record>)| {
         let planned = planned(*case);
         records.iter().any(|record| !planned.contains(&record.run.key()))

@@ -9,7 +9,7 @@ use touchstone_harness::{
 };
 use touchstone_report::sig;
 
-use super::{Exit, Failure, Outcome, World, arguments, on_threads, output};
+use super::{Exit, Failure, Outcome, Session, arguments, on_threads, output};
 
 /// A relation, the largest difference and where it is.
 pub fn row(case: &dyn Case, spec: &RunSpec, by: Relation, found: &Difference) -> Vec<String> {
@@ -27,9 +27,9 @@ pub fn show(rows: Vec<Vec<String>>) -> Result<(), Failure> {
     output::print(&(output::table(&heads, rows) + units))
 }
 
-pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
+pub fn symmetry(arguments: &arguments::Symmetry, session: &Session) -> Outcome {
     let mut specs = Vec::new();
-    for case in world.choose(&arguments.cases)? {
+    for case in session.choose(&arguments.cases)? {
         for variant in case.variants() {
             specs.push((case, case::spec(case, variant.name, &arguments.set)?));
         }
@@ -41,7 +41,7 @@ pub fn symmetry(arguments: &arguments::Symmetry, world: &World) -> Outcome {
     }
     let mut all = Vec::new();
     let battery = |(case, spec): &(&dyn Case, _)| {
-        world.go_on("nothing is told").map(|()| symmetry::battery(*case, spec))
+        session.go_on("nothing is told").map(|()| symmetry::battery(*case, spec))
     };
     on_threads(None, || {
         specs.par_iter().map(battery).collect_into_vec(&mut all);

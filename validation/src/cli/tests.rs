@@ -20,7 +20,7 @@ use touchstone_cases::page;
 use touchstone_harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
-    make::{self, Made, Making},
+    make::{self, BatchOptions, BatchResult},
     runs::{Judged, Runs},
     section::Section,
     store::Store,
@@ -30,7 +30,7 @@ use touchstone_harness::{
 use touchstone_report::{Page, check_page};
 
 use super::{
-    Exit, World, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,
+    Exit, Session, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,
     judged::Verdicts, partial,
 };
 
@@ -155,8 +155,8 @@ fn run_on(
     let line = line.replace("OUT", out.to_str().expect("a plain path"));
     let words = std::iter::once("touchstone").chain(line.split(' '));
     let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-    let world = World { cases, sources, references: |_| vec![], interrupt };
-    conclude(|| dispatch(&arguments.command, &world))
+    let session = Session { cases, sources, references: |_| vec![], interrupt };
+    conclude(|| dispatch(&arguments.command, &session))
 }
 
 fn exit_with(interrupt: &'static AtomicBool, line: &str, out: &Path) -> Exit {
@@ -280,17 +280,17 @@ fn the_page_is_there_when_one_case_is_complete_and_ends_as_it_would_have_without
 fn a_run_that_fails_keeps_no_case_from_being_shown() {
     static CASES: [&dyn Case; 3] = [&DIVERGING, &PANICKING, &MAIN];
     let folder = tempfile::tempdir().expect("a folder");
-    let world = World { cases: &CASES, sources, references: |_| vec![], interrupt: &NEVER };
+    let session = Session { cases: &CASES, sources, references: |_| vec![], interrupt: &NEVER };
     let (plans, store) = (suite::plans(&CASES, Tier::Quick), Store::open(folder.path()));
     let (store, told) = (store.expect("a store"), Mutex::new(Vec::new()));
-    let early = |made: Made| {
+    let early = |made: BatchResult| {
         let (_, words) = partial::of_made(plans.clone(), Tier::Quick, folder.path(), made);
         told.lock().expect("sound").push(words);
         None
     };
-    let making = Making { store: Some(&store), ..world.making(Tier::Quick) };
+    let making = BatchOptions { store: Some(&store), ..session.making(Tier::Quick) };
     let jobs = make::jobs(plans.clone());
-    let made = world.make(&jobs, making, Some(1), Some(&early)).expect("made");
+    let made = session.make(&jobs, making, Some(1), Some(&early)).expect("made");
     assert_eq!((made.records.len(), made.failed.len()), (3, 1));
     let expected = [
         ("1 of 3 cases complete; 3 runs without a record: 3 missing", "diverging, panicking"),
@@ -308,8 +308,8 @@ fn a_page_that_may_not_open_is_told_and_kept() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().to_str().expect("a plain path");
     let arguments = Arguments::try_parse_from(["touchstone", "report", "--out", out]);
-    let world = World { cases: &TWICE, sources, references: |_| vec![], interrupt: &NEVER };
-    assert_eq!(conclude(|| dispatch(&arguments.expect("sound").command, &world)), Exit::Bug);
+    let session = Session { cases: &TWICE, sources, references: |_| vec![], interrupt: &NEVER };
+    assert_eq!(conclude(|| dispatch(&arguments.expect("sound").command, &session)), Exit::Bug);
     let html = std::fs::read_to_string(folder.path().join("index.html")).expect("a page");
     assert!(check_page(&html).is_err_and(|reason| reason.contains("used twice")));
 }
@@ -339,8 +339,8 @@ fn a_changed_table_fails_every_case_that_uses_it_by_name() {
     let fails = |line: String| {
         let words = ["touchstone"].into_iter().chain(line.split(' '));
         let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-        let world = World { cases: &SOUND, sources, references: changed, interrupt: &NEVER };
-        dispatch(&arguments.command, &world).err().map(|failure| {
+        let session = Session { cases: &SOUND, sources, references: changed, interrupt: &NEVER };
+        dispatch(&arguments.command, &session).err().map(|failure| {
             assert_eq!(failure.exit, Exit::GateFailed);
             failure.reason.to_string()
         })
@@ -376,8 +376,8 @@ fn records_are_reused_judged_rendered_and_compared() {
     let on = |cases: &'static [&'static dyn Case], line: &str| {
         let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
         let arguments = Arguments::try_parse_from(line.split(' ')).expect("sound");
-        let world = World { references: |_| vec![], cases, sources, interrupt: &NEVER };
-        conclude(|| dispatch(&arguments.command, &world))
+        let session = Session { references: |_| vec![], cases, sources, interrupt: &NEVER };
+        conclude(|| dispatch(&arguments.command, &session))
     };
     static GOOD: [&dyn Case; 1] = [&RIGHT];
     let good = |line: &str| on(&GOOD, line);
@@ -515,8 +515,8 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
         let line = line.replace("OUT", folder.path().to_str().expect("a plain path"));
         let words = std::iter::once("touchstone").chain(line.split(' '));
         let arguments = Arguments::try_parse_from(words).expect("a sound command line");
-        let world = World { cases: &GOOD, sources, references: |_| vec![], interrupt: &NEVER };
-        conclude(|| dispatch(&arguments.command, &world))
+        let session = Session { cases: &GOOD, sources, references: |_| vec![], interrupt: &NEVER };
+        conclude(|| dispatch(&arguments.command, &session))
     };
     let other: fn(&str) -> String = |_| "other".into();
     assert_eq!(build(sources, "verify --store OUT"), Exit::Pass);
@@ -621,7 +621,7 @@ fn tables_are_aligned() {
 
 /// The suite of some cases, made and judged.
 fn judged(cases: &[&'static dyn Case]) -> Suite {
-    let making = Making::new(Tier::Quick, &sources);
+    let making = BatchOptions::new(Tier::Quick, &sources);
     suite::run(cases, &making)
 }
 

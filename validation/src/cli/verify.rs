@@ -6,7 +6,7 @@ use touchstone_base::gate::Verdict;
 
 use touchstone_harness::{
     case::{Case, Tier},
-    make::{self, Making, Stored},
+    make::{self, BatchOptions, StoredRuns},
     store::Store,
     suite::{self, JudgedOf, Plans, Suite},
 };
@@ -15,33 +15,33 @@ use touchstone_cases::peers;
 use touchstone_report::counted;
 
 use super::{
-    Early, Exit, Failure, Outcome, World, arguments, judged, output, partial::partial,
+    Early, Exit, Failure, Outcome, Session, arguments, judged, output, partial::partial,
     summary::summary, tell_trouble, trouble,
 };
 
-pub fn verify(arguments: &arguments::Verify, world: &World) -> Outcome {
+pub fn verify(arguments: &arguments::Verify, session: &Session) -> Outcome {
     let arguments::Verify { of, store, no_runs, making } = arguments;
-    show(of, world, |cases| {
+    show(of, session, |cases| {
         if *no_runs {
-            return of_store(cases, of.tier, store, making.any_build, world);
+            return of_store(cases, of.tier, store, making.any_build, session);
         }
-        let plans = plans(cases, of.tier, world)?;
-        run(plans, of.tier, &Store::open(store)?, *making, None, world)
+        let plans = plans(cases, of.tier, session)?;
+        run(plans, of.tier, &Store::open(store)?, *making, None, session)
     })
 }
 
-pub fn judge(arguments: &arguments::Judge, world: &World) -> Outcome {
+pub fn judge(arguments: &arguments::Judge, session: &Session) -> Outcome {
     let arguments::Judge { of, store, any_build } = arguments;
-    show(of, world, |cases| of_store(cases, of.tier, store, *any_build, world))
+    show(of, session, |cases| of_store(cases, of.tier, store, *any_build, session))
 }
 
 /// The results on standard output; how they came about on standard error.
 fn show(
     of: &arguments::Judged,
-    world: &World,
+    session: &Session,
     judged: impl FnOnce(&[&'static dyn Case]) -> Result<Suite, Failure>,
 ) -> Outcome {
-    let cases = world.choose(&of.cases)?;
+    let cases = session.choose(&of.cases)?;
     let start = Instant::now();
     let suite = judged(&cases)?;
     let exported = judged::write_junit(&suite, of.junit.as_deref());
@@ -96,8 +96,8 @@ pub fn exit(suite: &Suite) -> Exit {
 }
 
 /// The plans of cases whose references are sound.
-pub fn plans(cases: &[&'static dyn Case], tier: Tier, world: &World) -> Result<Plans, Failure> {
-    world.check_references(cases)?;
+pub fn plans(cases: &[&'static dyn Case], tier: Tier, session: &Session) -> Result<Plans, Failure> {
+    session.check_references(cases)?;
     Ok(suite::plans(cases, tier))
 }
 
@@ -106,14 +106,14 @@ pub fn run(
     plans: Plans,
     tier: Tier,
     store: &Store,
-    asked: arguments::Making,
+    asked: arguments::MakeArguments,
     early: Option<&Early>,
-    world: &World,
+    session: &Session,
 ) -> Result<Suite, Failure> {
     let jobs = make::jobs(plans.clone());
-    let arguments::Making { any_build: reuse_other, fresh, threads } = asked;
-    let making = Making { store: Some(store), reuse_other, fresh, ..world.making(tier) };
-    let mut made = world.make(&jobs, making, threads, early)?;
+    let arguments::MakeArguments { any_build: reuse_other, fresh, threads } = asked;
+    let making = BatchOptions { store: Some(store), reuse_other, fresh, ..session.making(tier) };
+    let mut made = session.make(&jobs, making, threads, early)?;
     if made.interrupted {
         let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
@@ -135,9 +135,9 @@ pub fn of_store(
     tier: Tier,
     path: &Path,
     any_build: bool,
-    world: &World,
+    session: &Session,
 ) -> Result<Suite, Failure> {
-    let (mut plans, stored) = stored(cases, tier, path, any_build, world)?;
+    let (mut plans, stored) = stored(cases, tier, path, any_build, session)?;
     if has_submissions_alone(&stored) {
         plans.iter_mut().for_each(|(_, plan)| plan.clear());
         return Ok(partial(plans, tier, path, stored).0);
@@ -146,8 +146,8 @@ pub fn of_store(
 }
 
 /// Whether a store holds only runs of other codes; missing runs are no failure then.
-pub fn has_submissions_alone(stored: &Stored) -> bool {
-    let Stored { made, other, .. } = stored;
+pub fn has_submissions_alone(stored: &StoredRuns) -> bool {
+    let StoredRuns { made, other, .. } = stored;
     let is_alone = made.records.is_empty() && made.unsound.is_empty() && *other == 0;
     if is_alone && !made.submissions.is_empty() {
         output::say("note: the store has runs of other codes alone; only these are judged");
@@ -156,7 +156,11 @@ pub fn has_submissions_alone(stored: &Stored) -> bool {
 }
 
 /// Judges the stored runs of plans; gates of missing runs fail.
-pub fn of_stored(plans: Plans, tier: Tier, Stored { made, missing, other }: Stored) -> Suite {
+pub fn of_stored(
+    plans: Plans,
+    tier: Tier,
+    StoredRuns { made, missing, other }: StoredRuns,
+) -> Suite {
     if !missing.is_empty() {
         let (all, missing) = (made.reused + missing.len(), missing.len() - other);
         output::say(&format!(
@@ -174,13 +178,13 @@ pub fn stored(
     tier: Tier,
     path: &Path,
     any_build: bool,
-    world: &World,
-) -> Result<(Plans, Stored), Failure> {
-    let plans = plans(cases, tier, world)?;
+    session: &Session,
+) -> Result<(Plans, StoredRuns), Failure> {
+    let plans = plans(cases, tier, session)?;
     if !path.is_dir() {
         return Err(Failure::usage(format!("the store {} does not exist", path.display())));
     }
-    let mut stored = world.stored(&plans, &Store::to_read(path), any_build);
+    let mut stored = session.stored(&plans, &Store::to_read(path), any_build);
     if stored.made.interrupted {
         let words = "nothing is judged; the same command reads the store from its beginning";
         return Err(Failure::interrupted(words));

@@ -31,7 +31,7 @@ fn torus(
 mod tests {
     use touchstone_harness::{
         case::{Case, Tier},
-        make::Making,
+        make::BatchOptions,
         runs::Judged,
         suite,
     };
@@ -39,7 +39,7 @@ mod tests {
     /// The judgements of the quick tier of some cases.
     pub fn judged(cases: &[&'static dyn Case]) -> Vec<Judged> {
         let sources = |_: &str| String::new();
-        let making = Making::new(Tier::Quick, &sources);
+        let making = BatchOptions::new(Tier::Quick, &sources);
         suite::run(cases, &making).judged().map(|of| of.judged.clone()).collect()
     }
 }

@@ -152,7 +152,7 @@ struct Resting {
 impl Resting {
     /// Setup from settings and theory.
     fn new(method: &Method, s: &BoxSettings) -> Result<Self, RunError> {
-        if s.delta > 0.0 && !method.properties.uses.contains(&Knob::Diffusion) {
+        if s.delta > 0.0 && !method.properties.uses.contains(&MediumSetting::Diffusion) {
             let variant = "without density diffusion".into();
             return Err(RunError::Unused { key: "delta".into(), variant });
         }

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use touchstone_base::text::number;
 use touchstone_harness::{
     facts::Curve,
-    foreign::{self, Frame, Placed},
+    foreign::{self, ForeignParticle, Frame},
 };
 
 use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, Rows, table};
@@ -71,7 +71,7 @@ pub fn frames(
         let row = |k: usize| curve.columns.iter().map(|(name, _)| rows.column(name)[k]).collect();
         let at: Vec<Vec<f64>> = (start..k).map(row).collect();
         let placed = moving.iter().zip((curve.place)(settings, &at, &from));
-        let placed = placed.map(|(id, [position, velocity])| Placed {
+        let placed = placed.map(|(id, [position, velocity])| ForeignParticle {
             id: *id,
             position,
             velocity,

@@ -23,7 +23,7 @@ use touchstone_base::{
     text::{few, number, short},
 };
 use touchstone_harness::{
-    foreign::{Frame, Own, Placed},
+    foreign::{ForeignParticle, Frame, OwnParticle},
     outline::role,
 };
 use touchstone_solver::Role;
@@ -89,7 +89,7 @@ pub struct Results {
     /// Frames, ascending in time.
     pub frames: Vec<Frame>,
     /// The particles of the first frame: of fluid where files have no role, and NaN where they have no mass.
-    pub own: Vec<Own>,
+    pub own: Vec<OwnParticle>,
     /// The file of each frame, and the line of its first row where it has lines.
     pub places: Vec<(String, u64)>,
     /// The columns that were handed in.
@@ -349,14 +349,14 @@ impl Rows {
     }
 
     /// Time and particle of a row, with its role if stated; or a flaw.
-    fn row(&self, k: usize) -> Result<(f64, Own, Option<Role>), Flaw> {
+    fn row(&self, k: usize) -> Result<(f64, OwnParticle, Option<Role>), Flaw> {
         let finite = |name| self.finite(name, k).map(|value| value.unwrap_or(f64::NAN));
         let is_positive = |value: f64| value.is_finite() && value > 0.0;
         let positive = |name| self.checked(name, k, is_positive, "a finite number above 0");
         let (id, first) = (finite("id")?, self.first_id);
         let is_id = |id: f64| (first..=f64::from(u32::MAX)).contains(&id) && id.fract() == 0.0;
         self.checked("id", k, is_id, &format!("a whole number, not below {first}"))?;
-        let start = Placed {
+        let start = ForeignParticle {
             id: (id - first) as u32,
             position: Vector2::new(finite("x")?, finite("y")?),
             velocity: Vector2::new(finite("u")?, finite("v")?),
@@ -365,7 +365,7 @@ impl Rows {
         let (time, mass) = (finite("t")?, positive("mass")?.unwrap_or(f64::NAN));
         let number = self.checked("role", k, |value| role(value).is_some(), "0, 1 or 2")?;
         let stated = number.and_then(role);
-        Ok((time, Own { role: stated.unwrap_or(Role::Fluid), mass, start }, stated))
+        Ok((time, OwnParticle { role: stated.unwrap_or(Role::Fluid), mass, start }, stated))
     }
 }
 

@@ -16,7 +16,7 @@ use touchstone_solver::{
     Domain, Numbers, Particle, PlaneWall, Role, Scene, SceneError, Stepper, scene::Setting,
 };
 
-pub use crate::medium::{Knob, Medium};
+pub use crate::medium::{Medium, MediumSetting};
 pub use mutate::mutate;
 pub(crate) use mutate::see;
 pub use properties::{Properties, Standard};

@@ -10,7 +10,7 @@ use touchstone_solver::{
 use super::terms::{Boundary, FirstRow, FromMedium};
 use crate::{
     limits::Limits,
-    medium::{Knob, Medium},
+    medium::{Medium, MediumSetting},
 };
 
 /// A scheme whose terms and walls can be constructed from a medium.
@@ -46,7 +46,7 @@ pub struct Properties {
     /// The largest stable step in a medium at rest \[s\], for a method whose waves do not follow from terms.
     pub limit: Option<fn(&Medium) -> f64>,
     /// The settings that only its terms and walls read.
-    pub uses: Vec<Knob>,
+    pub uses: Vec<MediumSetting>,
     /// Its terms as equations.
     pub terms: Vec<&'static str>,
     /// W from h and r².

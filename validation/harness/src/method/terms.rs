@@ -9,7 +9,7 @@ use touchstone_solver::{
     terms::{Axes, Hydrostatic, InTension},
 };
 
-use crate::medium::{Knob, Medium};
+use crate::medium::{Medium, MediumSetting};
 
 /// A term that can be constructed from a medium.
 pub trait FromMedium: Sized {
@@ -17,7 +17,7 @@ pub trait FromMedium: Sized {
     fn new(medium: &Medium) -> Self;
     /// Adds the settings that this term reads and some other terms do not, including the settings of the
     /// terms inside it.
-    fn uses(_: &mut Vec<Knob>) {}
+    fn uses(_: &mut Vec<MediumSetting>) {}
     /// Adds the term as an equation, and the terms inside it.
     fn state(_: &mut Vec<&'static str>);
 }
@@ -31,8 +31,8 @@ macro_rules! from_medium {
                 let new: fn(&Medium) -> Self = $new;
                 new(medium)
             }
-            fn uses(knobs: &mut Vec<Knob>) {
-                knobs.extend_from_slice(&[$(Knob::$knob),*]);
+            fn uses(knobs: &mut Vec<MediumSetting>) {
+                knobs.extend_from_slice(&[$(MediumSetting::$knob),*]);
                 $($($inner::uses(knobs);)+)?
             }
             fn state(terms: &mut Vec<&'static str>) {
@@ -143,7 +143,7 @@ pub trait Boundary: Sized {
     /// Position of its boundary particles.
     const FIRST_ROW: FirstRow;
     /// The settings that only some walls read and these do.
-    const USES: &[Knob] = &[];
+    const USES: &[MediumSetting] = &[];
     /// The walls.
     fn new(medium: &Medium, mirrors: Vec<PlaneWall>) -> Self;
 }
@@ -159,7 +159,7 @@ impl Boundary for Open {
 impl Boundary for Ghosts {
     const NAME: &str = "ghosts";
     const FIRST_ROW: FirstRow = FirstRow::Nowhere;
-    const USES: &[Knob] = &[Knob::WallCurvature];
+    const USES: &[MediumSetting] = &[MediumSetting::WallCurvature];
     fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {
         Self { walls }
     }
@@ -202,7 +202,7 @@ impl Boundary for ExtrapolatingWall<Tait, NoSlip> {
 impl Boundary for ExtrapolatingWall<Tait> {
     const NAME: &str = "extrapolating-wall";
     const FIRST_ROW: FirstRow = FirstRow::Behind;
-    const USES: &[Knob] = &[Knob::WallGravity];
+    const USES: &[MediumSetting] = &[MediumSetting::WallGravity];
     fn new(m: &Medium, _: Vec<PlaneWall>) -> Self {
         Self { least_pressure: 0.0, ..Self::new(m.eos, m.wall_acceleration) }
     }

@@ -12,7 +12,8 @@ use touchstone_report::{
 };
 
 use super::{
-    Accuracy, Comparison, Comparisons, CurvePanel, Curves, Ladder, Map, cost, validation::Found,
+    Accuracy, Comparison, Comparisons, CurvePanel, Curves, Ladder, Map, cost,
+    validation::ComparisonResult,
 };
 use crate::{
     case::Case,
@@ -269,13 +270,13 @@ impl Answer<'_> {
     }
 
     /// The comparison of the error of a run with a reference that has an uncertainty.
-    fn compared(&self, spec: &RunSpec) -> Option<Found> {
+    fn compared(&self, spec: &RunSpec) -> Option<ComparisonResult> {
         let is_this = |of: &&Comparison| {
             let finest = of.levels.last().map(|level| level.run.spec.key());
             of.reference > 0.0 && of.metric == *self.metric && finest == Some(spec.key())
         };
         let compared = self.studies.of::<Comparisons>().flat_map(|of| &of.0).find(is_this);
-        compared.map(|of| Found::of(of, self.runs))
+        compared.map(|of| ComparisonResult::of(of, self.runs))
     }
 
     /// The anchor of the errors over resolutions of the case, or of the case.

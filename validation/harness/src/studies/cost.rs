@@ -16,7 +16,7 @@ use crate::{
     case::Case,
     columns::Columns,
     convergence::{Level, convergence},
-    orders::{self, Found},
+    orders::{self, FittedOrder},
     runs::{Planned, Runs},
     section::Section,
     study::{Studies, Study},
@@ -161,7 +161,7 @@ struct Row<'a> {
     of: &'a Ladder,
     points: Vec<Point>,
     levels: Vec<Level>,
-    found: Found,
+    found: FittedOrder,
 }
 
 impl Study for Accuracy {

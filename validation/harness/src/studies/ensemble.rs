@@ -82,7 +82,7 @@ pub struct Number {
 }
 
 /// An ensemble, and the records of the members that reached their end.
-struct Made<'a> {
+struct CompletedEnsemble<'a> {
     of: &'a Ensemble,
     records: Vec<&'a Record>,
 }
@@ -138,10 +138,13 @@ impl Study for Ensembles {
 }
 
 fn evaluate(case: &str, ensembles: &Ensembles, runs: &Runs) -> Section {
-    let made = |of| -> Made {
-        Made { of, records: of.members.iter().filter_map(|spec| runs.completed(spec)).collect() }
+    let made = |of| -> CompletedEnsemble {
+        CompletedEnsemble {
+            of,
+            records: of.members.iter().filter_map(|spec| runs.completed(spec)).collect(),
+        }
     };
-    let all: Vec<Made> = ensembles.of.iter().map(made).collect();
+    let all: Vec<CompletedEnsemble> = ensembles.of.iter().map(made).collect();
     let (mut followed, mut numbers) = (Vec::new(), Vec::new());
     for made in &all {
         let of = |of| (made, Followed::of(of, &made.records));
@@ -168,7 +171,7 @@ fn evaluate(case: &str, ensembles: &Ensembles, runs: &Runs) -> Section {
 }
 
 /// A distribution without the members that ended early would be biased.
-fn complete(made: &Made) -> Judged {
+fn complete(made: &CompletedEnsemble) -> Judged {
     let (id, all) = (format!("{}.members", made.of.id), made.of.members.len() as f64);
     let because =
         "A distribution without the members that ended early is one of those that did not.";
@@ -178,9 +181,9 @@ fn complete(made: &Made) -> Judged {
 }
 
 /// A number of an ensemble with its values, one a member.
-type Numbered<'a> = (&'a Made<'a>, &'a Number, Vec<f64>);
+type Numbered<'a> = (&'a CompletedEnsemble<'a>, &'a Number, Vec<f64>);
 
-fn horizons(unit: &str, all: &[(&Made, Followed)]) -> Table {
+fn horizons(unit: &str, all: &[(&CompletedEnsemble, Followed)]) -> Table {
     let caption = format!(
         "Horizons: the median over all pairs of members of the time at which they first differ by \
          more than the tolerance, with the interval of {} % of a bootstrap over the members, and the time at \
@@ -188,7 +191,7 @@ fn horizons(unit: &str, all: &[(&Made, Followed)]) -> Table {
          is a time that no run reaches.",
         sig(100.0 * CONFIDENCE, 2)
     );
-    type Row<'a> = (&'a Made<'a>, Followed<'a>);
+    type Row<'a> = (&'a CompletedEnsemble<'a>, Followed<'a>);
     let horizon = |of: fn(&Horizon) -> f64| {
         move |(_, followed): &Row| followed.horizon.as_ref().map_or(f64::NAN, of)
     };
@@ -244,7 +247,7 @@ fn distributions(all: &[Numbered]) -> Table {
         .table(caption, all)
 }
 
-fn figure(id: &str, time: &[&str; 2], all: &[(&Made, Followed)]) -> Figure {
+fn figure(id: &str, time: &[&str; 2], all: &[(&CompletedEnsemble, Followed)]) -> Figure {
     let drawn = all.iter().filter(|(made, of)| made.of.is_drawn && of.of.is_drawn);
     let drawn: Vec<_> = drawn.collect();
     let columns = drawn.iter().filter(|(made, _)| made.of.id == drawn[0].0.of.id).count();
@@ -256,7 +259,7 @@ fn figure(id: &str, time: &[&str; 2], all: &[(&Made, Followed)]) -> Figure {
     panels.fold(figure, Figure::panel).panel_size(300.0, 220.0)
 }
 
-fn panel([time, unit]: &[&str; 2], made: &Made, followed: &Followed) -> Plot {
+fn panel([time, unit]: &[&str; 2], made: &CompletedEnsemble, followed: &Followed) -> Plot {
     let title = format!("{}, {}", made.of.variant, made.of.label);
     let quantiles = quantiles(&followed.curves);
     let band = |[low, high]: [usize; 2]| {

@@ -13,7 +13,7 @@ use super::{Ladder, Level as LadderLevel, anchor};
 use crate::{
     columns::Columns,
     convergence::{Convergence, Label, Level, SLOWEST, convergence},
-    orders::Found as Order,
+    orders::FittedOrder,
     runs::{Planned, Runs},
     section::Section,
     study::Study,
@@ -90,7 +90,7 @@ pub struct Numerical {
 
 /// Result of one comparison. Missing values are NaN.
 #[derive(Clone, Debug)]
-pub struct Found {
+pub struct ComparisonResult {
     /// E = S − D, of the finest level.
     pub error: f64,
     /// Numerical uncertainty from the levels.
@@ -100,12 +100,12 @@ pub struct Found {
     /// u_D.
     pub reference: f64,
     /// If the reference is exact: the order of the magnitude of the error.
-    pub exact: Option<Order>,
+    pub exact: Option<FittedOrder>,
 }
 
 /// Verdict on a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Said {
+pub enum Conclusion {
     /// Against an exact reference: the error falls, for the interval of its order is above 0.
     Converges,
     /// Against an exact reference: the error tends to another limit than 0, or fell and then stopped falling.
@@ -122,7 +122,7 @@ pub enum Said {
     Unknown,
 }
 
-impl Said {
+impl Conclusion {
     /// All, each with its name for programs and the one under which it is counted.
     const NAMES: [(Self, &str, &str); 7] = [
         (Self::Converges, "converges", "converging to the exact solution"),
@@ -140,7 +140,7 @@ impl Said {
     }
 }
 
-impl Found {
+impl ComparisonResult {
     /// From the records of a comparison.
     pub fn of(comparison: &Comparison, runs: &Runs) -> Self {
         let value = |spec: &RunSpec| runs.value(spec, comparison.metric.clone());
@@ -167,7 +167,10 @@ impl Found {
 
     /// Whether the ladder shows an order and the uncertainty is small enough to say something of the error.
     pub fn tells(&self) -> bool {
-        !matches!(self.said(), Said::TooUncertain | Said::LadderDoesNotTell | Said::Unknown)
+        !matches!(
+            self.conclusion(),
+            Conclusion::TooUncertain | Conclusion::LadderDoesNotTell | Conclusion::Unknown
+        )
     }
 
     /// The ends of the interval of 95 % of the limit of refinement, by the ladder alone.
@@ -176,17 +179,17 @@ impl Found {
     }
 
     /// The verdict.
-    pub fn said(&self) -> Said {
+    pub fn conclusion(&self) -> Conclusion {
         let Numerical { has_order, .. } = self.numerical;
         let (error, uncertainty) = (self.error.abs(), EXPANDS * self.uncertainty());
         match &self.exact {
-            _ if !(error.is_finite() && uncertainty.is_finite()) => Said::Unknown,
-            Some(Ok(of)) if self.stops(of) => Said::Stops,
-            Some(Ok(Convergence { interval: [low, _], .. })) if *low > 0.0 => Said::Converges,
-            None if has_order && error > uncertainty => Said::ModelError,
-            None if has_order && uncertainty > TELLS => Said::TooUncertain,
-            None if has_order => Said::NotDistinguishable,
-            _ => Said::LadderDoesNotTell,
+            _ if !(error.is_finite() && uncertainty.is_finite()) => Conclusion::Unknown,
+            Some(Ok(of)) if self.stops(of) => Conclusion::Stops,
+            Some(Ok(Convergence { interval: [low, _], .. })) if *low > 0.0 => Conclusion::Converges,
+            None if has_order && error > uncertainty => Conclusion::ModelError,
+            None if has_order && uncertainty > TELLS => Conclusion::TooUncertain,
+            None if has_order => Conclusion::NotDistinguishable,
+            _ => Conclusion::LadderDoesNotTell,
         }
     }
 
@@ -203,16 +206,16 @@ impl Found {
     pub fn in_words(&self) -> String {
         let [error, uncertainty] =
             [self.error, EXPANDS * self.uncertainty()].map(|value| percent(value, 2));
-        match self.said() {
-            Said::Converges => format!("converges with order {}", self.order()),
-            Said::Stops => format!("stops at {}", percent(self.numerical.limit.abs(), 2)),
-            Said::NotDistinguishable => {
+        match self.conclusion() {
+            Conclusion::Converges => format!("converges with order {}", self.order()),
+            Conclusion::Stops => format!("stops at {}", percent(self.numerical.limit.abs(), 2)),
+            Conclusion::NotDistinguishable => {
                 "not distinguishable from the reference at this uncertainty".into()
             }
-            Said::ModelError => format!("model error {error} ± {uncertainty}"),
-            Said::TooUncertain => format!("uncertain by {uncertainty}: nothing can be said"),
-            Said::LadderDoesNotTell => "the ladder does not tell".into(),
-            Said::Unknown => "runs are missing: nothing can be said".into(),
+            Conclusion::ModelError => format!("model error {error} ± {uncertainty}"),
+            Conclusion::TooUncertain => format!("uncertain by {uncertainty}: nothing can be said"),
+            Conclusion::LadderDoesNotTell => "the ladder does not tell".into(),
+            Conclusion::Unknown => "runs are missing: nothing can be said".into(),
         }
     }
 
@@ -292,7 +295,7 @@ fn order_of_differences(differences: f64, [wide, ratio]: [f64; 2]) -> Option<f64
 
 const OF_EXACT: &str = "\
     Errors against references that are exact, by the finest level. All of such an error is numerical: \
-    V&V 20 has nothing to say of it. Order: of all levels, with its interval of 95 %. *Converges*: this \
+    V&V 20 has nothing to say of it. FittedOrder: of all levels, with its interval of 95 %. *Converges*: this \
     interval is above 0. *Stops at*: the differences of the last three levels approach another limit \
     than 0, by more than three times the distance from it, or the error fell and then stopped falling.";
 
@@ -322,7 +325,7 @@ impl Study for Comparisons {
     }
 
     fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
-        let rows: Vec<Row> = self.0.iter().map(|of| (of, Found::of(of, runs))).collect();
+        let rows: Vec<Row> = self.0.iter().map(|of| (of, ComparisonResult::of(of, runs))).collect();
         let (exact, uncertain): (Vec<Row>, Vec<Row>) =
             rows.into_iter().partition(|(_, found)| found.exact.is_some());
         let section = Section::new(&anchor(case, "uncertainty"), "Comparisons with references");
@@ -333,7 +336,7 @@ impl Study for Comparisons {
     }
 }
 
-type Row<'a> = (&'a Comparison, Found);
+type Row<'a> = (&'a Comparison, ComparisonResult);
 
 fn columns<'a>() -> Columns<'a, Row<'a>> {
     Columns::default()
@@ -368,8 +371,9 @@ fn of_uncertain(rows: &[Row]) -> Table {
 
 /// One line for the card of a case: how many comparisons ended how.
 pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
-    let said: Vec<Said> = comparisons.iter().map(|of| Found::of(of, runs).said()).collect();
-    let counted = Said::NAMES.into_iter().filter_map(|(of, _, name)| {
+    let said: Vec<Conclusion> =
+        comparisons.iter().map(|of| ComparisonResult::of(of, runs).conclusion()).collect();
+    let counted = Conclusion::NAMES.into_iter().filter_map(|(of, _, name)| {
         let count = said.iter().filter(|said| **said == of).count();
         (count > 0).then(|| format!("{count} {name}"))
     });
@@ -447,7 +451,7 @@ mod tests {
 
     #[test]
     fn verdicts_follow_from_the_error_and_all_uncertainties() {
-        let found = |error, [standard, input, reference]: [f64; 3], has_order| Found {
+        let found = |error, [standard, input, reference]: [f64; 3], has_order| ComparisonResult {
             error,
             numerical: Numerical {
                 expanded: 2.0 * standard,
@@ -462,23 +466,26 @@ mod tests {
         };
         let parts = [0.004, 0.006, 0.012];
         near(found(0.0, parts, true).uncertainty(), 0.014);
-        assert_eq!(found(-0.0279, parts, true).said(), Said::NotDistinguishable);
-        assert_eq!(found(-0.0281, parts, true).said(), Said::ModelError);
-        assert_eq!(found(0.1, [0.0501, 0.0, 0.0], true).said(), Said::TooUncertain);
-        assert_eq!(found(0.1, [0.0501, 0.0, 0.0], true).said(), Said::TooUncertain);
-        assert_eq!(found(0.09, [0.0499, 0.0, 0.0], true).said(), Said::NotDistinguishable);
-        assert_eq!(found(0.3, [0.1, 0.0, 0.0], true).said(), Said::ModelError);
+        assert_eq!(found(-0.0279, parts, true).conclusion(), Conclusion::NotDistinguishable);
+        assert_eq!(found(-0.0281, parts, true).conclusion(), Conclusion::ModelError);
+        assert_eq!(found(0.1, [0.0501, 0.0, 0.0], true).conclusion(), Conclusion::TooUncertain);
+        assert_eq!(found(0.1, [0.0501, 0.0, 0.0], true).conclusion(), Conclusion::TooUncertain);
+        assert_eq!(
+            found(0.09, [0.0499, 0.0, 0.0], true).conclusion(),
+            Conclusion::NotDistinguishable
+        );
+        assert_eq!(found(0.3, [0.1, 0.0, 0.0], true).conclusion(), Conclusion::ModelError);
         // However large the error is: without an order there is no model error.
         for error in [0.0, 0.01, 1e3] {
             let found = found(error, parts, false);
             assert_eq!(
-                (found.said(), &*found.in_words()),
-                (Said::LadderDoesNotTell, "the ladder does not tell")
+                (found.conclusion(), &*found.in_words()),
+                (Conclusion::LadderDoesNotTell, "the ladder does not tell")
             );
         }
         for missing in [f64::NAN, f64::INFINITY] {
-            assert_eq!(found(missing, [0.0; 3], true).said(), Said::Unknown);
-            assert_eq!(found(0.1, [missing, 0.0, 0.0], true).said(), Said::Unknown);
+            assert_eq!(found(missing, [0.0; 3], true).conclusion(), Conclusion::Unknown);
+            assert_eq!(found(0.1, [missing, 0.0, 0.0], true).conclusion(), Conclusion::Unknown);
         }
         let words = found(-0.0281, parts, true).in_words().replace('\u{a0}', " ");
         assert_eq!(words, "model error −2.8 % ± 2.8 %");
@@ -491,12 +498,12 @@ mod tests {
         let verdict = |error: &dyn Fn(f64) -> f64| {
             let all = [8, 10, 14, 20];
             let runs = runs(all.map(|n| (spec("best", n), error(n as f64))));
-            let found = Found::of(&comparison("best", &all), &runs);
-            (found.said(), found.in_words().replace('\u{a0}', " "))
+            let found = ComparisonResult::of(&comparison("best", &all), &runs);
+            (found.conclusion(), found.in_words().replace('\u{a0}', " "))
         };
         for (factor, order) in [(3.0, 2.0), (-0.1, 1.0), (40.0, 0.7)] {
             let (said, words) = verdict(&|n| factor * powf(n, -order));
-            assert_eq!(said, Said::Converges, "{words}");
+            assert_eq!(said, Conclusion::Converges, "{words}");
             assert!(
                 words.starts_with(&format!("converges with order {}", sig(order, 2))),
                 "{words}"
@@ -506,18 +513,18 @@ mod tests {
         // does not stop.
         let uneven = [(1, 0.0), (2, 2.2), (4, 4.3), (8, 6.05)];
         let errors = uneven.map(|(n, bits)| (spec("best", n), powf(2.0, -bits)));
-        let found = Found::of(&comparison("best", &[1, 2, 4, 8]), &runs(errors));
+        let found = ComparisonResult::of(&comparison("best", &[1, 2, 4, 8]), &runs(errors));
         assert!(found.error > found.numerical.expanded, "{found:?}");
-        assert_eq!(found.said(), Said::Converges);
-        let expected = (Said::Stops, "stops at 1.0 %".to_string());
+        assert_eq!(found.conclusion(), Conclusion::Converges);
+        let expected = (Conclusion::Stops, "stops at 1.0 %".to_string());
         assert_eq!(verdict(&|n| 0.01 + 1.0 / (n * n)), expected);
         assert_eq!(verdict(&|n| -0.01 - 1.0 / (n * n)), expected);
         // Fell with second order, and then rises.
         let floor = |n: f64| if n < 15.0 { 1.0 / (n * n) } else { 0.006 };
-        assert_eq!(verdict(&floor), (Said::Stops, "stops at 0.60 %".into()));
+        assert_eq!(verdict(&floor), (Conclusion::Stops, "stops at 0.60 %".into()));
         let noise = |n: f64| if n == 10.0 || n == 20.0 { 0.3 } else { 0.1 };
-        assert_eq!(verdict(&noise).0, Said::LadderDoesNotTell);
-        assert_eq!(verdict(&|n| if n == 10.0 { f64::NAN } else { 1.0 / n }).0, Said::Unknown);
+        assert_eq!(verdict(&noise).0, Conclusion::LadderDoesNotTell);
+        assert_eq!(verdict(&|n| if n == 10.0 { f64::NAN } else { 1.0 / n }).0, Conclusion::Unknown);
     }
 
     #[test]
@@ -534,11 +541,11 @@ mod tests {
         let mut all: Vec<_> = [10, 20, 40].map(|n| (spec("best", n), of(n as f64))).into();
         all.extend([(spec("changed", 1), of(40.0) + 0.03), (spec("changed", 2), of(40.0) - 0.04)]);
         let runs = runs(all);
-        let found = Found::of(&uncertain, &runs);
+        let found = ComparisonResult::of(&uncertain, &runs);
         near(found.input, 0.05);
         near(found.numerical.standard, 1.5 * 0.025);
         near(found.error, 0.225);
-        assert_eq!(found.said(), Said::ModelError);
+        assert_eq!(found.conclusion(), Conclusion::ModelError);
         let all = [uncertain, comparison("best", &[10, 20, 40])];
         let section = Comparisons(all.to_vec()).evaluate("a_case", &runs).expect("a section");
         assert_eq!(section.id, "a-case-uncertainty");
