@@ -246,7 +246,7 @@ fn verdicts(suite: &Suite) -> Section {
             "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
              known limitation if it lies outside and inside of a second bound, which follows from the cause, \
              or is fitted to own runs and says so, and fails otherwise; controls must lie outside. The margin \
-             is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
+             is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. Group a limitation, the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
         .block(Block::Details {

@@ -178,7 +178,7 @@ pub fn judge(plans: Plans, tier: Tier, mut made: BatchResult) -> Suite {
 }
 
 /// The run of another code, judged by the gates of our plans for the same settings: see
-/// [`Gate::for_submission`].
+/// [`touchstone_base::gate::Gate::for_submission`].
 pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
     leave_out_ours(case, &mut record);
     let spec = record.spec();

@@ -168,22 +168,22 @@ fn measure(Medium { eos, nu, .. }: &Medium, end: &Snapshot, record: &mut Record)
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum For {
+enum Group {
     /// Re 0.5: the lattice is strained by 0.4 at most.
     Strained,
     /// Re 10: particles move by 0.6 L at most, past each other.
     Mixed,
 }
 
-type Table = table::Table<ManufacturedSettings, For>;
+type Table = table::Table<ManufacturedSettings, Group>;
 
 fn table(tier: Tier) -> Table {
     let mut table = Table::new(&CASE, tier);
     let ladders = [SEED, MODERN, CONSISTENT].concat();
     let sides: &[usize] = &[12, 17, 24, 34, 48, 68];
-    table.over(For::Strained, &ladders, [&sides[..3], sides], |s, n| s.n = n);
+    table.over(Group::Strained, &ladders, [&sides[..3], sides], |s, n| s.n = n);
     // An equal time in units of L²/ν, and the speed of sound for Mach 0.05.
-    table.over(For::Mixed, &ladders, [&[], &sides[1..]], |s, n| {
+    table.over(Group::Mixed, &ladders, [&[], &sides[1..]], |s, n| {
         (s.n, s.re, s.end, s.c0) = (n, 10.0, 1.2, 20.0);
     });
     table
@@ -206,7 +206,7 @@ fn has_ghosts(variant: &str) -> bool {
     [SEED, MODERN, CONSISTENT].iter().any(|of| of[0] == variant)
 }
 
-fn gate(of: For, variant: &str) -> Gate {
+fn gate(of: Group, variant: &str) -> Gate {
     let smooth = "Smoothing is of second order, and so is what ghosts leave out: the curvature of the \
                   velocity across the wall, of order 1 in the Laplacian within h of it. All else is 0 or of \
                   higher order.";
@@ -219,12 +219,12 @@ fn gate(of: For, variant: &str) -> Gate {
     let floor = "On a lattice with h/dx 1.2 and eta^2 = 0.01 h^2 the viscous sum is 1.9 % too small, which \
                  is an error of the velocity that no refinement removes: an order between 0 and 2.";
     let (low, because) = if has_ghosts(variant) { (1.6, smooth) } else { (1.2, slip) };
-    let run = if of == For::Strained { "strained" } else { "mixed" };
+    let run = if of == Group::Strained { "strained" } else { "mixed" };
     let id = format!("{NAME}.{variant}.{run}.order");
     let gate = Gate::new(id, "order", Bound::Within(low, 2.4), Evidence::Theory, because);
     let (reason, least, cause) = match of {
-        For::Mixed if !CONSISTENT.contains(&variant) => (noise, -1.25, &MIXED),
-        For::Strained if SEED.contains(&variant) => (floor, 0.0, &LATTICE),
+        Group::Mixed if !CONSISTENT.contains(&variant) => (noise, -1.25, &MIXED),
+        Group::Strained if SEED.contains(&variant) => (floor, 0.0, &LATTICE),
         _ => return gate,
     };
     gate.with_limitation(Bound::Within(least, low), reason, cause)
@@ -240,9 +240,9 @@ fn studies(tier: Tier) -> Studies {
 }
 
 fn orders(table: &Table, runs: &Runs) -> Section {
-    let refinement = |(of, title): (For, &'static str)| {
+    let refinement = |(of, title): (Group, &'static str)| {
         let line = |name: &'static str| {
-            let level = |row: &table::Row<ManufacturedSettings, For>| Level {
+            let level = |row: &table::Row<ManufacturedSettings, Group>| Level {
                 spacing: 1.0 / row.settings.n as f64,
                 value: runs.value(&row.run.spec, L2),
             };
@@ -257,9 +257,9 @@ fn orders(table: &Table, runs: &Runs) -> Section {
             lines: [SEED, MODERN, CONSISTENT].into_iter().flatten().map(line).collect(),
         }
     };
-    let mut all = vec![refinement((For::Strained, "Re 0.5: strained"))];
-    let is_mixed = table.of(For::Mixed).next().is_some();
-    all.extend(is_mixed.then(|| refinement((For::Mixed, "Re 10: mixed"))));
+    let mut all = vec![refinement((Group::Strained, "Re 0.5: strained"))];
+    let is_mixed = table.of(Group::Mixed).next().is_some();
+    all.extend(is_mixed.then(|| refinement((Group::Mixed, "Re 10: mixed"))));
     let figure = "Relative L2 error of the velocity of a manufactured steady flow between walls over the \
                   spacing: at Re 0.5, where the lattice is strained and not mixed, and in the full tier at \
                   Re 10.";
@@ -351,10 +351,11 @@ mod tests {
             ("consistent", 1.4, false),
             ("consistent-interface", 1.0, false),
         ] {
-            let verdict = Judged::new(gate(For::Mixed, variant), Some(order)).judgement.verdict;
+            let verdict = Judged::new(gate(Group::Mixed, variant), Some(order)).judgement.verdict;
             assert_eq!(verdict.is_failure(), !passes, "{variant} {order}");
         }
-        let seed = |order| Judged::new(gate(For::Strained, "seed"), Some(order)).judgement.verdict;
+        let seed =
+            |order| Judged::new(gate(Group::Strained, "seed"), Some(order)).judgement.verdict;
         assert!(seed(-0.1).is_failure() && !seed(1.3).is_failure() && !seed(2.0).is_failure());
     }
 }

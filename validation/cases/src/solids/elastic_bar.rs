@@ -323,7 +323,7 @@ impl Watch for Motion {
 
 /// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
-enum For {
+enum Group {
     /// The time of a pulse.
     Pulse,
     /// For the order only.
@@ -333,19 +333,19 @@ enum For {
 }
 
 /// Every run.
-fn table(tier: Tier) -> Table<BarSettings, For> {
+fn table(tier: Tier) -> Table<BarSettings, Group> {
     let spacings = |s: &mut BarSettings, n| s.n = n;
     let touching = |s: &mut BarSettings, speed| (s.collide, s.speed) = (true, speed);
     let apart = |s: &mut BarSettings, (speed, end)| {
         (s.collide, s.gap, s.speed, s.end) = (true, 2.05, speed, Some(end));
     };
     let mut table = Table::new(&ELASTIC_BAR, tier);
-    table.over(For::Pulse, &["seed", "bare", LAGRANGIAN], [&[40], &[40]], spacings);
-    table.over(For::Order, &["seed", "bare"], [&[20, 80], &[20, 80, 160, 320]], spacings);
-    table.over(For::Meeting, &["seed"], [&[1e-4], &[1e-4]], touching);
-    table.over(For::Meeting, &["bare", LAGRANGIAN], [&[1e-4, 0.1], &[1e-4, 0.1]], touching);
-    table.over(For::Meeting, &["seed", "bare", LAGRANGIAN], [&[(1e-2, 4.0)]; 2], apart);
-    table.over(For::Meeting, &[LAGRANGIAN], [&[(0.1, 3.0)]; 2], apart);
+    table.over(Group::Pulse, &["seed", "bare", LAGRANGIAN], [&[40], &[40]], spacings);
+    table.over(Group::Order, &["seed", "bare"], [&[20, 80], &[20, 80, 160, 320]], spacings);
+    table.over(Group::Meeting, &["seed"], [&[1e-4], &[1e-4]], touching);
+    table.over(Group::Meeting, &["bare", LAGRANGIAN], [&[1e-4, 0.1], &[1e-4, 0.1]], touching);
+    table.over(Group::Meeting, &["seed", "bare", LAGRANGIAN], [&[(1e-2, 4.0)]; 2], apart);
+    table.over(Group::Meeting, &[LAGRANGIAN], [&[(0.1, 3.0)]; 2], apart);
     table.judge(gates);
     table
 }
@@ -363,27 +363,27 @@ const SOFT: &str = "Until they bear the strain V/c_p, faces sink 0.7 dx into eac
 /// A gate of a run: metric, least and most, evidence, reason.
 type Of<'a> = &'a dyn Fn(MetricKey, [f64; 2], Evidence, &str) -> Gate;
 
-fn gates(row: &Row<BarSettings, For>) -> Vec<Gate> {
+fn gates(row: &Row<BarSettings, Group>) -> Vec<Gate> {
     let (s, variant) = (&row.settings, row.variant);
     let speed = if s.speed < 0.1 { format!("{:e}", s.speed) } else { s.speed.to_string() };
     let run = match (row.group, s.gap > 0.0) {
-        (For::Order, _) => return Vec::new(),
-        (For::Pulse, _) => format!("{variant}.pulse{}", s.n),
-        (For::Meeting, false) => format!("{variant}.touching{speed}"),
-        (For::Meeting, true) => format!("{variant}.apart{speed}"),
+        (Group::Order, _) => return Vec::new(),
+        (Group::Pulse, _) => format!("{variant}.pulse{}", s.n),
+        (Group::Meeting, false) => format!("{variant}.touching{speed}"),
+        (Group::Meeting, true) => format!("{variant}.apart{speed}"),
     };
     let gate = |metric, [least, most]: [f64; 2], evidence, because: &str| {
         ELASTIC_BAR.gate(&run, metric, Bound::Within(least, most), evidence, because)
     };
     let opposite = "Forces of pairs are equal and opposite, so only round-off is left.";
     let (momentum, law) = (Bound::Below(1e-12), Evidence::Invariant);
-    let mut gates = if row.group == For::Pulse { pulse(row, &gate) } else { meeting(row, &gate) };
+    let mut gates = if row.group == Group::Pulse { pulse(row, &gate) } else { meeting(row, &gate) };
     gates.push(ELASTIC_BAR.gate(&run, MOMENTUM_ERROR, momentum, law, opposite));
     gates
 }
 
 /// Gates of a pulse.
-fn pulse(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
+fn pulse(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
     let group = "The centre of the velocity moves at the group speed of long waves, whatever the dispersion: \
                  1.0068 c_p on the lattice, c_p with exact gradients. The case was made to show at most 1 %.";
     let ahead = "Viscosity acts in the front of the pulse and pushes its centre ahead, by 0.16 alpha \
@@ -427,7 +427,7 @@ fn pulse(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
 }
 
 /// Of two bars.
-fn meeting(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
+fn meeting(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
     let jump = "The jump conditions hold whatever dissipates: equal bars exchange their velocities, and \
                 meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 %.";
     let welded = "The contact pulls as soon as the first expansion returns, whose front is as wide as the \
@@ -477,7 +477,7 @@ fn meeting(row: &Row<BarSettings, For>, gate: Of) -> Vec<Gate> {
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut BarSettings| &mut s.n, "n = {}");
-    let ladder = |variant| table.ladder(&[For::Pulse, For::Order], variant, spacing);
+    let ladder = |variant| table.ladder(&[Group::Pulse, Group::Order], variant, spacing);
     let accuracy = Accuracy {
         about:
             "A pulse of a standard deviation of L/16 runs through a bar by 0.6 L. The error is its \

@@ -242,7 +242,7 @@ fn metrics(series: &Series<4>, revolutions: f64, scale: f64, record: &mut Record
 
 /// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
-enum For {
+enum Group {
     /// How fast the stress in the rim brakes the disk.
     Braked,
     /// Gradients that are exact for linear fields, and forces that derive from an energy, keep it spinning.
@@ -254,14 +254,14 @@ enum For {
 }
 
 /// Every run.
-fn table(tier: Tier) -> Table<DiskSettings, For> {
+fn table(tier: Tier) -> Table<DiskSettings, Group> {
     let spacings = |s: &mut DiskSettings, n| s.n = n;
     let mut table = Table::new(&SPINNING_DISK, tier);
-    table.over(For::Braked, &["seed", "bare"], [&[8], &[8]], spacings);
-    table.over(For::Order, &["seed"], [&[4], &[4, 16]], spacings);
-    table.over(For::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
-    table.over(For::Kept, &[LAGRANGIAN], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
-    table.over(For::Steps, &["bare"], [&[0.4, 0.1, 0.8], &[0.4, 0.1, 0.8]], |s, courant| {
+    table.over(Group::Braked, &["seed", "bare"], [&[8], &[8]], spacings);
+    table.over(Group::Order, &["seed"], [&[4], &[4, 16]], spacings);
+    table.over(Group::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
+    table.over(Group::Kept, &[LAGRANGIAN], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
+    table.over(Group::Steps, &["bare"], [&[0.4, 0.1, 0.8], &[0.4, 0.1, 0.8]], |s, courant| {
         (s.n, s.end, s.solid.courant) = (8, 0.1, Some(courant));
     });
     table.judge(gates);
@@ -282,8 +282,8 @@ const ALL_SHEAR: &str = "The stress grows as long as there is kinetic energy to 
     it, rho U^2/4 per area, and 5 % more, stored as energy of shear, S:S/(4 mu).";
 
 /// Gates of all disks, and of disks that keep spinning or do not.
-fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
-    if matches!(row.group, For::Order | For::Steps) {
+fn gates(row: &Row<DiskSettings, Group>) -> Vec<Gate> {
+    if matches!(row.group, Group::Order | Group::Steps) {
         return Vec::new();
     }
     let (s, variant) = (&row.settings, row.variant);
@@ -302,7 +302,7 @@ fn gates(row: &Row<DiskSettings, For>) -> Vec<Gate> {
     let stressed = "A disk that spins steadily in plane strain has a root-mean-square deviatoric stress of \
                     about 0.1 rho U^2. After a start without stress it swings to twice that; twice that is \
                     allowed.";
-    let is_braked = row.group == For::Braked;
+    let is_braked = row.group == Group::Braked;
     let [tenth, drift] = if is_braked { [1e-3, 1e-2] } else { [1e-11; 2] };
     let tenth = gate(ANGULAR_MOMENTUM_TENTH, Bound::Within(-tenth, tenth), law, noticed);
     let drift = gate(ANGULAR_MOMENTUM_DRIFT, Bound::Below(drift), law, noticed);
@@ -332,7 +332,7 @@ fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let error = ANGULAR_MOMENTUM_DRIFT;
     let spacing = Spacing::count(|s: &mut DiskSettings| &mut s.n, "n = {}");
-    let ladder = |variant| table.ladder(&[For::Braked, For::Order], variant, spacing);
+    let ladder = |variant| table.ladder(&[Group::Braked, Group::Order], variant, spacing);
     let accuracy = Accuracy {
         about:
             "A free disk, rim at 0.05 c0, makes one revolution; exactly, angular momentum stays."
@@ -342,7 +342,7 @@ fn studies(tier: Tier) -> Studies {
         ladders: ["seed", "bare"].map(ladder).into(),
         ..Accuracy::new("spinning-disk", error, "change of angular momentum a revolution [-]")
     };
-    let changes = ["none", "dt/4", "2 dt"].into_iter().zip(table.specs(For::Steps));
+    let changes = ["none", "dt/4", "2 dt"].into_iter().zip(table.specs(Group::Steps));
     let changes = changes.map(|(what, spec)| Change::new(what, "time", spec)).collect();
     let about = "A free disk, rim at 0.05 c0, makes a tenth of a revolution.";
     let budgets = Budgets::new(&accuracy, about, vec![changes]);

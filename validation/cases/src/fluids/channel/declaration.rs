@@ -4,7 +4,7 @@
 //! instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
 
 use super::{
-    ChannelSettings, ChannelTable, Flow, For, ladder, maps, measure::*, plan, stiff, waves,
+    ChannelSettings, ChannelTable, Flow, Group, ladder, maps, measure::*, plan, stiff, waves,
 };
 use nalgebra::Vector2;
 use touchstone_base::{gate::*, mutation::Constant, record::*, spec::*};
@@ -138,7 +138,7 @@ fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
     let spacing = Spacing::count(|s: &mut ChannelSettings| &mut s.rows, "{} rows");
     let of = |variant| Ladder {
         order: ((flow, variant) == (Flow::Poiseuille, "plain")).then(|| order.clone()),
-        ..table.ladder(&[For::Ladder], variant, spacing)
+        ..table.ladder(&[Group::Ladder], variant, spacing)
     };
     let tau = flow.compared_at();
     let label = format!("relative L2 error of u at νt/L² = {tau} [-]");

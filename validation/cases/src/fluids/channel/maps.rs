@@ -9,7 +9,7 @@ use touchstone_base::{gate::*, record::*, spec::RunSpec};
 use touchstone_harness::{runs::Runs, section::Section, studies::*};
 use touchstone_report::{Colour, percent, sig};
 
-use super::{ChannelSettings, ChannelTable, Flow, For, measure::L2_WORST};
+use super::{ChannelSettings, ChannelTable, Flow, Group, measure::L2_WORST};
 
 /// Reynolds numbers of H4 and H5; the quick tier has the middle three from 1 to 10.
 const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];
@@ -37,14 +37,14 @@ pub fn runs(table: &mut ChannelTable) {
     for re in REYNOLDS {
         let quick = if (1.0..=10.0).contains(&re) { &DISORDER[1..2] } else { &[] };
         for sound in SOUND {
-            table.over(For::Map, &["seed"], [quick, starts(re)], |s, jitter| {
+            table.over(Group::Map, &["seed"], [quick, starts(re)], |s, jitter| {
                 set(s, re, jitter);
                 s.c0 = Some(sound_speed(re, sound));
             });
         }
     }
     for re in CURED {
-        table.over(For::Cures, &CURES, [&[], starts(re)], |s, jitter| set(s, re, jitter));
+        table.over(Group::Cures, &CURES, [&[], starts(re)], |s, jitter| set(s, re, jitter));
     }
 }
 
@@ -55,14 +55,14 @@ pub fn declared(table: &ChannelTable) -> Vec<Map> {
     });
     let over_cures = MapPanel::over("", &CURED, &CURES, |re, cure: &str| {
         let is_of = |s: &ChannelSettings, variant: &str| (s.re, variant) == (re, cure);
-        let rows = table.of(For::Cures).filter(|row| is_of(&row.settings, row.variant));
+        let rows = table.of(Group::Cures).filter(|row| is_of(&row.settings, row.variant));
         rows.map(|row| row.run.spec.clone()).collect()
     });
     let (sound, cures) = ("sound speed c0/V [-], of seed", "what is changed of seed");
     let title = "Outcomes over Reynolds number and sound speed";
     let over_sound = map("poiseuille-map", title, sound, over_sound);
     let over_cures = map("poiseuille-cures", "What cures the instability", cures, over_cures);
-    let maps = [(For::Map, over_sound), (For::Cures, over_cures)].into_iter();
+    let maps = [(Group::Map, over_sound), (Group::Cures, over_cures)].into_iter();
     maps.filter(|(group, _)| table.of(*group).next().is_some()).map(|(_, map)| map).collect()
 }
 
@@ -75,7 +75,7 @@ fn reynolds(table: &ChannelTable) -> Vec<f64> {
 /// The runs of a cell of the first map.
 fn of_sound(table: &ChannelTable, re: f64, sound: f64) -> impl Iterator<Item = RunSpec> {
     let is_of = move |s: &ChannelSettings| (s.re, s.c0) == (re, Some(sound_speed(re, sound)));
-    let rows = table.of(For::Map).filter(move |row| is_of(&row.settings));
+    let rows = table.of(Group::Map).filter(move |row| is_of(&row.settings));
     rows.map(|row| row.run.spec.clone())
 }
 
@@ -169,7 +169,7 @@ pub fn study(table: &ChannelTable) -> impl Study + use<> {
     let cells = |re| SOUND.map(|sound| of_sound(table, re, sound).collect());
     let all: Vec<(f64, [Vec<RunSpec>; 3])> =
         reynolds(table).into_iter().map(|re| (re, cells(re))).collect();
-    CustomStudy { runs: table.planned(For::Map), section: move |runs: &Runs| section(&all, runs) }
+    CustomStudy { runs: table.planned(Group::Map), section: move |runs: &Runs| section(&all, runs) }
 }
 
 /// The section of the runs by Reynolds number and sound speed.

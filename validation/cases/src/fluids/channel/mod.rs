@@ -25,7 +25,7 @@ pub type ChannelCase = Composed<ChannelSettings>;
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum For {
+pub enum Group {
     /// Error over spacing and cost at Re 0.5.
     Ladder,
     /// One rule for every Reynolds number.
@@ -41,9 +41,9 @@ pub enum For {
 }
 
 /// The runs of a flow.
-pub type ChannelTable = Table<ChannelSettings, For>;
+pub type ChannelTable = Table<ChannelSettings, Group>;
 /// One of them.
-pub type Row = touchstone_harness::table::Row<ChannelSettings, For>;
+pub type Row = touchstone_harness::table::Row<ChannelSettings, Group>;
 
 /// Case 1, start-up Couette flow (the paper's figure 1).
 pub static COUETTE: ChannelCase = ChannelCase {

@@ -1,6 +1,6 @@
 //! The runs of the channel flows, stated once, and their gates.
 
-use super::{ChannelSettings, ChannelTable, Flow, For, TIMES, maps, measure::*, stiff, waves};
+use super::{ChannelSettings, ChannelTable, Flow, Group, TIMES, maps, measure::*, stiff, waves};
 use touchstone_base::{gate::*, record::MetricName};
 use touchstone_harness::case::Tier;
 use touchstone_harness::table::{Row, Table};
@@ -47,30 +47,30 @@ pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
         ..=500.0 => 1.0,
         _ => 0.5,
     };
-    table.over(For::Reynolds, &["modern"], reynolds, |s, re| (s.re, s.end) = (re, reach(re)));
+    table.over(Group::Reynolds, &["modern"], reynolds, |s, re| (s.re, s.end) = (re, reach(re)));
     for (re, _) in stiff::REYNOLDS {
         let set = |s: &mut ChannelSettings, rows| (s.re, s.rows) = (re, rows);
-        table.over(For::Stiff, &["modern", "stiff"], [&[40], &[40, 80]], set);
+        table.over(Group::Stiff, &["modern", "stiff"], [&[40], &[40, 80]], set);
     }
     if flow == Flow::Poiseuille {
         waves::runs(&mut table);
         maps::runs(&mut table);
     }
     let levels: &[usize] = &[8, 10, 14, 20, 40, 80];
-    table.over(For::Ladder, &ladder(flow), [&levels[..4], levels], |s, rows| s.rows = rows);
+    table.over(Group::Ladder, &ladder(flow), [&levels[..4], levels], |s, rows| s.rows = rows);
     for row in &mut table.rows {
-        row.run.spec.allow_unstable = matches!(row.group, For::Waves | For::Map | For::Cures);
+        row.run.spec.allow_unstable = matches!(row.group, Group::Waves | Group::Map | Group::Cures);
     }
     table.judge(|row| gates(flow, row));
     table
 }
 
 /// The gates of a run.
-fn gates(flow: Flow, row: &Row<ChannelSettings, For>) -> Vec<Gate> {
+fn gates(flow: Flow, row: &Row<ChannelSettings, Group>) -> Vec<Gate> {
     let (s, variant) = (&row.settings, row.variant);
     match row.group {
-        For::Ladder => of_ladder(flow, variant, s.rows),
-        For::Reynolds => {
+        Group::Ladder => of_ladder(flow, variant, s.rows),
+        Group::Reynolds => {
             let because = "The settings follow from one rule, and the error must be at most 1 % at every \
                            Reynolds number of the list.";
             let (run, bound) = (format!("{variant}.re{}", s.re), Bound::Below(0.01));

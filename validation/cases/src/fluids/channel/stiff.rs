@@ -1,7 +1,7 @@
 //! Gain of super-time-stepping of viscosity: pair interactions of `stiff` against `modern` at one error, over
 //! the Reynolds number.
 
-use super::{ChannelSettings, ChannelTable, Flow, For, Row, measure::L2};
+use super::{ChannelSettings, ChannelTable, Flow, Group, Row, measure::L2};
 use touchstone_base::{gate::*, record::Record, spec::RunSpec};
 use touchstone_harness::{
     runs::Runs,
@@ -46,7 +46,7 @@ fn gates(flow: Flow, settings: &ChannelSettings, modern: f64) -> [Gate; 2] {
 
 /// The study.
 pub fn study(flow: Flow, table: &ChannelTable) -> impl Study + use<> {
-    let of = |variant| table.of(For::Stiff).filter(move |row| row.variant == variant);
+    let of = |variant| table.of(Group::Stiff).filter(move |row| row.variant == variant);
     let pair = |(modern, stiff): (&Row, &Row)| {
         ([modern, stiff].map(|row| row.run.spec.clone()), stiff.settings.clone())
     };
@@ -65,5 +65,5 @@ pub fn study(flow: Flow, table: &ChannelTable) -> impl Study + use<> {
             section.judge(l2, errors[1]).judge(pairs, counts[1] / counts[0])
         })
     };
-    CustomStudy { runs: table.planned(For::Stiff), section }
+    CustomStudy { runs: table.planned(Group::Stiff), section }
 }

@@ -1,7 +1,7 @@
 //! Hypothesis H3 of the paper: pressure waves leave the walls. The lowest pressure mode between them
 //! oscillates with the period 2L/c0 of a wave that bounces between them, at any c0.
 
-use super::{ChannelTable, For, Row, measure::MODE};
+use super::{ChannelTable, Group, Row, measure::MODE};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
 use touchstone_base::functions::{cos, hypot, powf, sin};
 use touchstone_base::{gate::*, record::Record, spec::RunSpec};
@@ -14,7 +14,7 @@ use touchstone_harness::{
 /// Adds the runs at Re 20, to νt/L² = 1.5, for waves are judged by the end of a run: two sound speeds \[V\].
 /// The instability grows from the disorder of the start, 1e-4 dx, or from round-off if there is none.
 pub fn runs(table: &mut ChannelTable) {
-    table.over(For::Waves, &["seed"], [&[10.0, 20.0]; 2], |s, sound| {
+    table.over(Group::Waves, &["seed"], [&[10.0, 20.0]; 2], |s, sound| {
         (s.re, s.end, s.jitter, s.watch_mode) = (20.0, 1.5, 1e-4, true);
         s.c0 = Some(sound * s.speed());
     });
@@ -41,8 +41,11 @@ pub fn study(table: &ChannelTable) -> impl Study + use<> {
     let of = |row: &Row| {
         ((row.settings.c0.unwrap_or(f64::NAN) / row.settings.speed()).round(), row.run.spec.clone())
     };
-    let all: Vec<(f64, RunSpec)> = table.of(For::Waves).map(of).collect();
-    CustomStudy { runs: table.planned(For::Waves), section: move |runs: &Runs| section(&all, runs) }
+    let all: Vec<(f64, RunSpec)> = table.of(Group::Waves).map(of).collect();
+    CustomStudy {
+        runs: table.planned(Group::Waves),
+        section: move |runs: &Runs| section(&all, runs),
+    }
 }
 
 /// The section of the runs, each with its sound speed \[V\].

@@ -157,7 +157,7 @@ fn left_of_start(settings: &serde_json::Value) -> String {
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let spacing = Spacing::count(|s: &mut HillSettings| &mut s.n, "H/dx = {}");
     let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
-        .map(|variant| table.ladder(&[For::Ladder], variant, spacing));
+        .map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
     let run = ladders[0].levels.first().map(|level| &level.run.spec.settings);
     let [re, end] =
         ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));

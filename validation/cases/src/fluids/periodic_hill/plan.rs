@@ -6,7 +6,7 @@ use touchstone_harness::{case::Tier, table};
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum For {
+pub enum Group {
     /// Order and cost: every variant that stays stable, from rest.
     Ladder,
     /// Figures: the recommended variant at the Reynolds numbers that have a reference.
@@ -20,9 +20,9 @@ pub enum For {
 }
 
 /// The runs of a tier.
-pub type Table = table::Table<HillSettings, For>;
+pub type Table = table::Table<HillSettings, Group>;
 /// A row of the table.
-pub type Row = table::Row<HillSettings, For>;
+pub type Row = table::Row<HillSettings, Group>;
 
 /// End of a run from rest \[H/U_b\]. Transients decay by 0.11 U_b/H at Re 50, and at 40 they still shift the
 /// reattachment by 0.02 H. At Re 10 the decay is five times as fast, but leaves 0.3 % of U_b at 10.
@@ -41,11 +41,11 @@ pub fn table(tier: Tier) -> Table {
     let mut table = Table::new(&CASE, tier);
     let quick = [4, 5, 7].map(|n| (10.0, n, 10.0, false));
     let coarse = [4, 5, 7, 10].map(|n| (50.0, n, END, false));
-    table.over(For::Ladder, &["interface-wall", RECOMMENDED], [&quick, &coarse], flow);
-    table.over(For::Ladder, &["modern", "consistent"], [&[], &coarse], flow);
-    table.over(For::Ladder, &[RECOMMENDED], [&[], &[(50.0, 20, END, false)]], flow);
+    table.over(Group::Ladder, &["interface-wall", RECOMMENDED], [&quick, &coarse], flow);
+    table.over(Group::Ladder, &["modern", "consistent"], [&[], &coarse], flow);
+    table.over(Group::Ladder, &[RECOMMENDED], [&[], &[(50.0, 20, END, false)]], flow);
     let long = |s: &mut HillSettings, n| (s.re, s.n, s.end, s.average) = (50.0, n, 2.0 * END, 0.3);
-    table.over(For::Long, &[RECOMMENDED], [&[], &[20]], long);
+    table.over(Group::Long, &[RECOMMENDED], [&[], &[20]], long);
     // At ten spacings from the reference as well: the start must not matter.
     let full = [
         (10.0, 10, 15.0, false),
@@ -59,15 +59,15 @@ pub fn table(tier: Tier) -> Table {
         (100.0, 20, 20.0, true),
     ];
     // Three quarters of the time, which the goal at ten spacings allows and finer ones do not.
-    table.over(For::Figures, &[RECOMMENDED], [&[(50.0, 10, 30.0, false)], &full], flow);
+    table.over(Group::Figures, &[RECOMMENDED], [&[(50.0, 10, 30.0, false)], &full], flow);
     let control = (10.0, 5, 20.0, false);
-    table.over(For::Control, &["plain"], [&[control], &coarse[3..]], flow);
+    table.over(Group::Control, &["plain"], [&[control], &coarse[3..]], flow);
     // The flux has filled the period 0.96 times at the end.
-    table.over(For::Fast, &[RECOMMENDED], [&[], &[(1000.0, 10, 12.0, false)]], flow);
+    table.over(Group::Fast, &[RECOMMENDED], [&[], &[(1000.0, 10, 12.0, false)]], flow);
     let fine = if tier == Tier::Quick { 10 } else { 20 };
     table.keep_particles(|row| {
-        let is_on_card = row.group == For::Ladder && row.settings.re == 50.0;
-        let is_shown = row.group == For::Figures || (is_on_card && row.variant == RECOMMENDED);
+        let is_on_card = row.group == Group::Ladder && row.settings.re == 50.0;
+        let is_shown = row.group == Group::Figures || (is_on_card && row.variant == RECOMMENDED);
         is_shown && row.settings.n >= fine
     });
     table.judge(gates);
@@ -76,7 +76,7 @@ pub fn table(tier: Tier) -> Table {
 
 /// The runs of the recommended variant at a Reynolds number that figures show, coarse to fine.
 pub fn shown(table: &Table, re: f64) -> Vec<&Row> {
-    let rows = table.of(For::Ladder).chain(table.of(For::Figures));
+    let rows = table.of(Group::Ladder).chain(table.of(Group::Figures));
     let of =
         |row: &&Row| row.variant == RECOMMENDED && row.settings.re == re && row.settings.n >= 10;
     let mut rows: Vec<_> = rows.filter(of).collect();
@@ -93,7 +93,7 @@ pub fn name(row: &Row) -> String {
 fn gates(row: &Row) -> Vec<Gate> {
     let HillSettings { re, n, from_reference, .. } = row.settings;
     let more = match row.group {
-        For::Long => "long.",
+        Group::Long => "long.",
         _ if from_reference => "reference.",
         _ => "",
     };
@@ -101,13 +101,13 @@ fn gates(row: &Row) -> Vec<Gate> {
     let inside = "No particle passes a wall.";
     let outside = CASE.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside);
     match row.group {
-        For::Control => {
+        Group::Control => {
             let because = "Control: without density diffusion and shifting the run diverges.";
             let control =
                 CASE.gate(&run, L2_U, Bound::Below(goal(n)), Evidence::Reference, because);
             vec![control.expected_to_fail().may_end_early()]
         }
-        For::Fast => {
+        Group::Fast => {
             let because = "By Helmholtz' theorem no flow with this flux between these walls takes less than \
                            slow flow, and slow flow here takes more than plane Poiseuille flow takes in the \
                            widest gap, 3.035 H, through which the flux is 2.035 U_b H.";
@@ -115,8 +115,8 @@ fn gates(row: &Row) -> Vec<Gate> {
             vec![outside, CASE.gate(&run, FORCE, Bound::Above(least), Evidence::Theory, because)]
         }
         // Below ten spacings the bubble has two rows: shown for the order, held to nothing.
-        For::Ladder | For::Figures | For::Long if row.variant == RECOMMENDED && n >= 10 => {
-            let rested = row.group == For::Long;
+        Group::Ladder | Group::Figures | Group::Long if row.variant == RECOMMENDED && n >= 10 => {
+            let rested = row.group == Group::Long;
             [vec![outside], of_reference(&run, re, n, rested), balances(&run, n)].concat()
         }
         _ => [vec![outside], coarse(&run, n)].concat(),

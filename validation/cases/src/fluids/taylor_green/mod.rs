@@ -88,7 +88,7 @@ pub static CASE: Composed<VortexSettings> = Composed {
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum For {
+enum Group {
     /// Order and cost: variants that keep particles apart, from the disturbed lattice.
     Ladder,
     /// The recommended variant, from the square lattice.
@@ -98,9 +98,9 @@ enum For {
 }
 
 /// The runs of a tier.
-type Table = table::Table<VortexSettings, For>;
+type Table = table::Table<VortexSettings, Group>;
 /// A row of the table.
-type Row = table::Row<VortexSettings, For>;
+type Row = table::Row<VortexSettings, Group>;
 
 /// Displacement of the disturbed lattice \[dx\].
 const DISTURBED: f64 = 0.2;
@@ -118,15 +118,15 @@ fn table(tier: Tier) -> Table {
     let mut table = Table::new(&CASE, tier);
     let start = |perturb| move |s: &mut VortexSettings, n| (s.n, s.perturb) = (n, perturb);
     let disturbed = start(DISTURBED);
-    table.over(For::Ladder, &LADDER[..2], [&[12, 17, 24], &[25, 35, 50]], disturbed);
-    table.over(For::Ladder, &[RECOMMENDED], [&[12, 17, 24, 50], &[25, 50, 100]], disturbed);
-    table.over(For::Lattice, &[RECOMMENDED], [&[32], &[25, 50, 100]], start(0.0));
-    table.over(For::Lattice, &["modern"], [&[32]; 2], start(0.0));
-    table.over(For::Control, &["plain"], [&[32], &[50]], disturbed);
+    table.over(Group::Ladder, &LADDER[..2], [&[12, 17, 24], &[25, 35, 50]], disturbed);
+    table.over(Group::Ladder, &[RECOMMENDED], [&[12, 17, 24, 50], &[25, 50, 100]], disturbed);
+    table.over(Group::Lattice, &[RECOMMENDED], [&[32], &[25, 50, 100]], start(0.0));
+    table.over(Group::Lattice, &["modern"], [&[32]; 2], start(0.0));
+    table.over(Group::Control, &["plain"], [&[32], &[50]], disturbed);
     table.keep_particles(|row| match row.group {
-        For::Control => true,
-        For::Ladder => row.variant == RECOMMENDED && row.settings.n == 50,
-        For::Lattice => false,
+        Group::Control => true,
+        Group::Ladder => row.variant == RECOMMENDED && row.settings.n == 50,
+        Group::Lattice => false,
     });
     table.judge(gates);
     table
@@ -138,13 +138,13 @@ fn gates(row: &Row) -> Vec<Gate> {
     let pairs = "Forces of pairs are opposite and shifting changes no velocity, but for round-off.";
     let conserved = CASE.gate(&run, MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Theory, pairs);
     match row.group {
-        For::Control => {
+        Group::Control => {
             let because = "Control: without shifting, strings and voids form.";
             let control = CASE.gate(&run, L2, Bound::Below(0.02), Evidence::Analytic, because);
             vec![conserved, control.expected_to_fail()]
         }
         _ if variant == RECOMMENDED => of_best(&run, n),
-        For::Lattice if variant == "modern" => {
+        Group::Lattice if variant == "modern" => {
             let because = "The goal of the recommended variant from the same start.";
             let error =
                 CASE.gate(&run, L2, Bound::Below(most_error(n)), Evidence::Analytic, because);
@@ -200,7 +200,7 @@ const SEALED: Draws = Draws {
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut VortexSettings| &mut s.n, "{} x {}");
-    let mut ladders = LADDER.map(|variant| table.ladder(&[For::Ladder], variant, spacing));
+    let mut ladders = LADDER.map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
     for ladder in ladders.iter_mut().filter(|of| of.variant == RECOMMENDED && tier == Tier::Full) {
         let because = "The bound is what this program computed before, 1.95, with 0.3 either way. Errors of \
                        the sums fall as h^2, but those of the sound speed and the time step fall otherwise \
@@ -265,8 +265,8 @@ fn histories(tier: Tier, table: &Table) -> Curves {
                    `plain` with at least as many. Black marks the bound of the recommended variant, which \
                    applies at t = 2 L/U.";
     let side = if tier == Tier::Quick { 24 } else { 50 };
-    let stabilised = table.of(For::Ladder).filter(|row| row.settings.n == side);
-    let shown = stabilised.chain(table.of(For::Control));
+    let stabilised = table.of(Group::Ladder).filter(|row| row.settings.n == side);
+    let shown = stabilised.chain(table.of(Group::Control));
     let line = |row: &Row| CurveOf {
         name: format!("{}, {1} x {1}", row.variant, row.settings.n),
         spec: row.run.spec.clone(),

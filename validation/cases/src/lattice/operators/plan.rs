@@ -11,7 +11,7 @@ use super::{
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum For {
+pub(super) enum Group {
     /// A lattice, finer with h: the error of smoothing.
     Lattice,
     /// Disordered particles, finer with h.
@@ -23,7 +23,7 @@ pub(super) enum For {
 }
 
 /// The runs of a tier.
-pub(super) type Table = table::Table<OperatorSettings, For>;
+pub(super) type Table = table::Table<OperatorSettings, Group>;
 
 /// Particles along each side, and disorder, of ladders in which something else changes.
 const SIDE: usize = 48;
@@ -36,18 +36,18 @@ pub(super) fn table(tier: Tier) -> Table {
         let has_ladders = tier == Tier::Full || of.kernel == QUINTIC;
         let sides: &[usize] = if has_ladders { &[24, 48, 96] } else { &[24] };
         // With 1.5 times the usual h the lattice itself adds less than 1e-3 to the gain.
-        table.over(For::Lattice, &[of.name], [sides; 2], |s, n| {
+        table.over(Group::Lattice, &[of.name], [sides; 2], |s, n| {
             (s.n, s.disorder, s.h_over_dx) = (n, 0.0, 1.5 * s.h_over_dx);
         });
         if has_ladders {
-            table.over(For::Resolution, &[of.name], [sides; 2], |s, n| {
+            table.over(Group::Resolution, &[of.name], [sides; 2], |s, n| {
                 (s.n, s.disorder) = (n, DISORDER);
             });
-            table.over(For::Neighbours, &[of.name], [&[1.0, 1.5, 2.0, 3.0]; 2], |s, more| {
+            table.over(Group::Neighbours, &[of.name], [&[1.0, 1.5, 2.0, 3.0]; 2], |s, more| {
                 (s.n, s.disorder) = ((24.0 * more) as usize, DISORDER);
                 s.h_over_dx *= more;
             });
-            table.over(For::Disorder, &[of.name], [&[0.05, 0.1, DISORDER]; 2], |s, disorder| {
+            table.over(Group::Disorder, &[of.name], [&[0.05, 0.1, DISORDER]; 2], |s, disorder| {
                 (s.n, s.disorder) = (SIDE, disorder);
             });
         }
@@ -67,8 +67,8 @@ pub(super) fn judged(tier: Tier) -> Table {
         let (run, bound) = (format!("{}.{}", row.variant, row.settings.n), Bound::Below(1e-5));
         let is_plain = subjects().any(|of| of.name == row.variant && !of.is_corrected);
         let of = match row.group {
-            For::Lattice => Some((SYMBOL_ERROR, exact)),
-            For::Resolution => is_plain.then_some((SUM_ERROR, summed)),
+            Group::Lattice => Some((SYMBOL_ERROR, exact)),
+            Group::Resolution => is_plain.then_some((SUM_ERROR, summed)),
             _ => None,
         };
         let gate = |(metric, why)| OPERATORS.gate(run, metric, bound, Evidence::Theory, why);

@@ -27,33 +27,33 @@ static QUADRATURE: Cause = Cause::new(
 );
 
 /// Refined quantities.
-const REFINED: [For; 4] = [For::Lattice, For::Resolution, For::Neighbours, For::Disorder];
+const REFINED: [Group; 4] = [Group::Lattice, Group::Resolution, Group::Neighbours, Group::Disorder];
 
-impl For {
+impl Group {
     /// Name in gates, title, and label of the axis.
     fn texts(self) -> [&'static str; 3] {
         match self {
-            For::Lattice => ["bias", "Lattice: gain", "h/L [-]"],
-            For::Resolution => ["noise_h", "Disorder: smaller h", "h/L [-]"],
-            For::Neighbours => ["noise_neighbours", "Disorder: more neighbours", "dx/h [-]"],
-            For::Disorder => ["noise_disorder", "Less disorder", "displacement/dx [-]"],
+            Group::Lattice => ["bias", "Lattice: gain", "h/L [-]"],
+            Group::Resolution => ["noise_h", "Disorder: smaller h", "h/L [-]"],
+            Group::Neighbours => ["noise_neighbours", "Disorder: more neighbours", "dx/h [-]"],
+            Group::Disorder => ["noise_disorder", "Less disorder", "displacement/dx [-]"],
         }
     }
 
     /// The spacing by which the order is taken.
     fn spacing(self, s: &OperatorSettings) -> f64 {
         match self {
-            For::Lattice | For::Resolution => s.h_over_dx / s.n as f64,
-            For::Neighbours => 1.0 / s.h_over_dx,
-            For::Disorder => s.disorder,
+            Group::Lattice | Group::Resolution => s.h_over_dx / s.n as f64,
+            Group::Neighbours => 1.0 / s.h_over_dx,
+            Group::Disorder => s.disorder,
         }
     }
 
     /// The order that theory expects.
     fn expected(self, of: &Subject) -> f64 {
         match self {
-            For::Resolution => of.order(),
-            For::Disorder => 1.0,
+            Group::Resolution => of.order(),
+            Group::Disorder => 1.0,
             _ => 2.0,
         }
     }
@@ -62,17 +62,17 @@ impl For {
         let expected = self.expected(of);
         let within = |by: f64| Bound::Within(expected - by, expected + by);
         let (bound, because) = match self {
-            For::Lattice => (
+            Group::Lattice => (
                 within(0.2),
                 "The gain of a wave is that of smoothing, 1 - (kh)^2 times half the second moment of the \
                  kernel: second order (Quinlan, Basa & Lastiwka 2006).",
             ),
-            For::Neighbours => (
+            Group::Neighbours => (
                 within(0.4),
                 "Independent displacements of (h/dx)^2 neighbours leave the root of their number: noise \
                  falls as (dx/h)^2. Where neighbours are few, the lattice itself adds to it.",
             ),
-            For::Disorder => (within(0.15), "Noise is linear in small displacements."),
+            Group::Disorder => (within(0.15), "Noise is linear in small displacements."),
             _ if expected > 0.0 => (
                 within(0.25),
                 "The sum is exact for linear fields, so that noise is that of the second derivatives: first \
@@ -87,7 +87,7 @@ impl For {
         let id = format!("{}.{}.{}", OPERATORS.name, of.name, self.texts()[0]);
         let gate = Gate::new(id, "order", bound, Evidence::Theory, because);
         match self {
-            For::Lattice
+            Group::Lattice
                 if of.kernel == CUBIC && !of.is_corrected && of.operator != Operator::Density =>
             {
                 let reason = "With 0.0018 that does not fall (with other kernels 0.0003 and less), the \
@@ -96,7 +96,7 @@ impl For {
                               numbers with 0.05 either way.";
                 gate.with_limitation(Bound::Within(1.58, 1.82), reason, &QUADRATURE)
             }
-            For::Resolution if expected <= 0.0 => {
+            Group::Resolution if expected <= 0.0 => {
                 let reason = format!(
                     "The order of noise is {expected} by theory: the lowest order of the field that the sum \
                      does not cancel, minus the order of the derivative that is sought. The limitation is \
@@ -120,19 +120,19 @@ pub(super) fn studies(tier: Tier) -> Studies {
 fn section(tier: Tier, table: &Table, runs: &Runs) -> Section {
     let all = REFINED.map(|refined| {
         let (metric, axis): (MetricKey, _) = match refined {
-            For::Lattice => (BIAS, "bias [-]"),
+            Group::Lattice => (BIAS, "bias [-]"),
             _ => (NOISE, "noise [-]"),
         };
         let lines = subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).map(|of| {
             let rows = table.of(refined).filter(|row| row.variant == of.name);
-            let level = |row: &Row<OperatorSettings, For>| Level {
+            let level = |row: &Row<OperatorSettings, Group>| Level {
                 spacing: refined.spacing(&row.settings),
                 value: runs.value(&row.run.spec, metric),
             };
             let (levels, formal) = (rows.map(level).collect(), refined.expected(of));
             Line { name: of.name, levels, formal, gate: refined.gate(of) }
         });
-        let is_second = matches!(refined, For::Lattice | For::Neighbours);
+        let is_second = matches!(refined, Group::Lattice | Group::Neighbours);
         let slopes: &[f64] = if is_second { &[2.0] } else { &[1.0] };
         let [_, title, spacing] = refined.texts();
         Refinement { title, axes: [spacing, axis], slopes, lines: lines.collect() }

@@ -4,7 +4,7 @@ use super::*;
 
 /// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
-pub enum For {
+pub enum Group {
     /// Frequency, mean and amplitude of the end.
     Whole,
     /// Under a tenth of the weight.
@@ -14,10 +14,10 @@ pub enum For {
     /// By the equations of the paper.
     Paper,
 }
-use For::{First, Light, Paper, Whole};
+use Group::{First, Light, Paper, Whole};
 
 /// Every run.
-pub fn table(tier: Tier) -> Table<CantileverSettings, For> {
+pub fn table(tier: Tier) -> Table<CantileverSettings, Group> {
     let short =
         |s: &mut CantileverSettings, gravity| (s.n, s.gravity, s.end) = (5, gravity, FIRST_SWING);
     let layers = |s: &mut CantileverSettings, n| s.n = n;
@@ -31,7 +31,7 @@ pub fn table(tier: Tier) -> Table<CantileverSettings, For> {
     table
 }
 
-fn gates(row: &Row<CantileverSettings, For>) -> Vec<Gate> {
+fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
     let CantileverSettings { n, gravity, end, .. } = row.settings;
     let usual = CantileverSettings::default();
     let load = if gravity == usual.gravity { String::new() } else { format!(".g{gravity}") };

@@ -4,7 +4,7 @@ use super::*;
 
 /// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
-pub enum For {
+pub enum Group {
     /// Period, amplitude and energy of a swing by the equations of the paper.
     Paper,
     /// For the order only.
@@ -18,10 +18,10 @@ pub enum For {
     /// The energy of a tip that swings farther than the plate is long.
     Fast,
 }
-use For::{Damped, Elements as Three, Fast, Locked, Order, Paper};
+use Group::{Damped, Elements as Three, Fast, Locked, Order, Paper};
 
 /// Every run.
-pub fn table(tier: Tier) -> Table<PlateSettings, For> {
+pub fn table(tier: Tier) -> Table<PlateSettings, Group> {
     let layers = |s: &mut PlateSettings, n| s.n = n;
     let mut table = Table::new(&OSCILLATING_PLATE, tier);
     table.over(Paper, &["seed", "bare", PLAIN], [&[5], &[5]], layers);
@@ -52,7 +52,7 @@ pub fn table(tier: Tier) -> Table<PlateSettings, For> {
 
 /// A gate of a run.
 fn gate(
-    row: &Row<PlateSettings, For>,
+    row: &Row<PlateSettings, Group>,
     metric: MetricKey,
     bound: Bound,
     evidence: Evidence,
@@ -67,7 +67,7 @@ fn gate(
     OSCILLATING_PLATE.gate(run, metric, bound, evidence, because)
 }
 
-fn gates(row: &Row<PlateSettings, For>) -> Vec<Gate> {
+fn gates(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
     match row.group {
         Paper => vec![period(row), amplitude(row), energy(row)],
         Order => Vec::new(),
@@ -79,7 +79,7 @@ fn gates(row: &Row<PlateSettings, For>) -> Vec<Gate> {
 }
 
 /// Gate on the period of a swing by the equations of the paper.
-fn period(row: &Row<PlateSettings, For>) -> Gate {
+fn period(row: &Row<PlateSettings, Group>) -> Gate {
     let published = "Published SPH of this plate has periods that are 7 to 12 % too long; shear and rotary \
                      inertia lengthen the period by some per cent.";
     let s = &row.settings;
@@ -92,7 +92,7 @@ fn period(row: &Row<PlateSettings, For>) -> Gate {
 }
 
 /// Gate on the amplitude, at any Poisson's ratio.
-fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
+fn amplitude(row: &Row<PlateSettings, Group>) -> Gate {
     let theory = "A plate whose tip starts at the speed v swings to v T/(2 pi). It may swing 2 % farther, by \
                   which the first mode differs, and 10 % less far, a loss of a fifth of the energy.";
     let swing = Bound::Within(0.9, 1.02);
@@ -108,7 +108,7 @@ fn amplitude(row: &Row<PlateSettings, For>) -> Gate {
 }
 
 /// Gate on the energy of a swing by the equations of the paper.
-fn energy(row: &Row<PlateSettings, For>) -> Gate {
+fn energy(row: &Row<PlateSettings, Group>) -> Gate {
     let stays = "Nothing drives the plate and nothing elastic dissipates, so its energy stays.";
     let gate = gate(row, ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, stays);
     let loses = "The plate loses 8.2 % of its energy with 5 particles through the thickness and 2.4 % with \
@@ -126,14 +126,14 @@ fn energy(row: &Row<PlateSettings, For>) -> Gate {
 }
 
 /// The energy of a total Lagrangian plate.
-fn stored(row: &Row<PlateSettings, For>) -> Gate {
+fn stored(row: &Row<PlateSettings, Group>) -> Gate {
     let because = "The forces derive from the stored energy, however large the swing. The leapfrog keeps it \
                    within (omega dt)^2/8 of the share that is in waves through the thickness, below 1e-3.";
     gate(row, ENERGY_CHANGE, Bound::Within(-1e-3, 1e-3), Evidence::Theory, because)
 }
 
 /// Three swings of a total Lagrangian plate.
-fn of_elements(row: &Row<PlateSettings, For>) -> Vec<Gate> {
+fn of_elements(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
     let period = match row.settings.n {
         ..10 => 0.03,
         10..20 => 0.01,
@@ -163,7 +163,7 @@ const LOCKS: &str = "The displacements of an even number of layers cannot keep t
     an endless plate: one of finite length is a little less stiff, for its end is free.";
 
 /// A total Lagrangian plate that hardly changes its volume.
-fn locked(row: &Row<PlateSettings, For>) -> Gate {
+fn locked(row: &Row<PlateSettings, Group>) -> Gate {
     let thin = "Shear and rotary inertia lengthen the period by 1 %, and the clamp shortens it by half of \
                 that. Beside it is allowed what the project set out to reach with 5 and 10 layers, 3 and 1 \
                 %.";
