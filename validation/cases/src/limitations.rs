@@ -16,16 +16,18 @@ pub fn section(suite: &Suite) -> Section {
          wider bound follows from the cause, unless it is said to be fitted to own runs. Causes that are \
          unexplained state where numbers are off, and not why.",
     );
-    causes.iter().fold(section, |section, (cause, found)| {
+    let blocks = causes.iter().flat_map(|(cause, found)| {
         let mut cases: Vec<&str> = found.iter().map(|found| found.case.name()).collect();
         cases.dedup();
         let command = found.first().map(command).unwrap_or_default();
         let text = format!("{cause} Cases: {}. To see it: `{command}`.", cases.join(", "));
-        section.prose(text).block(Block::Details {
-            summary: format!("The gates ({})", found.len()),
-            blocks: vec![Block::List(found.iter().map(gate).collect())],
-        })
-    })
+        let summary = touchstone_report::counted(found.len(), "gate", "gates");
+        let gates = vec![Block::List(found.iter().map(gate).collect())];
+        [Block::Prose(vec![text]), Block::Details { summary, blocks: gates }]
+    });
+    let blocks = blocks.collect();
+    let summary = touchstone_report::counted(causes.len(), "cause", "causes");
+    section.block(Block::Details { summary, blocks })
 }
 
 /// The gate, its value and its bound.

@@ -14,7 +14,7 @@ use touchstone_harness::{
     notes::Notes,
     runs::{Judged, JudgedRun, counts},
     section,
-    studies::{self, Card, card::headline, cost::against_run_time},
+    studies::{self, Card, Picture, card::headline, cost::against_run_time},
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use touchstone_report::{
@@ -34,6 +34,10 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         rows: of.iter().filter_map(|results| results.row.clone()).collect(),
     };
     let mut opening = vec![Block::Prose(recommended(suite)), Block::Figure(errors(&main))];
+    let films = main
+        .iter()
+        .flat_map(|of| of.studies.of::<Picture>().filter_map(|picture| picture.film(&of.runs)));
+    opening.extend(films.map(Block::Movie));
     if !others.is_empty() {
         opening.push(Block::Details {
             summary: format!("The other {}", counted(others.len(), "case", "cases")),
@@ -57,7 +61,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         counts: suite.counts(),
         opening,
         sections,
-        png_folder: "figures".into(),
+        figure_folder: "figures".into(),
         ..Page::default()
     }
 }
@@ -291,7 +295,7 @@ fn case_section(results: &CaseResults) -> Section {
     let section =
         Section::new(case.name(), title(results)).counts(results.counts()).prose(case.about());
     let recommended = case.recommended();
-    let why = plain(&recommended.reason());
+    let why = recommended.reason();
     let section = section.prose(format!("**Recommended: `{}`**: {why}.", recommended.variant));
     let grades = crate::graded(case.name()).into_iter();
     let grades: Vec<String> =
@@ -299,10 +303,8 @@ fn case_section(results: &CaseResults) -> Section {
     let section = if grades.is_empty() { section } else { section.prose(grades.join(" ")) };
     let section = results.sections.iter().map(study_section).fold(section, Section::child);
     let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
-    section.block(Block::Details {
-        summary: "Variants and all runs".into(),
-        blocks: vec![Block::List(variants), run_table(case, &results.runs.all).into()],
-    })
+    let runs = Section::new(format!("runs-{}", case.name()), "All runs");
+    section.child(runs.block(Block::List(variants)).block(run_table(case, &results.runs.all)))
 }
 
 /// Sections and figures share a name space; figures are named by their study.

@@ -5,7 +5,7 @@ use touchstone_base::{
     record::{Profile, Record},
     spec::RunSpec,
 };
-use touchstone_report::{Axis, Colour, ColourMap, Dots, Figure, Plot, Series};
+use touchstone_report::{Axis, Colour, ColourMap, Dots, Figure, Layer, Movie, Plot, Series};
 
 use crate::{
     runs::{Planned, Runs},
@@ -29,6 +29,24 @@ pub struct Picture {
     pub shown: fn(f64) -> f64,
     /// Ends of the colour range for all panels; `None`: each panel has the range of its values.
     pub range: Option<[f64; 2]>,
+    /// The film of the run of the first panel.
+    pub film: Option<Film>,
+}
+
+/// A film of the particles of a run.
+pub struct Film {
+    /// Caption.
+    pub caption: &'static str,
+    /// The time in words, from a record and a share of its time.
+    pub time: fn(&Record, f64) -> String,
+    /// The ends of x and of y.
+    pub view: [[f64; 2]; 2],
+    /// Width \[px\].
+    pub width: f64,
+    /// Whether particles are shown with their mirror images at x = 0.
+    pub is_mirrored: bool,
+    /// The share of the run at the frame that is shown where nothing may move.
+    pub still: f64,
 }
 
 /// One panel of a picture.
@@ -61,6 +79,73 @@ pub fn keep(
     record.profiles.insert(profile.into(), kept);
 }
 
+/// Frames of a film in a record, evenly over the time of the run.
+pub const FRAMES: usize = 50;
+
+/// The name of the profile of the particles at a share of the time of a run.
+pub fn at_share(share: f64) -> String {
+    format!("particles@{share}")
+}
+
+/// Keeps a frame of a film: places to 1/1000 of their unit, values to 1/10000.
+pub fn keep_frame(
+    record: &mut Record,
+    share: f64,
+    unit: &str,
+    value: (&str, &str),
+    particles: impl Iterator<Item = (Vector2<f64>, f64)>,
+) {
+    let rounded = |number: f64, parts: f64| (number * parts).round() / parts;
+    let coarse = particles.map(|(x, v)| (x.map(|x| rounded(x, 1e3)), rounded(v, 1e4)));
+    keep(record, &at_share(share), unit, value, coarse);
+}
+
+impl Picture {
+    /// The particles of a profile, under the title of a panel.
+    fn plot(&self, record: &Record, panel: &PicturePanel, profile: &str) -> Option<Plot> {
+        let [x, y, value] = &record.profiles.get(profile)?.columns[..] else { return None };
+        let points = x.values.iter().zip(&y.values).zip(&value.values);
+        let points = points.map(|((x, y), value)| (*x, *y, (self.shown)(*value))).collect();
+        let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
+        let (label, colours) = self.colours;
+        let dots = Dots::new(label, colours, panel.spacing, points);
+        let dots = self.range.into_iter().fold(dots, |dots, [low, high]| dots.values(low, high));
+        Some(Plot::new(&panel.title, x, y).layer(dots))
+    }
+
+    /// The film of the run of the first panel; none if its record has too few frames.
+    pub fn film(&self, runs: &Runs) -> Option<Movie> {
+        let (film, first) = (self.film.as_ref()?, self.panels.first()?);
+        let record = runs.record(&first.spec)?;
+        let [x, y] = film.view;
+        let frame = |share: f64| {
+            let name = at_share(share);
+            let mut plot = self.plot(record, first, &name)?;
+            plot.title = (film.time)(record, share);
+            (plot.x, plot.y) = (plot.x.range(x[0], x[1]), plot.y.range(y[0], y[1]));
+            for layer in plot.layers.iter_mut().filter(|_| film.is_mirrored) {
+                let Layer::Dots(dots) = layer else { continue };
+                let images: Vec<_> = dots.points.iter().map(|(x, y, v)| (-x, *y, *v)).collect();
+                dots.points.extend(images);
+            }
+            let panel = self.panels.iter().find(|panel| panel.profile == name);
+            Some((share, outlined(plot, panel.map_or(&[], |panel| &panel.lines))))
+        };
+        let shares = (0..=FRAMES).map(|k| k as f64 / FRAMES as f64);
+        let (shares, frames): (Vec<f64>, Vec<Plot>) = shares.filter_map(frame).unzip();
+        let still = shares.iter().position(|share| *share >= film.still)?;
+        let (id, caption) = (format!("{}-film", self.texts[0]), film.caption.into());
+        let size = (film.width, film.width * (y[1] - y[0]) / (x[1] - x[0]));
+        (frames.len() > FRAMES / 2).then_some(Movie { id, caption, frames, still, size })
+    }
+}
+
+/// Adds lines of a reference to a plot.
+fn outlined(plot: Plot, lines: &[Vec<(f64, f64)>]) -> Plot {
+    let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(1.2);
+    lines.iter().map(line).fold(plot, Plot::layer)
+}
+
 impl Study for Picture {
     fn runs(&self) -> Vec<Planned> {
         self.panels.iter().map(|panel| Planned::new(panel.spec.clone())).collect()
@@ -68,20 +153,9 @@ impl Study for Picture {
 
     /// The runs that kept their particles.
     fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
-        let panel = |PicturePanel { title, spec, profile, spacing, lines }: &PicturePanel| {
-            let record = runs.record(spec)?;
-            let [x, y, value] = &record.profiles.get(profile)?.columns[..] else { return None };
-            let points = x.values.iter().zip(&y.values).zip(&value.values);
-            let points = points.map(|((x, y), value)| (*x, *y, (self.shown)(*value))).collect();
-            let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
-            let (label, colours) = self.colours;
-            let dots = Dots::new(label, colours, *spacing, points);
-            let dots =
-                self.range.into_iter().fold(dots, |dots, [low, high]| dots.values(low, high));
-            let plot = Plot::new(title, x, y).layer(dots);
-            let line =
-                |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(1.2);
-            Some(lines.iter().map(line).fold(plot, Plot::layer))
+        let panel = |panel: &PicturePanel| {
+            let plot = self.plot(runs.record(&panel.spec)?, panel, &panel.profile)?;
+            Some(outlined(plot, &panel.lines))
         };
         let [id, title, caption] = self.texts;
         let [width, height] = self.size;

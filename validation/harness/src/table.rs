@@ -158,7 +158,8 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
                 all.extend(panels(row));
             }
         }
-        Picture { texts, colours, size, panels: all, columns, shown: |value| value, range: None }
+        let shown = |value| value;
+        Picture { texts, colours, size, panels: all, columns, shown, range: None, film: None }
     }
 
     /// The plan: every run with its gates.

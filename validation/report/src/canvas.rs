@@ -99,6 +99,8 @@ pub(super) trait Sheet {
     fn disc(&mut self, centre: Point, radius: f64, colour: Colour);
     /// A text with its point on its base line; upright text reads upwards, to the left of its point.
     fn text(&mut self, text: &str, at: Point, how: Type);
+    /// From here on shapes belong to a series of this name; to none if it is empty.
+    fn series(&mut self, _name: &str) {}
 }
 
 /// A part of a sheet, whose points count from a corner of it.
@@ -192,6 +194,11 @@ impl<'a> Canvas<'a> {
         polygons.iter().for_each(|polygon| self.polygon(polygon, fill));
         let outlined = polygons.iter().filter(|_| open);
         outlined.for_each(|polygon| self.outline(polygon, colour, OPEN_STROKE));
+    }
+
+    /// From here on shapes belong to a series of this name; to none if it is empty.
+    pub fn series(&mut self, name: &str) {
+        self.sheet.series(name);
     }
 
     /// A text, vertically centred on the digits' height at the point.

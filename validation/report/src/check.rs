@@ -163,7 +163,7 @@ mod tests {
             overview,
             opening: vec![Block::Prose(vec!["Note.".into()])],
             sections: vec![section, three, verdicts],
-            png_folder: "figures".into(),
+            figure_folder: "figures".into(),
             ..Page::default()
         }
     }
@@ -177,8 +177,9 @@ mod tests {
     fn a_real_page_passes() {
         let html = real_page().html();
         check_page(&html).unwrap();
-        let counts = ["<figure", "<table", "<section"].map(|tag| html.matches(tag).count());
-        assert_eq!(counts, [1, 4, 4]);
+        let counts = ["<figure", "<table", "<section", "<details class=\"study\""]
+            .map(|tag| html.matches(tag).count());
+        assert_eq!(counts, [1, 4, 3, 1]);
     }
 
     #[test]
@@ -212,7 +213,7 @@ mod tests {
         let names = std::fs::read_dir(&figures).unwrap().map(|entry| entry.unwrap().file_name());
         let mut names: Vec<_> = names.collect();
         names.sort();
-        assert_eq!(names, ["fig.png"]);
+        assert_eq!(names, ["fig.png", "fig.svg"]);
     }
 
     fn page(body: &str) -> String {

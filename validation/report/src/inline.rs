@@ -35,6 +35,16 @@ pub(super) fn inline(text: &str) -> Markup {
     PreEscaped(out)
 }
 
+/// The text without its marks, for readers who hear it.
+pub(super) fn aloud(text: &str) -> String {
+    let html = inline(text).into_string();
+    let shown = html.split('<').map(|part| part.split_once('>').map_or(part, |(_, text)| text));
+    let shown: String = shown.collect();
+    [("&lt;", "<"), ("&gt;", ">"), ("&quot;", "\""), ("&#39;", "'"), ("&amp;", "&")]
+        .into_iter()
+        .fold(shown, |text, (mark, character)| text.replace(mark, character))
+}
+
 /// Writes the element at the start of the text; the bytes that it took, 0 for none.
 fn element(text: &str, out: &mut String) -> usize {
     if let Some(mark) = text.strip_prefix('\\').and_then(|after| after.chars().next()) {
@@ -107,6 +117,11 @@ mod tests {
             assert_eq!(shown.matches('<').count(), 2, "{shown}");
         }
         assert_eq!(of("a\\b"), "a\\b");
+    }
+
+    #[test]
+    fn what_is_read_aloud_has_no_marks() {
+        assert_eq!(aloud("See [*a*](#b) & `c<d`, \"x\" > 1."), "See a & c<d, \"x\" > 1.");
     }
 
     #[test]

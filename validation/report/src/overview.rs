@@ -1,10 +1,10 @@
 //! The first screen of a page: a table with a row a case.
 
 use super::figure::Figure;
-use super::inline::inline;
-use super::pixels::drawing;
+use super::inline::{aloud, inline};
+use super::render;
 use super::table::{Cell, Column};
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 /// A row of the table.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ impl Overview {
         html! {
             tr {
                 @if has_pictures {
-                    td.picture { @if let Some(picture) = &row.picture { (drawing(picture)) } }
+                    td.picture { @if let Some(picture) = &row.picture { (drawn(picture)) } }
                 }
                 th scope="row" {
                     a href=(format!("#{}", row.id)) { (inline(&row.title)) }
@@ -65,6 +65,11 @@ impl Overview {
             }
         }
     }
+}
+
+/// The panels of a picture.
+fn drawn(picture: &Figure) -> Markup {
+    PreEscaped(render::parts(picture, &aloud(&picture.caption)).panels.concat())
 }
 
 #[cfg(test)]

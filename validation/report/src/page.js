@@ -49,7 +49,10 @@
   var case_of = function (row) { return row.id.split(".")[0]; };
   var fields = {
     "case": case_of,
-    "variant": function (row) { return text(row, 2).split(" ")[0]; },
+    "variant": function (row) {
+      var name = row.children[2].querySelector("code");
+      return name ? name.textContent : "(a study)";
+    },
     "status": function (row) { return row.dataset.status; },
     "evidence": function (row) { return text(row, 6); }
   };
@@ -113,8 +116,9 @@
       document.getElementById("verdicts").scrollIntoView();
     } else if (rows.includes(target)) { form.reset(); apply(); open(target); }
     else if (target) {
-      var closed = target.closest("details");
-      if (closed) { closed.open = true; }
+      for (var closed = target.closest("details"); closed; closed = closed.parentElement.closest("details")) {
+        closed.open = true;
+      }
       target.scrollIntoView();
     }
   };
@@ -136,11 +140,8 @@
     form.addEventListener("submit", function (event) { event.preventDefault(); });
     form.addEventListener("input", function () { most = 10; apply(); remember(); });
     more.addEventListener("click", function () { most = rows.length; apply(); });
-    var before = most;
-    addEventListener("beforeprint", function () { before = most; most = rows.length; apply(); });
-    addEventListener("afterprint", function () { most = before; apply(); });
-    addEventListener("hashchange", follow);
     apply();
   }
+  addEventListener("hashchange", follow);
   follow();
 }());

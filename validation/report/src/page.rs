@@ -4,10 +4,10 @@ use super::counts::Counts;
 use super::explorer::{Explorer, verdicts_where};
 use super::figure::Figure;
 use super::font;
-use super::inline::inline;
+use super::inline::{aloud, inline};
+use super::movie::Movie;
 use super::overview::Overview;
-use super::pixels::drawing;
-use super::render;
+use super::render::{self, Parts};
 use super::table::{Table, class, first_sentence, mark};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use std::path::Path;
 use touchstone_base::{files::OutputFolder, text::base64};
 
 const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+const SCRIPTS: [&str; 2] = [include_str!("page.js"), include_str!("figures.js")];
 
 /// A report: a first screen, then sections.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,8 +33,8 @@ pub struct Page {
     pub opening: Vec<Block>,
     /// Sections in order.
     pub sections: Vec<Section>,
-    /// Folder of the figures' PNG files, in the folder of the page; an empty name writes and links none.
-    pub png_folder: String,
+    /// Folder of the files of figures beside the page; empty writes none.
+    pub figure_folder: String,
     /// Names the records that the page shows, as [`made_from`] reads it.
     pub made_from: String,
 }
@@ -84,9 +84,9 @@ impl Section {
     }
 
     /// Adds its drawings.
-    fn figures<'a>(&'a self, to: &mut Vec<&'a Figure>) {
-        add_figures(&self.blocks, to);
-        self.children.iter().for_each(|child| child.figures(to));
+    fn images<'a>(&'a self, to: &mut Vec<Image<'a>>) {
+        add_images(&self.blocks, to);
+        self.children.iter().for_each(|child| child.images(to));
     }
 }
 
@@ -99,6 +99,8 @@ pub enum Block {
     List(Vec<String>),
     /// A drawing with its caption and number; its id is its anchor.
     Figure(Figure),
+    /// Pictures one after another, with caption and number.
+    Movie(Movie),
     /// A table with its number.
     Table(Table),
     /// Results side by side.
@@ -120,6 +122,12 @@ impl From<Figure> for Block {
     }
 }
 
+impl From<Movie> for Block {
+    fn from(movie: Movie) -> Self {
+        Self::Movie(movie)
+    }
+}
+
 impl From<Table> for Block {
     fn from(table: Table) -> Self {
         Self::Table(table)
@@ -127,8 +135,8 @@ impl From<Table> for Block {
 }
 
 /// Numbers given out while a page is written.
-struct Writer<'a> {
-    png_folder: &'a str,
+#[derive(Default)]
+struct Writer {
     figures: usize,
     tables: usize,
 }
@@ -136,7 +144,7 @@ struct Writer<'a> {
 impl Page {
     /// The page as HTML that is well-formed XML too.
     pub fn html(&self) -> String {
-        let mut writer = Writer { png_folder: &self.png_folder, figures: 0, tables: 0 };
+        let mut writer = Writer::default();
         let face = format!(
             "@font-face{{font-family:\"DejaVu Sans\";src:url(data:font/ttf;base64,{})}}\n",
             base64(font::BYTES)
@@ -159,24 +167,24 @@ impl Page {
                     main {
                         @if !self.overview.rows.is_empty() { (self.overview.markup()) }
                         @if self.counts.worst().is_some() { (self.counts.line()) }
-                        @for block in &self.opening { (writer.block(block)) }
+                        div.opening { @for block in &self.opening { (writer.block(block)) } }
                         @if self.sections.len() > 1 {
                             nav aria-label="Contents" { (contents(&self.sections)) }
                         }
                         @for section in &self.sections { (writer.section(section, 2)) }
                     }
-                    script { (PreEscaped(SCRIPT)) }
+                    @for script in SCRIPTS { script { (PreEscaped(script)) } }
                 }
             }
         };
         page.into_string()
     }
 
-    /// All its drawings.
-    fn figures(&self) -> Vec<&Figure> {
+    /// Its figures and films as files: names and what makes their bytes.
+    fn images(&self) -> Vec<Image<'_>> {
         let mut all = Vec::new();
-        add_figures(&self.opening, &mut all);
-        self.sections.iter().for_each(|section| section.figures(&mut all));
+        add_images(&self.opening, &mut all);
+        self.sections.iter().for_each(|section| section.images(&mut all));
         all
     }
 
@@ -184,10 +192,10 @@ impl Page {
     /// complete or not at all.
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
-        if !self.png_folder.is_empty() {
-            // Also removes files left by a killed report.
-            let images = OutputFolder::create_inside(&folder.join(&self.png_folder));
-            write_images(&self.figures(), &images.map_err(io::Error::other)?)?;
+        if !self.figure_folder.is_empty() {
+            // What a report that was killed left there goes, too.
+            let images = OutputFolder::create_inside(&folder.join(&self.figure_folder));
+            write_images(&self.images(), &images.map_err(io::Error::other)?)?;
         }
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let written = OutputFolder::unchecked(folder).write(&name, html.as_bytes());
@@ -206,21 +214,32 @@ pub fn made_from(html: &str) -> Option<&str> {
     Some(after.split_once('"')?.0)
 }
 
-/// Writes the PNG files of drawings.
-fn write_images(all: &[&Figure], folder: &OutputFolder) -> io::Result<()> {
-    let write = |figure: &&Figure| -> io::Result<()> {
-        let name = format!("{}.png", figure.id);
-        folder.write(&name, &render::png_bytes(figure)?).map(drop).map_err(io::Error::other)
-    };
-    all.par_iter().try_for_each(write)
+/// What is written beside a page.
+enum Image<'a> {
+    Figure(&'a Figure),
+    Movie(&'a Movie),
 }
 
-/// Adds the drawings of blocks, including folded ones.
-fn add_figures<'a>(blocks: &'a [Block], to: &mut Vec<&'a Figure>) {
+/// Writes figures as SVG and PNG files, and films as PNG files of several frames.
+fn write_images(all: &[Image], folder: &OutputFolder) -> io::Result<()> {
+    let write =
+        |name: String, bytes: &[u8]| folder.write(&name, bytes).map(drop).map_err(io::Error::other);
+    all.par_iter().try_for_each(|image| match image {
+        Image::Figure(figure) => {
+            write(format!("{}.svg", figure.id), render::svg(figure).as_bytes())?;
+            write(format!("{}.png", figure.id), &render::png_bytes(figure)?)
+        }
+        Image::Movie(movie) => write(format!("{}.png", movie.id), &movie.apng()?),
+    })
+}
+
+/// Adds the drawings of blocks, those behind a click with them.
+fn add_images<'a>(blocks: &'a [Block], to: &mut Vec<Image<'a>>) {
     for block in blocks {
         match block {
-            Block::Figure(figure) if !figure.panels.is_empty() => to.push(figure),
-            Block::Details { blocks, .. } => add_figures(blocks, to),
+            Block::Figure(figure) if !figure.panels.is_empty() => to.push(Image::Figure(figure)),
+            Block::Movie(movie) => to.push(Image::Movie(movie)),
+            Block::Details { blocks, .. } => add_images(blocks, to),
             _ => {}
         }
     }
@@ -242,7 +261,8 @@ fn contents(sections: &[Section]) -> Markup {
     }
 }
 
-impl Writer<'_> {
+impl Writer {
+    /// A section of the page, or a study of one, which opens by a click.
     fn section(&mut self, section: &Section, level: usize) -> Markup {
         let title = inline(&section.title);
         let of = match level {
@@ -250,23 +270,22 @@ impl Writer<'_> {
             _ => format!("q={}", section.title),
         };
         let gates = |status: &str| verdicts_where(&format!("{of}&status={status}"));
-        html! {
-            section id=(section.id) {
-                @match level {
-                    2 => h2 { (title) },
-                    3 => h3 { (title) },
-                    _ => h4 { (title) },
-                }
-                @if section.counts.worst().is_some() { (section.counts.chips(gates)) }
-                @for block in &section.blocks { (self.block(block)) }
-                @if level == 2 { @if section.children.len() > 1 {
-                    details.inside {
-                        summary { "Contents of this part" }
-                        (contents(&section.children))
+        let content = html! {
+            @if section.counts.worst().is_some() { (section.counts.chips(gates)) }
+            @for block in &section.blocks { (self.block(block)) }
+            @for child in &section.children { (self.section(child, level + 1)) }
+        };
+        match level {
+            2 => html! { section id=(section.id) { h2 { (title) } (content) } },
+            _ => html! {
+                details.study id=(section.id) {
+                    summary {
+                        @if level == 3 { h3 { (title) } } @else { h4 { (title) } }
+                        @if section.counts.worst().is_some() { span.mark { (section.counts.short()) } }
                     }
-                } }
-                @for child in &section.children { (self.section(child, level + 1)) }
-            }
+                    (content)
+                }
+            },
         }
     }
 
@@ -278,7 +297,8 @@ impl Writer<'_> {
             Block::Figure(figure) if figure.panels.is_empty() => {
                 html! { p id=(figure.id) { "No figure: none of the runs that it shows was completed." } }
             }
-            Block::Figure(figure) => self.figure(&figure.id, &figure.caption, drawing(figure)),
+            Block::Figure(figure) => self.figure(&figure.id, &figure.caption, &arranged(figure)),
+            Block::Movie(movie) => self.figure(&movie.id, &movie.caption, &movie.markup()),
             Block::Table(table) => {
                 self.tables += 1;
                 table.markup(&format!("Table {}", self.tables))
@@ -294,21 +314,32 @@ impl Writer<'_> {
         }
     }
 
-    fn figure(&mut self, id: &str, caption: &str, drawing: Markup) -> Markup {
+    fn figure(&mut self, id: &str, caption: &str, drawing: &Markup) -> Markup {
         self.figures += 1;
-        let link = format!("{}/{id}.png", self.png_folder);
         html! {
-            figure id=(id) {
-                div.card tabindex="0" role="group" aria-label=(format!("Figure {}", self.figures)) {
-                    (drawing)
-                }
-                figcaption {
-                    b { "Figure " (self.figures) ". " }
-                    (inline(caption))
-                    @if !self.png_folder.is_empty() { " " a.png href=(link) { "PNG" } }
+            figure id=(id) aria-label=(aloud(caption)) {
+                (drawing)
+                figcaption { b { "Figure " (self.figures) ". " } (inline(caption)) }
+            }
+        }
+    }
+}
+
+/// The panels of a figure, its legend and its data. Series can be switched by the script.
+fn arranged(figure: &Figure) -> Markup {
+    let Parts { panels, legend, data } = render::parts(figure, &aloud(&figure.caption));
+    html! {
+        div.panels { @for panel in &panels { (PreEscaped(panel)) } }
+        @if !legend.is_empty() {
+            div.legend role="group" aria-label="Series" {
+                @for (name, sample) in &legend {
+                    button type="button" data-series=(name) aria-pressed="true" {
+                        (PreEscaped(sample)) (name)
+                    }
                 }
             }
         }
+        script type="application/json" { (PreEscaped(data)) }
     }
 }
 
@@ -330,8 +361,9 @@ mod tests {
 
     #[test]
     fn the_script_is_plain_xml_text() {
-        assert!(!SCRIPT.contains(['<', '&']) && !STYLE.contains(['<', '&']));
-        assert!(SCRIPT.lines().count() < 200);
+        for text in [SCRIPTS[0], SCRIPTS[1], STYLE] {
+            assert!(!text.contains(['<', '&']) && text.lines().count() < 200);
+        }
     }
 
     /// `report` of a store that lacks the runs of a figure ended with 4, as by a bug.
@@ -342,7 +374,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let images = OutputFolder::unchecked(folder.path());
         let page = Page { sections: vec![section], ..Page::default() };
-        write_images(&page.figures(), &images).unwrap();
+        write_images(&page.images(), &images).unwrap();
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
         let html = page.html();
         crate::check_page(&html).expect("a page that opens");

@@ -32,6 +32,7 @@ struct Mark<'a> {
     text: &'a str,
     room: Rect,
     colour: Colour,
+    series: &'a str,
 }
 
 impl<'a> Prepared<'a> {
@@ -67,7 +68,12 @@ impl<'a> Prepared<'a> {
         this
     }
 
-    /// Its colour bar, if any.
+    /// What is drawn, and the axes by which a place becomes a value.
+    pub fn parts(&self) -> (&'a Plot, [&Ruler; 2]) {
+        (self.plot, [&self.frame.x, &self.frame.y])
+    }
+
+    /// Its colour bar, if it has one.
     pub fn bar(&mut self) -> Option<&mut Bar> {
         self.dots.as_mut().map(|dots| &mut dots.bar)
     }
@@ -130,11 +136,11 @@ impl<'a> Prepared<'a> {
         let points = self.series.iter().flat_map(|series| {
             let last = series.labels.len().saturating_sub(1);
             let all = series.points.iter().zip(&series.labels).enumerate();
-            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, series.look.colour))
+            all.map(move |(k, (p, text))| (k != 0 && k != last, *p, text, *series))
         });
         let mut points: Vec<_> = points.collect();
         points.sort_by_key(|(is_between, ..)| *is_between);
-        for (_, point, text, colour) in points {
+        for (_, point, text, series) in points {
             let Some(at) = self.frame.place(point) else { continue };
             let is_same = |Mark { text: other, point: (x, y), .. }: &Mark| {
                 other == text && (x - at.0).hypot(y - at.1) < 6.0
@@ -151,7 +157,8 @@ impl<'a> Prepared<'a> {
             let free = rooms.filter_map(|room| Some((hidden(&room)?, room)));
             if let Some((_, room)) = free.min_by_key(|(lines, _)| *lines) {
                 sample_rect(&mut obstacles, room);
-                self.marks.push(Mark { point: at, text, room, colour });
+                let (colour, series) = (series.look.colour, &*series.name);
+                self.marks.push(Mark { point: at, text, room, colour, series });
             }
         }
     }
@@ -245,20 +252,25 @@ impl<'a> Prepared<'a> {
         }
         self.frame.draw(canvas);
         for layer in &self.plot.layers {
-            if let Layer::Cells { cells, colour, .. } = layer {
+            if let Layer::Cells { cells, colour, name } = layer {
+                canvas.series(name);
                 cells.iter().for_each(|cell| draw_cell(canvas, &self.frame, cell, *colour));
             }
         }
+        canvas.series("");
         if let Some(dots) = &self.dots {
             dots.draw(canvas, &self.frame);
         }
         for series in &self.series {
+            canvas.series(&series.name);
             self.draw_series(canvas, series);
         }
         for mark in &self.marks {
+            canvas.series(mark.series);
             let at = mark.room.at((0.0, 0.5));
             canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
         }
+        canvas.series("");
         canvas.frame(area, Colour::BLACK, 1.0);
         if let Some(bar) = self.own_bar() {
             bar.draw(canvas, area);

@@ -3,6 +3,7 @@
 use super::bar::Bar;
 use super::canvas::{Canvas, Rect};
 use super::colour::Colour;
+use super::data;
 use super::figure::Figure;
 use super::frame::Room;
 use super::legend::{self, Entry};
@@ -50,18 +51,22 @@ fn shared_bar(panels: &mut [Prepared]) -> Option<Bar> {
     Some(bar)
 }
 
-/// Aligns the axes of all panels in a row and in a column.
-fn layout(figure: &Figure) -> Layout<'_> {
-    let columns = figure.columns.clamp(1, figure.panels.len().max(1));
+/// The panels with their scales; pictures of particles have the same axes.
+fn prepared(figure: &Figure) -> Vec<Prepared<'_>> {
     let room = (figure.panel_size.0.max(80.0), figure.panel_size.1.max(60.0));
     let mut extents: Vec<[Vec<f64>; 2]> = figure.panels.iter().map(extent).collect();
-    // Adjacent pictures have equal axes.
     if figure.panels.iter().all(|plot| plot.dots().is_some()) {
         let all = [0, 1].map(|axis| extents.iter().flat_map(|of| of[axis].clone()).collect());
         extents.fill(all);
     }
     let panels = figure.panels.iter().zip(&extents);
-    let mut panels: Vec<_> = panels.map(|(plot, of)| Prepared::new(plot, room, of)).collect();
+    panels.map(|(plot, of)| Prepared::new(plot, room, of)).collect()
+}
+
+/// Aligns the axes of all panels in a row and in a column.
+fn layout(figure: &Figure) -> Layout<'_> {
+    let columns = figure.columns.clamp(1, figure.panels.len().max(1));
+    let mut panels = prepared(figure);
     let legend = legend(&panels);
     let bar = shared_bar(&mut panels);
     let rooms: Vec<Room> = panels.iter().map(|panel| panel.room()).collect();
@@ -121,7 +126,44 @@ fn draw(canvas: &mut Canvas, layout: &Layout) {
     }
 }
 
-/// The figure as an SVG element of its natural size that shrinks with its container.
+/// A figure as the parts that a page arranges.
+pub(super) struct Parts {
+    /// Each panel as an SVG element of its natural size that shrinks with its container.
+    pub panels: Vec<String>,
+    /// The entries of the legend: name and sample, an SVG element.
+    pub legend: Vec<(String, String)>,
+    /// Axes and values of all panels, as JSON.
+    pub data: String,
+}
+
+/// The parts of a figure whose panels are read aloud as this text.
+pub(super) fn parts(figure: &Figure, aloud: &str) -> Parts {
+    let mut panels = prepared(figure);
+    let legend = legend(&panels).into_iter().map(|entry| (entry.sample(), entry.name));
+    let legend = legend.map(|(sample, name)| (name, sample)).collect();
+    if shared_bar(&mut panels).is_some() {
+        // The last one has the bar of all.
+        panels.last_mut().and_then(Prepared::bar).into_iter().for_each(|bar| bar.is_shared = false);
+    }
+    let drawn = |panel: &Prepared| {
+        let Room { left, width, right, top, height, bottom } = panel.room();
+        let area = Rect { left: EDGE + left, top: EDGE + top, width, height };
+        let size = (2.0 * EDGE + left + width + right, 2.0 * EDGE + top + height + bottom);
+        let mut sheet = Svg::default();
+        let mut canvas = Canvas::new(&mut sheet);
+        canvas.fill(Rect::of((size.0.ceil(), size.1.ceil())), Colour::WHITE);
+        panel.draw(&mut canvas.from(area));
+        let title = panel.parts().0.title.as_str();
+        let label = if title.is_empty() { aloud.into() } else { format!("{title}. {aloud}") };
+        let svg =
+            svg::opening(&label, (size.0.ceil(), size.1.ceil())) + &sheet.finish() + "</svg>\n";
+        (svg, data::panel(panel, area))
+    };
+    let (panels, data): (Vec<String>, Vec<_>) = panels.iter().map(drawn).unzip();
+    Parts { panels, legend, data: data::json(data) }
+}
+
+/// The whole figure as an SVG element of its natural size.
 pub fn svg(figure: &Figure) -> String {
     let layout = layout(figure);
     let mut sheet = Svg::default();
@@ -285,7 +327,7 @@ mod tests {
             Plot::new("", Axis::linear("x"), Axis::linear("y")).layer(line)
         };
         let first = plot("a name", Colour::BLUE);
-        let names = |second| svg(&figure(first.clone()).panel(second)).matches("a name").count();
+        let names = |second| svg(&figure(first.clone()).panel(second)).matches(">a name<").count();
         assert_eq!(
             [Colour::BLUE, Colour::GREEN].map(|colour| names(plot("a name", colour))),
             [1, 2]

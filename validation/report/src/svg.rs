@@ -18,19 +18,28 @@ pub(super) struct Svg {
     open: (String, &'static str),
     /// Where the last shape of this element began or ended.
     at: (i64, i64),
+    /// The series to which shapes belong.
+    series: String,
 }
 
 impl Svg {
     /// All elements.
     pub fn finish(mut self) -> String {
-        self.text.push_str(self.open.1);
+        self.series("");
+        self.close();
         self.text
     }
 
-    /// Continues the last element if it has the same opening, else begins one.
+    /// Closes the element that is open.
+    fn close(&mut self) {
+        let (_, closing) = std::mem::take(&mut self.open);
+        self.text.push_str(closing);
+    }
+
+    /// Goes on in the last element if it has the same opening, else begins one.
     fn within(&mut self, opening: String, closing: &'static str) {
         if self.open.0 != opening {
-            self.text.push_str(self.open.1);
+            self.close();
             self.text.push_str(&opening);
             (self.open, self.at) = ((opening, closing), (0, 0));
         }
@@ -124,15 +133,31 @@ impl Sheet for Svg {
         };
         self.text.push_str(&format!("<text {place}>{}</text>\n", escaped(text)));
     }
+
+    fn series(&mut self, name: &str) {
+        if self.series != name {
+            self.close();
+            if !self.series.is_empty() {
+                self.text.push_str("</g>\n");
+            }
+            if !name.is_empty() {
+                self.text.push_str(&format!("<g data-series=\"{}\">\n", escaped(name)));
+            }
+            self.series = name.into();
+        }
+    }
 }
 
-/// The opening tag of a drawing of a size in CSS pixels, which shrinks with its container.
-pub(super) fn opening(name: &str, (width, height): (f64, f64)) -> String {
+/// The opening tag of a drawing of a size in CSS pixels, which shrinks with its container. `label` is read
+/// aloud; without one the drawing is an ornament.
+pub(super) fn opening(label: &str, (width, height): (f64, f64)) -> String {
+    let role = match label {
+        "" => "aria-hidden=\"true\"".to_string(),
+        label => format!("role=\"img\" aria-label=\"{}\"", escaped(label)),
+    };
     format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"{}\" width=\"{width}\" \
-         height=\"{height}\" viewBox=\"0 0 {} {}\" font-family=\"{}\" fill=\"none\" \
-         stroke-linejoin=\"round\">\n",
-        escaped(name),
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" {role} width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {} {}\" font-family=\"{}\" fill=\"none\" stroke-linejoin=\"round\">\n",
         units(width),
         units(height),
         font::FAMILY
@@ -172,12 +197,16 @@ mod tests {
         svg.disc((5.0, 5.0), 2.0, Colour::BLUE);
         svg.text("a < b", (1.0, 2.0), Type::new(11.0, Align::End));
         svg.text("c", (3.0, 2.0), Type::new(11.0, Align::End));
+        svg.series("x");
+        svg.disc((5.0, 5.0), 2.0, Colour::BLUE);
         let expected = "<path stroke=\"#000\" stroke-width=\"4\" d=\"m0 4h8l4-2m-8 2v4\"/>\n\
                         <path fill=\"#0072b2\" d=\"m4 4h4v4zm-4-4h4v4z\"/>\n\
                         <path stroke=\"#0072b2\" stroke-width=\"16\" stroke-linecap=\"round\" \
                         d=\"m20 20h0\"/>\n\
                         <g fill=\"#000\" font-size=\"44\" text-anchor=\"end\">\n\
-                        <text x=\"4\" y=\"8\">a &lt; b</text>\n<text x=\"12\" y=\"8\">c</text>\n</g>\n";
+                        <text x=\"4\" y=\"8\">a &lt; b</text>\n<text x=\"12\" y=\"8\">c</text>\n</g>\n\
+                        <g data-series=\"x\">\n<path stroke=\"#0072b2\" stroke-width=\"16\" \
+                        stroke-linecap=\"round\" d=\"m20 20h0\"/>\n</g>\n";
         assert_eq!(svg.finish(), expected);
     }
 }

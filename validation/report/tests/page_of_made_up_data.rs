@@ -116,7 +116,7 @@ fn page() -> io::Result<Page> {
                 .block(details),
             curves,
         ],
-        png_folder: "figures".into(),
+        figure_folder: "figures".into(),
         ..Page::default()
     })
 }

@@ -191,7 +191,7 @@ fn early(
     let path = folder.path().join(PAGE);
     let words = format!("{}: {}", path.display(), lacking[0]);
     page.lead.push(not_complete(lacking));
-    page.png_folder.clear();
+    page.figure_folder.clear();
     write_verdicts(folder, &suite).ok()?;
     page.write_html(&path, &page.html()).ok()?;
     *last = Some((Instant::now(), start.elapsed()));

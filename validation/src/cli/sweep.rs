@@ -88,7 +88,7 @@ pub fn page(cases: &[(&'static dyn Case, Vec<Record>)], made: &str) -> Result<Pa
             "{made}. Errors and costs of {runs} that no tier plans. No gate is judged."
         )],
         sections,
-        png_folder: "figures".into(),
+        figure_folder: "figures".into(),
         ..Page::default()
     })
 }

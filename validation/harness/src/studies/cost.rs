@@ -8,10 +8,10 @@ use touchstone_base::{
     submission::OURS,
 };
 use touchstone_report::{
-    Axis, Cell, Colour, Figure, Plot, Series, Shape, Table, exact, first_sentence, percent,
+    Axis, Block, Cell, Colour, Figure, Plot, Series, Shape, Table, exact, first_sentence, percent,
 };
 
-use super::{Card, Ladder};
+use super::{Card, Ladder, sweep::Resolution};
 use crate::{
     case::Case,
     columns::Columns,
@@ -181,13 +181,17 @@ impl Study for Accuracy {
         };
         let rows: Vec<Row> = self.ladders.iter().map(row).collect();
         let id = format!("{}-work-precision", self.id);
-        let section = Section::new(&id, "Error against spacing and run time");
+        let section = Section::new(&id, "What a smaller error costs");
         let judged = rows.iter().filter_map(|row| Some((row.of.order.clone()?, &row.found)));
         let section = judged.fold(section, |section, (gate, found)| {
             section.judge(gate, found.as_ref().map_or(f64::NAN, |found| found.order))
         });
         let has_levels = rows.iter().any(|row| row.points.len() > 1);
-        has_levels.then(|| section.block(figure(&id, self, &rows)).block(table(self, &rows)))
+        let summary = "Error against spacing and pair interactions".into();
+        let blocks = vec![refined(&id, self, &rows).into()];
+        let section =
+            section.block(timed(&id, self, &rows)).block(Block::Details { summary, blocks });
+        has_levels.then(|| section.block(table(self, &rows)))
     }
 
     /// Ladders go on by their last ratio.
@@ -208,6 +212,16 @@ pub fn against_run_time(
 ) -> Option<Plot> {
     let (metric, accuracy) = (studies.error()?, studies.first::<Accuracy>()?);
     let card = studies.first::<Card>()?;
+    // A ladder at another value of the setting than the run of the card says so.
+    let setting = |of: &RunSpec| of.settings[card.breaks.setting].as_f64();
+    let finest = accuracy.finest(&[case.recommended().variant]).first().and_then(setting);
+    let resolution = Resolution::of(case, studies);
+    let is_other = |value: &f64| card.runs.first().and_then(setting) != Some(*value);
+    let is_resolution = resolution.is_some_and(|of| of.setting == card.breaks.setting);
+    let other = finest.filter(is_other).filter(|_| !is_resolution);
+    let [before, after] = card.breaks.words;
+    let other = other.map_or(String::new(), |value| format!(", {before}{}{after}", exact(value)));
+    let title = format!("{title}{other}");
     let plot = Plot::new(title, Axis::log("run time [s]"), Axis::log(card.axis));
     let peers = runs.peers.iter().filter_map(|run| {
         let of = run.record.run.submission.as_ref().filter(|of| of.code != OURS)?;
@@ -235,32 +249,40 @@ pub fn against_run_time(
     Some(lines.fold(plot.layer(others), Plot::layer))
 }
 
-/// Error over spacing, over run time and over work.
-fn figure(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
-    let slope = accuracy.slope.map(|order| format!(" The grey line has order {}.", exact(order)));
+/// Error over run time.
+fn timed(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
+    let about = first_sentence(&accuracy.about).0;
     let caption = format!(
-        "{} Over spacing (left), run time on one core (middle) and work (right): {}.{}",
-        first_sentence(&accuracy.about).0,
-        accuracy.label,
-        slope.unwrap_or_default(),
+        "{about} Error over run time on one core. Numbers at the ends of lines are resolutions; no point beats \
+         the pale line in both error and time."
     );
-    let axes = [accuracy.spacing, accuracy.label.as_str()];
-    let lines = rows.iter().map(|row| (row.of.variant, row.levels.as_slice()));
-    let spacing = orders::plot("Error against spacing", axes, lines, accuracy.slope.as_slice());
-    let line = |row: &'_ Row| (row.of.variant, row.points.clone());
-    let lines: Vec<_> = rows.iter().map(line).collect();
-    let lines: Vec<Line> = lines.iter().map(|(name, points)| Line { name, points }).collect();
-    // The error is named at the panel on the left.
-    let time = ["Error against run time", "run time on one core [s]", ""];
-    let clock = panel(time, &lines, Point::median, true);
-    let work = ["Error against work", "pair interactions [-]", ""];
-    let counted = panel(work, &lines, |p| p.pairs, false);
-    let panels = [spacing, clock, counted];
-    let figure = Figure::new(id, caption).columns(panels.len()).panel_size(320.0, 290.0);
-    panels.into_iter().fold(figure, Figure::panel)
+    let axes = ["", "run time on one core [s]", &accuracy.label];
+    Figure::new(id, caption).panel(panel(axes, &lines(rows), Point::median, true))
 }
 
-/// Error over a cost, with these names of panel, cost and error; are the points named by their resolutions?
+/// Error over spacing and over pair interactions.
+fn refined(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
+    let slope = accuracy.slope.map(|order| format!(" The grey line has order {}.", exact(order)));
+    let about = first_sentence(&accuracy.about).0;
+    let caption = format!(
+        "{about} Error over spacing (left) and pair interactions (right).{}",
+        slope.unwrap_or_default()
+    );
+    let levels = rows.iter().map(|row| (row.of.variant, row.levels.as_slice()));
+    let axes = [accuracy.spacing, &accuracy.label];
+    let spacing = orders::plot("", axes, levels, accuracy.slope.as_slice());
+    let axes = ["", "pair interactions [-]", &accuracy.label];
+    let counted = panel(axes, &lines(rows), |point| point.pairs, false);
+    let figure = Figure::new(format!("{id}-refined"), caption).columns(2).panel_size(320.0, 290.0);
+    figure.panel(spacing).panel(counted)
+}
+
+fn lines<'a>(rows: &'a [Row]) -> Vec<Line<'a>> {
+    rows.iter().map(|row| Line { name: row.of.variant, points: &row.points }).collect()
+}
+
+/// Error over a cost, with these names of panel, cost and error; are the ends of lines named by their
+/// resolutions?
 pub(super) fn panel(
     [title, axis, error]: [&str; 3],
     lines: &[Line],
@@ -270,13 +292,19 @@ pub(super) fn panel(
     let mut plot = Plot::new(title, Axis::log(axis), Axis::log(error));
     let all = lines.iter().flat_map(|line| line.points);
     let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
-    plot = plot.layer(Series::line("Pareto front", front).colour(PALE).width(7.0));
+    plot = plot.layer(Series::line("best of all", front).colour(PALE).width(7.0));
     for (k, Line { name, points }) in lines.iter().enumerate() {
         let own: Vec<&Point> = points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
         let mut series = Series::line(*name, line).cycle(k);
+        series.names = own.iter().map(|p| p.label.clone()).collect();
         if is_named {
-            series = series.labels(own.iter().map(|p| p.label.clone()));
+            let last = own.len().saturating_sub(1);
+            let is_end = |k: usize| k == 0 || k == last;
+            let labels = own.iter().enumerate();
+            series = series.labels(
+                labels.map(|(k, p)| if is_end(k) { p.label.clone() } else { String::new() }),
+            );
             series.x_bars = own.iter().map(|p| p.spread()).collect();
         }
         plot = plot.layer(series);
@@ -313,7 +341,6 @@ mod tests {
     use std::sync::Arc;
 
     use touchstone_base::gate::{Bound, Evidence, Gate, Verdict};
-    use touchstone_report::Block;
 
     use super::*;
     use crate::studies::tests::{ERROR, column, comparison, evaluate, records, spec, tables};

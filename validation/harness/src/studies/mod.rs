@@ -29,7 +29,7 @@ pub use sensitivity::{Blind, Sensitivity, Watched};
 pub use validation::{Comparison, Comparisons};
 
 pub use crate::{
-    pictures::{Picture, PicturePanel},
+    pictures::{Film, Picture, PicturePanel},
     study::{CustomStudy, Studies, Study},
 };
 

@@ -17,16 +17,16 @@ use crate::{
 };
 
 /// The setting that refines the runs of a case.
-struct Resolution {
+pub(super) struct Resolution {
     /// Its name.
-    setting: &'static str,
+    pub setting: &'static str,
     /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
     is_count: bool,
 }
 
 impl Resolution {
     /// The first setting in which the coarsest and the finest level of a ladder differ.
-    fn of(case: &dyn Case, studies: &Studies) -> Option<Self> {
+    pub(super) fn of(case: &dyn Case, studies: &Studies) -> Option<Self> {
         let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
         let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
         let ends = [ladder.levels.first()?, ladder.levels.last()?];

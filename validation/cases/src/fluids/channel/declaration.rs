@@ -105,7 +105,7 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         title,
         picture,
         metric: L2_WORST.into(),
-        axis: "largest relative rms error of u [-]",
+        axis: "error of the velocity [-]",
         stated: |settings| Stated {
             name: {
                 let [re, rows, end] =

@@ -195,7 +195,7 @@ fn section(all: &[(f64, [Vec<RunSpec>; 3])], runs: &Runs) -> Section {
          {higher} V.",
         h5_verdict(low, high)
     );
-    let title = "H4 and H5: when the seed's run becomes unstable";
+    let title = "When the paper's run becomes unstable";
     let value = first.map_or(f64::NAN, |(re, _)| *re);
     Section::new("poiseuille-h4-h5", title).prose(words).judge(gate, value)
 }

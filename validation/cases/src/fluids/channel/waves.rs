@@ -71,7 +71,7 @@ fn section(all: &[(f64, RunSpec)], runs: &Runs) -> Section {
          νt/L² = 1.5.",
         if is_supported { "supported" } else { "open" }
     );
-    let title = "H3: pressure waves between the walls";
+    let title = "Pressure waves between the walls";
     let section = Section::new("poiseuille-h3", title).prose(words);
     judged.into_iter().fold(section, |section, (gate, period)| section.judge(gate, period))
 }

@@ -115,7 +115,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         title: "Periodic hill",
         picture: "periodic-hill-pictures",
         metric: L2_U.into(),
-        axis: "rms error of u [U_b]",
+        axis: "error of the velocity [U_b]",
         stated: |settings| Stated {
             name: {
                 let [re, t, n] = ["re", "end", "n"].map(|name| Stated::setting(settings, name));

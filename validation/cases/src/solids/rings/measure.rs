@@ -290,7 +290,8 @@ impl Watch for Series {
         let s = &self.settings;
         let share = (stop + 1) as f64 / s.samples as f64;
         let (Ok(density), Ok(stress)) = (now.density(), now.stress()) else { return };
-        if !PICTURES.contains(&share) {
+        let is_frame = ((stop + 1) * pictures::FRAMES).is_multiple_of(s.samples);
+        if !PICTURES.contains(&share) && !is_frame {
             return;
         }
         let all = along_flight(s, now.all());
@@ -301,8 +302,12 @@ impl Watch for Series {
         };
         let [_, right] = halves(&all);
         let stressed = right.iter().map(|p| (p.position, largest(p)));
-        let name = format!("particles@{share}");
-        pictures::keep(record, &name, "L", ("stress", "Pa"), stressed);
+        match PICTURES.contains(&share) {
+            true => {
+                pictures::keep(record, &pictures::at_share(share), "L", ("stress", "Pa"), stressed)
+            }
+            false => pictures::keep_frame(record, share, "L", ("stress", "Pa"), stressed),
+        }
     }
 
     fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {

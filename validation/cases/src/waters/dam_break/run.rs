@@ -38,17 +38,21 @@ pub struct Watch {
     ledger: Ledger,
     /// Mass of the water at the start \[kg/m\].
     filled: f64,
-    /// Index of the time of the picture.
-    pictured: usize,
+    /// Indices of the times of the frames of the film.
+    frames: Vec<usize>,
 }
 
-/// Keeps the particles with their pressure for a picture.
-fn picture(dam: &Dam, now: &Snapshot, record: &mut Record) {
+/// Keeps the particles with their pressure for a picture, and as a frame of the film.
+fn picture(dam: &Dam, now: &Snapshot, frame: usize, record: &mut Record) {
     let Ok(density) = now.density() else { return };
     let (height, unit) = (dam.settings.height, dam.unit_pressure());
     let value = |p: &Point| dam.medium.eos.pressure(density.of(p)) / unit;
     let fluid = now.stored().map(|p| (p.position / height, value(&p)));
-    pictures::keep(record, PICTURED, "H", ("p", "rho g H"), fluid);
+    let (share, pressure) = (frame as f64 / pictures::FRAMES as f64, ("p", "rho g H"));
+    match share == PICTURE {
+        true => pictures::keep(record, PICTURED, "H", pressure, fluid),
+        false => pictures::keep_frame(record, share, "H", pressure, fluid),
+    }
 }
 
 impl Problem for Dam {
@@ -79,7 +83,7 @@ impl Problem for Dam {
             samples: Samples::new(),
             ledger: Ledger::default(),
             filled: water_mass(start),
-            pictured: stops(self).1,
+            frames: stops(self).1,
         }
     }
 
@@ -99,8 +103,8 @@ impl Problem for Dam {
             })
             .when(asked.particles, |calls| {
                 calls.at_positions("picture", |dam, watch, now, k, record| {
-                    if k == watch.pictured {
-                        picture(dam, now, record);
+                    if let Some(frame) = watch.frames.iter().position(|at| *at == k) {
+                        picture(dam, now, frame, record);
                     }
                 })
             })
@@ -137,9 +141,9 @@ fn water_mass(now: &Snapshot) -> f64 {
     now.moving().iter().map(|p| p.mass).sum()
 }
 
-/// Times of samples \[s\], ascending, a whole number of steps apart, so that no step is shortened; and the
-/// index of the time of the picture.
-fn stops(dam: &Dam) -> (Vec<f64>, usize) {
+/// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and which of
+/// them is that of each frame of the film.
+fn stops(dam: &Dam) -> (Vec<f64>, Vec<usize>) {
     let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt());
     let (h, eos) = (dam.medium.h, dam.medium.eos);
     let crossing = SAMPLE * h / (eos.sound_speed + dam.speed);
@@ -147,7 +151,10 @@ fn stops(dam: &Dam) -> (Vec<f64>, usize) {
     let count = (end / every - 0.5).floor().max(0.0) as usize;
     let mut times: Vec<f64> = (0..=count).map(|k| k as f64 * every).collect();
     times.push(end);
-    (times, (PICTURE * end / every).round() as usize)
+    let share = |frame: usize| frame as f64 / pictures::FRAMES as f64;
+    let at = |frame| ((share(frame) * end / every).round() as usize).min(times.len() - 1);
+    let frames = (0..=pictures::FRAMES).map(at).collect();
+    (times, frames)
 }
 
 #[cfg(test)]
