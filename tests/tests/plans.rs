@@ -8,10 +8,9 @@ use touchstone_base::random::Random;
 use touchstone_base::spec::{RunSpec, Task};
 use touchstone_cases::CASES;
 use touchstone_harness::{
-    case::{self, Case, Planned, RunError, Tier},
+    case::{self, Case, Drawn, Draws, Planned, RunError, Tier},
     make::BatchResult,
-    plan,
-    sealed::{self, Drawn, Draws},
+    plan, sealed,
     studies::{Accuracy, Budgets, Change, FINER, Map, STARTS},
     suite,
 };

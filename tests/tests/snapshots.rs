@@ -244,7 +244,8 @@ fn number(value: f64) -> String {
     format!("{:?}", format!("{value:.8e}").parse().unwrap_or(value))
 }
 
-/// What the runs of a variant measured: a row a metric, a column a run; and the names of numerics and profiles.
+/// What the runs of a variant measured: a row a metric, a column a run; and the names of numerics and
+/// profiles.
 fn results(variant: &str, of: &[(&Run, &Record)]) -> String {
     let names: BTreeMap<&String, &String> = of
         .iter()

@@ -109,6 +109,7 @@ fn every_file_of_tests_is_run() {
         ("tests", &["main", "allocation"][..]),
         ("solver", &["main", "sharing", "symbols", "couette_only", "rings_only"]),
         ("solver/lagrangian", &["main"]),
+        ("validation", &["main"]),
     ] {
         let folder = root().join(folder).join("tests");
         let all = fs::read_to_string(folder.join("main.rs")).unwrap();

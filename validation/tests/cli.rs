@@ -27,6 +27,8 @@ use touchstone_harness::case::{Case, Tier, spec};
 use touchstone_harness::runner::Context;
 use touchstone_harness::size::Size;
 
+use crate::common::send;
+
 fn touchstone_in(folder: &Path, arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
     command.current_dir(folder).args(arguments).output().unwrap()
@@ -614,12 +616,6 @@ fn started(folder: &Path, arguments: &[&str], line: &str) -> (Child, BufReader<C
     said.read_line(&mut first).unwrap();
     assert!(first.starts_with(line), "{first}");
     (child, said)
-}
-
-#[cfg(unix)]
-fn send(signal: &str, child: &Child) {
-    let pid = child.id().to_string();
-    assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
 }
 
 /// A record as text, without times and memory, which depend on the machine, and the number of its restarts.

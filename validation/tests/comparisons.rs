@@ -1,15 +1,9 @@
 //! Comparisons with references in `judge --json`, from runs that the program made: against an exact reference
 //! error and order, against others E, u_num, u_input, u_D, u_val.
 
-use std::path::Path;
-use std::process::{Command, Output};
-
 use serde_json::Value;
 
-fn touchstone(folder: &Path, line: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
-    command.current_dir(folder).args(line.split(' ')).output().unwrap()
-}
+use crate::common::touchstone;
 
 /// Whether a planned run belongs to the ladders of `seed` and `modern` in Couette flow, or to the ladders of
 /// `modern` in the dam break without the tank.

@@ -11,30 +11,13 @@ use std::time::{Duration, Instant};
 
 use touchstone_base::record::Record;
 
-const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
-
-fn touchstone(folder: &Path, line: &str) -> Output {
-    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
-}
+use crate::common::{TOUCHSTONE, names, said, send, touchstone};
 
 /// The program by way of a shell, after these words.
 fn by_shell(folder: &Path, before: &str, line: &str) -> Command {
     let mut command = Command::new("sh");
     command.current_dir(folder).args(["-c", &format!("{before}; exec {TOUCHSTONE} {line}")]);
     command
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// The files of a folder by name, none if it is not there.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 const SPEC: &str = r#"{"case":"couette","variant":"seed","settings":{"rows":8,"end":0.01}}"#;
@@ -259,11 +242,6 @@ fn ended(mut child: Child, seconds: f64) -> (Option<i32>, String) {
     let _ = child.kill(); // has no effect on a child that has ended
     let output = child.wait_with_output().unwrap();
     (output.status.code(), said(&output))
-}
-
-fn send(signal: &str, child: &Child) {
-    let pid = child.id().to_string();
-    assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
 }
 
 /// A signal ends commands, runs with many frames and long lists of specs within a second, with an exit code

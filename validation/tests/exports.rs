@@ -4,28 +4,10 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use serde_json::Value;
 
-const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
-
-fn touchstone(folder: &Path, line: &str) -> Output {
-    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
-}
-
-/// The standard output of a command that must end with 0.
-#[track_caller]
-fn done(folder: &Path, line: &str) -> String {
-    let output = touchstone(folder, line);
-    let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{line}: {told}");
-    String::from_utf8_lossy(&output.stdout).into_owned()
-}
-
-fn read(path: &Path) -> String {
-    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
+use crate::common::{done, read, touchstone};
 
 /// A table of numbers: columns by name without unit.
 struct Table {

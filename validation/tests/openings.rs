@@ -8,20 +8,12 @@ use std::os::unix::fs::{FileTypeExt, symlink};
 use std::path::Path;
 use std::process::{Command, Output};
 
-const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
-
-fn touchstone(folder: &Path, line: &str) -> Output {
-    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
-}
+use crate::common::{TOUCHSTONE, names, said, touchstone};
 
 /// Lines of a shell, to which `touchstone` is the program.
 fn shell(folder: &Path, lines: &str) -> Output {
     let lines = format!("touchstone() {{ {TOUCHSTONE} \"$@\"; }}\n{lines}");
     Command::new("sh").current_dir(folder).args(["-c", &lines]).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
 fn made(folder: &Path, line: &str) {
@@ -44,15 +36,6 @@ fn edit(file: &Path, edit: impl Fn(&str) -> String) {
     let edited = edit(&text);
     assert!(edited != text, "{}", file.display());
     fs::write(file, edited).unwrap();
-}
-
-/// The names of the files of a folder in order.
-fn names(folder: &Path) -> Vec<String> {
-    let entries = fs::read_dir(folder).unwrap().flatten();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect();
-    names.sort();
-    names
 }
 
 /// `run` refused them, and these made particles until the memory was full, or steps for years.

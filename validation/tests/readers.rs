@@ -4,18 +4,10 @@
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use touchstone_base::record::Record;
 
-fn touchstone(folder: &Path, line: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
-    command.current_dir(folder).args(line.split(' ')).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use crate::common::{said, touchstone};
 
 /// A row: t, id, x, y, u, v, density.
 type Row = [f64; 7];

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use serde_json::{Value, json};
 use touchstone_base::mutation::{Constant, Detect, Disorder, Mutation};
 use touchstone_base::record::{Metric, Record, Status};
 use touchstone_base::spec::{Bisect, EndAfter, Keep, RunSpec, Task};
 use touchstone_base::submission::{Division, Submission};
+
+use crate::common::{printed, touchstone};
 
 const NAMES: [&str; 3] = ["record", "problem", "verdicts"];
 
@@ -180,13 +181,6 @@ fn matches(pattern: &str, text: &str) -> bool {
     (least.parse().unwrap()..=most.parse().unwrap()).contains(&count) && text.chars().all(has)
 }
 
-/// The output of this command line, with any exit code.
-fn touchstone(folder: &Path, line: &str) -> String {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_touchstone"));
-    let output = command.current_dir(folder).args(line.split(' ')).output().unwrap();
-    String::from_utf8(output.stdout).unwrap()
-}
-
 fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
@@ -226,7 +220,7 @@ fn rare_records(record: &Record) -> Vec<Value> {
 fn documents() -> Vec<(&'static str, Value)> {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let of = |line: &str| touchstone(at, line);
+    let of = |line: &str| printed(&touchstone(at, line));
     let text = of("run couette --set rows=8 --set end=0.05 --profile --json");
     let record = Record::from_json(&text).unwrap();
     let diverged = of("run couette --set rows=8 --set end=5 --set dt=0.1 --allow-unstable --json");

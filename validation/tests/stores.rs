@@ -3,7 +3,6 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use serde_json::Value;
@@ -12,20 +11,10 @@ use touchstone_base::{
     reference::sha256,
 };
 
-const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
+use crate::common::{of, touchstone};
+
 /// A gate of the problem that the submissions of these tests solve.
 const GATE: &str = "couette.modern.20.l2@0.1";
-
-fn touchstone(folder: &Path, line: &str) -> Output {
-    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
-}
-
-/// The output of a command, and its exit code.
-fn of(folder: &Path, line: &str) -> (String, i32) {
-    let output = touchstone(folder, line);
-    let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
-    (format!("{out}{error}"), output.status.code().unwrap())
-}
 
 /// Our own results as another code's, made once.
 fn solved() -> &'static Path {

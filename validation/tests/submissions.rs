@@ -4,7 +4,6 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use touchstone_base::functions::cos;
@@ -13,15 +12,7 @@ use touchstone_base::reference::Reference;
 use touchstone_base::spec::RunSpec;
 use touchstone_base::submission::OURS;
 
-const TOUCHSTONE: &str = env!("CARGO_BIN_EXE_touchstone");
-
-fn touchstone(folder: &Path, line: &str) -> Output {
-    Command::new(TOUCHSTONE).current_dir(folder).args(line.split(' ')).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use crate::common::{read, said, touchstone};
 
 /// A folder with a whole submission of Couette flow with eight rows, made once.
 fn whole() -> &'static Path {
@@ -45,10 +36,6 @@ fn copy() -> (tempfile::TempDir, PathBuf) {
         fs::copy(entry.path(), copy.join(entry.file_name())).unwrap();
     }
     (folder, copy)
-}
-
-fn read(path: &Path) -> String {
-    fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// Measured from their particles alone, with no step made: the values of the run, except for round-off.

@@ -11,11 +11,10 @@ use touchstone_base::{
 use crate::{context::Context, problem::Posed, study::Studies};
 pub use crate::{
     error::RunError,
-    facts::{Curve, Facts, Parameter, Statement},
+    facts::{Curve, Drawn, Draws, Facts, Parameter, Statement},
     limits::Limits,
     rules::{PLANNED_DT, Rules, Step},
     runs::{Planned, Tier},
-    sealed::{Drawn, Draws},
 };
 
 /// One named composition of types with its default settings.

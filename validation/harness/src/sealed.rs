@@ -13,39 +13,9 @@ use touchstone_base::{
 
 use crate::{
     case::{Case, Planned, Tier},
+    facts::{Drawn, Draws},
     plan,
 };
-
-/// Drawn settings of the sealed problems of a case, and their judgement.
-#[derive(Clone, Copy)]
-pub struct Draws {
-    /// The variants whose errors change with the order below; all if none is named.
-    pub variants: &'static [&'static str],
-    /// The setting of the resolution, a number of spacings or a spacing of which a whole number is a length
-    /// of 1, and the ends between which it is drawn.
-    pub resolution: (&'static str, [f64; 2]),
-    /// The formal order of the errors in the spacing.
-    pub order: f64,
-    /// The errors that may be judged; the judged ones are in the plans of the variant.
-    pub metrics: &'static [&'static str],
-    /// `key=value` of settings that all have.
-    pub set: &'static [&'static str],
-    /// Other settings that are drawn.
-    pub others: &'static [(&'static str, Drawn)],
-    /// Settings in which judged runs may differ, for they change none of the errors.
-    pub free: &'static [&'static str],
-}
-
-/// How a setting is drawn that is not the resolution.
-#[derive(Clone, Copy)]
-pub enum Drawn {
-    /// Evenly in the logarithm between these ends, within the values of judged runs.
-    Between(f64, f64),
-    /// One of the values of judged runs.
-    Judged,
-    /// Uniform between these ends: reference and error do not depend on the value.
-    Any(f64, f64),
-}
 
 /// The bound of a judged run.
 struct Level {

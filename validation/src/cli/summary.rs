@@ -1,5 +1,5 @@
-//! Summary of a suite on one screen: a line for each case, then the gates that need attention. And the summary
-//! of `run`: the headline error, its bound and its cost first, and a next command.
+//! Summary of a suite on one screen: a line for each case, then the gates that need attention. And the
+//! summary of `run`: the headline error, its bound and its cost first, and a next command.
 
 use touchstone_base::{
     gate::{Gate, Verdict, four_digits},

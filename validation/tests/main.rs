@@ -1,0 +1,17 @@
+//! Tests of the command, in one program that is linked once.
+
+mod cases;
+mod cli;
+mod common;
+mod comparisons;
+mod doors;
+mod engines;
+mod exports;
+mod openings;
+mod others;
+mod pages;
+mod readers;
+mod schemas;
+mod stores;
+mod submissions;
+mod verdicts;
