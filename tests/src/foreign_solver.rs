@@ -3,7 +3,11 @@
 use nalgebra::Vector2;
 use serde_json::Map;
 use touchstone_base::submission::Division;
-use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
+use touchstone_exchange::{
+    library::Solver,
+    problem::Problem,
+    submission::{Method, System},
+};
 use touchstone_harness::foreign::ForeignParticle;
 
 /// u_t = ν u_yy with central differences in space and forward Euler in time.

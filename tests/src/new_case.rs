@@ -1,12 +1,24 @@
 //! A new case in one file: the decay of a shear wave in a periodic box.
 
-use nalgebra::Vector2;
 use std::f64::consts::TAU;
-use touchstone_base::{functions::*, record::*};
-use touchstone_harness::{
-    case::*, composed::*, method::*, problem::Simple, snapshot::Snapshot, studies::*, table,
+
+use nalgebra::Vector2;
+use touchstone_base::{
+    functions::{exp, sin},
+    record::MetricKey,
 };
-use touchstone_solver::*;
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    case::Step,
+    problem::Simple,
+    snapshot::Snapshot,
+    studies::{Accuracy, Budgets, Change, Spacing, StepLimit, StepLimits},
+    table,
+};
+use touchstone_solver::{
+    Compose, Continuity, CubicSpline, Leapfrog, Open, Pressure, QuinticSpline, Tait, Viscosity,
+    lattice,
+};
 
 touchstone_base::settings! {
     /// A velocity sin(2πy) mm/s in a box of side 1 m, c0 = 1 m/s, ν = 0.01 m²/s.

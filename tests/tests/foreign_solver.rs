@@ -1,7 +1,11 @@
 //! The solver of another library that `docs/rust.md` names is judged, and has a section of the report.
 
 use serde_json::json;
-use touchstone_exchange::{library::Solver, problem::Problem, submission::*};
+use touchstone_exchange::{
+    library::Solver,
+    problem::Problem,
+    submission::{Method, System},
+};
 use touchstone_harness::{
     case::{Case, Tier, spec},
     foreign::ForeignParticle,

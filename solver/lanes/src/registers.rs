@@ -9,7 +9,16 @@
 
 #![allow(unsafe_code)]
 
-use std::arch::x86_64::*;
+use std::arch::x86_64::{
+    __m128, __m128d, __m128i, __m256d, __m256i, __m512d, _CMP_LT_OQ, _mm_add_pd, _mm_andnot_pd,
+    _mm_castsi128_ps, _mm_cmplt_pd, _mm_div_pd, _mm_max_pd, _mm_movemask_pd, _mm_mul_pd,
+    _mm_permutevar_ps, _mm_set1_epi32, _mm_set1_pd, _mm_setr_epi32, _mm_setr_pd, _mm_sqrt_pd,
+    _mm_srlv_epi32, _mm_sub_pd, _mm256_add_pd, _mm256_andnot_pd, _mm256_cmp_pd, _mm256_div_pd,
+    _mm256_maskz_compress_epi32, _mm256_max_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_set1_pd,
+    _mm256_setr_pd, _mm256_sqrt_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
+    _mm512_abs_pd, _mm512_add_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_max_pd, _mm512_mul_pd,
+    _mm512_set1_pd, _mm512_setr_pd, _mm512_sqrt_pd, _mm512_sub_pd,
+};
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 

@@ -12,15 +12,16 @@ mod time;
 pub mod waters;
 
 use touchstone_base::reference::Reference;
-pub use touchstone_harness::case::find_in;
 use touchstone_harness::case::{Case, RunError};
 
-use crate::fluids::{cavity, channel, manufactured, periodic_hill, taylor_couette, taylor_green};
-use crate::lattice::{extremes, operators, resting_box, wave};
-use crate::solids::{
-    cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk,
+use crate::{
+    fluids::{cavity, channel, manufactured, periodic_hill, taylor_couette, taylor_green},
+    lattice::{extremes, operators, resting_box, wave},
+    solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk},
+    waters::{dam_break, elliptic_drop, hydrostatic, still_wedge},
 };
-use crate::waters::{dam_break, elliptic_drop, hydrostatic, still_wedge};
+
+pub use touchstone_harness::case::find_in;
 
 /// Every case, in the order of the report: the five of the paper, then the supporting ones.
 pub static CASES: &[&dyn Case] = &[

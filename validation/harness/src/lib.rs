@@ -30,6 +30,7 @@ pub mod orders;
 pub mod outline;
 pub mod pictures;
 pub mod plan;
+pub mod prelude;
 pub mod problem;
 pub mod profile;
 pub mod quantiles;

@@ -32,7 +32,7 @@ pub enum Relation {
     Shifted,
 }
 
-use Relation::*;
+use Relation::{BinaryUnits, Boosted, Mirrored, OtherUnits, Renumbered, Same, Shifted, Turned};
 
 impl Relation {
     /// All relations; the first is the reference of the others.

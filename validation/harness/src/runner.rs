@@ -7,7 +7,11 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 use serde::{Serialize, de::DeserializeOwned};
-use touchstone_base::{lock, mutation::Constant, record::*};
+use touchstone_base::{
+    lock,
+    mutation::Constant,
+    record::{Cost, Record, Status, digest},
+};
 use touchstone_solver::{
     Divergence, EquationOfState, Numbers, Observer, Outcome, Stepper, Symmetric,
 };

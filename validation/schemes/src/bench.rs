@@ -9,7 +9,11 @@ use std::time::Instant;
 use touchstone_base::functions::sin;
 
 use nalgebra::Vector2;
-use touchstone_solver::{integrator::Stepped, physics::Particles, *};
+use touchstone_solver::{
+    Compose, Continuity, CubicSpline, Domain, Engine, Euler, Integrator, Open, Outcome, Particle,
+    Physics, Pressure, Scene, SceneError, Scheme, Simulation, Stepper, Tait, Viscosity,
+    integrator::Stepped, lattice, physics::Particles,
+};
 
 /// The scheme whose right-hand side is measured.
 pub type Fluid<I> = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, I>;

@@ -3,7 +3,13 @@
 use nalgebra::Vector2;
 use touchstone_harness::method::{FromMedium, Medium};
 use touchstone_maths::exact::manufactured;
-use touchstone_solver::{lane::Lane, particles::Common, terms::Pair, *};
+use touchstone_solver::{
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
+    ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion,
+    ExtrapolatingWall, Ghosts, InterfaceWall, Kernel, Leapfrog, NoSlip, Open, PredictorCorrector,
+    Pressure, QuinticSpline, Rate, ShiftAdvection, Shifting, SingleSweep, Split, SuperSteps, Tait,
+    Term, Viscosity, WendlandC2, Xsph, lane::Lane, particles::Common, terms::Pair,
+};
 
 use crate::{Method, methods, stepped};
 

@@ -2,7 +2,11 @@
 
 use nalgebra::Vector2;
 use touchstone_harness::method::{self, Standard};
-use touchstone_solver::*;
+use touchstone_solver::{
+    BodyForce, ConsistentPressure, ConsistentViscosity, Continuity, CurvedNoSlip,
+    ExtrapolatingWall, InterfaceWall, Pressure, Scheme, ShiftAdvection, Simulation, Stepper, Tait,
+    Viscosity,
+};
 
 use crate::flow::{ConsistentDrift, Fluid, Mean, Modern, Stabilised};
 use crate::{Method, methods};

@@ -2,7 +2,12 @@
 
 use touchstone_harness::method::{FromMedium, Medium};
 use touchstone_solver::terms::Pair;
-use touchstone_solver::{lane::Lane, particles::Common, *};
+use touchstone_solver::{
+    ArtificialViscosity, Compose, ConsistentContinuity, ConsistentPressure, ConsistentViscosity,
+    Continuity, CubicSpline, DensityDiffusion, Kernel, Leapfrog, Open, PredictorCorrector,
+    Pressure, QuinticSpline, Rate, SingleSweep, Smoothing, Split, SuperSteps, Tait, Term,
+    Viscosity, WendlandC2, lane::Lane, particles::Common,
+};
 
 use crate::{Method, methods, stepped};
 

@@ -9,7 +9,11 @@
 //! correction.
 
 use touchstone_harness::method::{Boundary, FirstRow, Medium};
-use touchstone_solver::{walls::Walls, *};
+use touchstone_solver::{
+    ArtificialViscosity, BodyForce, CauchyStress, ComponentStress, Compose, ConjugateStress,
+    ConsistentContinuity, ConsistentJaumannRate, Continuity, CubicSpline, JaumannRate, Leapfrog,
+    Linear, Open, PlaneWall, PredictorCorrector, PrincipalStress, Symmetric, Xsph, walls::Walls,
+};
 
 use crate::{methods, stepped};
 

@@ -3,7 +3,11 @@
 
 use touchstone_harness::method::{self, Standard};
 use touchstone_maths::metrics::budget::{Metered, WaterDrift, WaterForces};
-use touchstone_solver::{terms::Hydrostatic, *};
+use touchstone_solver::{
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
+    DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Leapfrog, Open,
+    PredictorCorrector, Pressure, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+};
 
 use crate::{Method, methods};
 

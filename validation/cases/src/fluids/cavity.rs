@@ -3,21 +3,25 @@
 
 use nalgebra::{SMatrix, SVector, Vector2};
 use serde::{Deserialize, Serialize};
-use touchstone_base::{absent::Absent, gate::*, mutation::Constant, record::*, reference::*};
+use touchstone_base::{
+    absent::Absent,
+    gate::Cause,
+    mutation::Constant,
+    record::{MetricKey, Status},
+    reference::{Reference, ReferenceError},
+};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
+    case::{Draws, Statement},
     pictures,
-    problem::{Asked, Brief, Calls, Problem},
     snapshot::{Point, Snapshot},
-    studies::*,
+    studies::{Accuracy, CurveOf, CurvePanel, Curves, Sensitivity, Spacing, Watched},
     table,
 };
 use touchstone_maths::metrics::norms::rms;
 use touchstone_report::ColourMap;
 use touchstone_schemes::flow;
-use touchstone_solver::*;
+use touchstone_solver::{QuinticSpline, Role, Smoothing, lattice};
 
 use crate::fluids::unit_flow::{Numerics, Scales, UnitFlow};
 

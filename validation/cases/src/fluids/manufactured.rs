@@ -2,23 +2,22 @@
 //! combination of terms, walls and integrator has an order of accuracy. L = U = ρ = 1.
 
 use nalgebra::Vector2;
-use touchstone_base::{gate::*, record::*};
-use touchstone_harness::orders::{self, Line, Refinement};
+use touchstone_base::gate::Cause;
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
     convergence::Level,
-    method::*,
+    method::FirstRow,
+    orders::{self, Line, Refinement},
     problem::Simple,
     runs::Runs,
     section::Section,
     snapshot::{Point, Snapshot},
-    studies::{CustomStudy, Studies},
+    studies::CustomStudy,
     table,
 };
 use touchstone_maths::{exact::manufactured, metrics::norms::rms};
 use touchstone_schemes::flow;
-use touchstone_solver::*;
+use touchstone_solver::{EquationOfState, PlaneWall, Role};
 
 use crate::fluids::unit_flow::{DECISIVE, Numerics, Scales, UnitFlow};
 

@@ -1,21 +1,21 @@
 //! Steady flow between two cylinders, the inner one turning: exact, with one convex and one concave wall.
 
 use nalgebra::Vector2;
-use touchstone_base::{gate::*, record::*};
-use touchstone_harness::table::{Row, Table};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
+    case::{Draws, Statement, Step},
     problem::Simple,
     snapshot::{Point, Snapshot},
-    studies::*,
+    studies::{Accuracy, CurveOf, CurvePanel, Curves, Ladder, Spacing},
+    table::{Row, Table},
 };
-use touchstone_maths::exact::TaylorCouette;
-use touchstone_maths::geometry::{Curve, Row as Particles};
-use touchstone_maths::metrics::norms::l2;
+use touchstone_maths::{
+    exact::TaylorCouette,
+    geometry::{Curve, Row as Particles},
+    metrics::norms::l2,
+};
 use touchstone_schemes::flow;
-use touchstone_solver::*;
+use touchstone_solver::Tait;
 
 use crate::fluids::unit_flow::LIMIT_BOX;
 
@@ -287,6 +287,7 @@ fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use touchstone_solver::Role;
 
     fn value(record: &Record, metric: touchstone_base::record::MetricKey) -> f64 {
         record.value(metric).expect("a metric")

@@ -2,9 +2,9 @@
 //! and the vortices have in common.
 
 use nalgebra::Vector2;
-use touchstone_solver::{Domain, Limits, Particle, Tait};
-
-use touchstone_harness::{case::*, method::*, problem::Brief};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{case::Step, method::Properties};
+use touchstone_solver::{Limits, Tait};
 
 touchstone_base::settings! {
     /// The numerical settings that all these flows have.

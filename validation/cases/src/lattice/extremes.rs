@@ -6,18 +6,15 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{gate::*, random::Random, record::*, settings::Settings};
+use touchstone_base::{random::Random, record::MetricKey, settings::Settings};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
-    problem::{Asked, Brief, Calls, Problem},
+    case::{PLANNED_DT, Step},
     snapshot::{Point, Snapshot, momentum},
-    studies::Studies,
     table::{Row, Table},
 };
 use touchstone_maths::metrics::norms::largest;
-use touchstone_solver::{Domain, Particle, Stepper, Tait};
+use touchstone_solver::Tait;
 
 use crate::lattice::torus;
 

@@ -6,8 +6,7 @@ pub mod resting_box;
 pub mod wave;
 
 use nalgebra::Vector2;
-use touchstone_harness::method::*;
-use touchstone_solver::{Domain, Particle};
+use touchstone_harness::prelude::*;
 
 /// A periodic square with this side \[m\] and n × n particles. `start` gives a particle's place and velocity
 /// from its place on the lattice, first counted in spacings and then in metres.

@@ -8,23 +8,23 @@
 //! growing modes have time to show. A larger box has waves between, of which one may be stiffer: with 20
 //! limits are up to 1.6 % shorter, measured and in theory, and take twice as long to find.
 
-use nalgebra::Vector2;
 use std::ops::ControlFlow;
-use touchstone_base::{absent::Absent, gate::*, random::Random, record::*, spec::Bisect};
+
+use nalgebra::Vector2;
+use touchstone_base::{absent::Absent, random::Random, record::Status, spec::Bisect};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
     bisect::Growth,
-    case::*,
-    composed::*,
+    case::{PLANNED_DT, Planned, Step},
     limits,
-    method::*,
-    problem::{Asked, Brief, Calls, Problem},
+    method::{MediumSetting, Properties},
     rules::PLANNED_DT_OVER_LIMIT,
     snapshot::{Point, Snapshot},
-    studies::*,
+    studies::{StepLimit, StepLimits},
     table::{Row, Table},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
-use touchstone_solver::{Limits, Stepper, Tait};
+use touchstone_solver::{Limits, Tait};
 
 use crate::lattice::torus;
 

@@ -1,24 +1,29 @@
 //! Waves in uniaxial strain: a pulse through a bar, and two equal bars that meet.
 
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{FRAC_1_SQRT_2, PI};
-use touchstone_base::{absent::Absent, functions::*, gate::*, record::*};
+use touchstone_base::{
+    absent::Absent,
+    functions::{erfc, exp},
+    record::MetricKey,
+};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
+    case::Statement,
     snapshot::{Point, Snapshot, momentum},
-    studies::*,
-    table::*,
+    studies::{Accuracy, Spacing},
+    table::{Row, Table},
 };
 use touchstone_maths::{
     exact::impact::Impact, metrics::history::passes, theory::lattice::SquareLattice,
 };
-use touchstone_solver::*;
+use touchstone_solver::{CubicSpline, EquationOfState, Kernel, Numbers, Symmetric};
 
 use super::{
-    causes::*,
-    solid::{self, *},
+    causes::{DISPERSION, ONE_LATTICE, SOFT_CONTACT, VISCOSITY},
+    solid::{self, Body, Common, Energy, LAGRANGIAN, Material, Scales, SolidSettings, Watch},
 };
 
 touchstone_base::settings! {

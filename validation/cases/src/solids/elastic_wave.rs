@@ -4,21 +4,22 @@
 //! has ω² = |g|² (K + 4μ/3)/ρ and a transverse one ω² = |g|² μ/ρ, for any kernel. The leapfrog turns by θ a
 //! step, 2 sin(θ/2) = ω dt, which is divided out.
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-use touchstone_base::{absent::Absent, functions::*, gate::*, record::*};
+use touchstone_base::{
+    absent::Absent,
+    functions::{acos, cos, sin},
+};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
-    problem::{Asked, Brief, Calls, Problem},
+    case::{Statement, Step},
     rules::PLANNED_DT,
     snapshot::Snapshot,
-    studies::Studies,
-    table::*,
+    table::{Row, Table},
 };
-use touchstone_solver::*;
+use touchstone_solver::{CubicSpline, Kernel, Symmetric};
 
 use super::solid::{Material, limits};
 

@@ -1,24 +1,29 @@
 //! A free elastic disk that spins: is a rotation a rotation to the method?
 
+use std::f64::consts::{PI, TAU};
+
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
-use touchstone_base::{absent::Absent, gate::*, record::*};
+use touchstone_base::absent::Absent;
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
+    case::Statement,
     series::Series,
     snapshot::{Snapshot, momentum},
-    studies::*,
-    table::*,
+    studies::{Accuracy, Budgets, Change, Spacing},
+    table::{Row, Table},
 };
 use touchstone_maths::metrics::history;
-use touchstone_solver::*;
+use touchstone_solver::Symmetric;
 
 use super::{
     causes::FREE_FACES,
-    solid::{self, *},
+    solid::{
+        self, Body, Common, Energy, LAGRANGIAN, Scales, SolidSettings, Watch, angular_momentum,
+        norm_squared,
+    },
 };
+
 touchstone_base::settings! {
     /// Settings of a disk cut from a square lattice.
     pub struct DiskSettings {

@@ -1,19 +1,16 @@
 //! A free drop that a uniform strain pulls into an ellipse (Monaghan 1994): free surface, no walls, and
 //! an exact solution.
 
+use std::f64::consts::FRAC_PI_4;
+
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_4;
-use touchstone_base::{gate::*, record::*};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
-    pictures,
-    problem::{Asked, Brief, Calls, Problem},
-    rules,
+    case::{Draws, Statement},
+    pictures, rules,
     snapshot::{Point, Snapshot},
-    studies::*,
+    studies::{Accuracy, Spacing},
     table,
 };
 use touchstone_maths::{
@@ -22,7 +19,7 @@ use touchstone_maths::{
 };
 use touchstone_report::ColourMap;
 use touchstone_schemes::water::{self, WaterMethod};
-use touchstone_solver::*;
+use touchstone_solver::EquationOfState;
 
 use super::{
     causes::{NOISY_DENSITY, SHORT_KERNEL},

@@ -3,15 +3,14 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{absent::Absent, gate::*, mutation::Constant, random::Random, record::*};
+use touchstone_base::{absent::Absent, mutation::Constant, random::Random, record::Status};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
-    problem::{Asked, Brief, Calls, Problem},
+    case::{Drawn, Draws, Statement, Step},
+    method::FirstRow,
     series::Series,
     snapshot::{Point, Snapshot},
-    studies::*,
+    studies::{Accuracy, Sensitivity, Spacing, Watched},
     table,
 };
 use touchstone_maths::{
@@ -22,7 +21,7 @@ use touchstone_maths::{
     },
 };
 use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::*;
+use touchstone_solver::{EquationOfState, Tait, lattice};
 
 use crate::{
     stabilisation::Stabilisation,
@@ -489,6 +488,7 @@ fn gates(row: &Row) -> Vec<Gate> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use touchstone_base::record::MetricKey;
     /// Water put by hand: pressures 3 % too high, the highest row 0.2 dx up and half of the lowest one
     /// 0.1 dx down, all of it at 0.2 (g H)^(1/2) and later at a tenth of that, two particles out of the tank.
     #[test]

@@ -2,21 +2,19 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{gate::*, mutation::Constant, record::*};
+use touchstone_base::{gate::Cause, mutation::Constant, record::Status};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
+    case::{Draws, Statement},
     pictures,
-    problem::{Asked, Brief, Calls, Problem},
     snapshot::{Point, Snapshot},
-    studies::*,
+    studies::{Accuracy, Sensitivity, Spacing, Watched},
     table,
 };
 use touchstone_maths::metrics::{budget::Metered, norms::rms};
 use touchstone_report::ColourMap;
 use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::*;
+use touchstone_solver::{EquationOfState, Role, Smoothing, WendlandC2};
 
 use super::water::{self, WaterSettings};
 

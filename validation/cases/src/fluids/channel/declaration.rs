@@ -3,16 +3,28 @@
 //! only: the gain of a step that viscosity does not limit, and the paper's hypotheses on waves and
 //! instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
 
-use super::{
-    ChannelSettings, ChannelTable, Flow, Group, ladder, maps, measure::*, plan, stiff, waves,
-};
 use nalgebra::Vector2;
-use touchstone_base::{gate::*, mutation::Constant, record::*, spec::*};
+use touchstone_base::{
+    mutation::Constant,
+    record::{MetricName, Status},
+    spec::{Bisect, EndAfter},
+};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    studies::{causes::*, *},
+    case::{Curve, Drawn, Draws, Statement},
+    studies::{
+        Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
+        Curves, Ladder, Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
+        causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
+    },
 };
 use touchstone_report::Axis;
+
+use super::{
+    ChannelSettings, ChannelTable, Flow, Group, ladder, maps,
+    measure::{ALL, L2, L2_WORST, LINF, SHEAR_LOWER, SHEAR_UPPER, V_RMS, profile_at},
+    plan, stiff, waves,
+};
 
 /// The studies of a flow.
 pub fn studies(flow: Flow, tier: Tier) -> Studies {

@@ -5,8 +5,13 @@
 
 use std::cmp::Ordering;
 
-use touchstone_base::{gate::*, record::*, spec::RunSpec};
-use touchstone_harness::{runs::Runs, section::Section, studies::*};
+use touchstone_base::{record::Status, spec::RunSpec};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    runs::Runs,
+    section::Section,
+    studies::{CustomStudy, Map, MapPanel, Study},
+};
 use touchstone_report::{Colour, percent, sig};
 
 use super::{ChannelSettings, ChannelTable, Flow, Group, measure::L2_WORST};

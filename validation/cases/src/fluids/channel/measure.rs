@@ -1,13 +1,15 @@
 //! Metrics of a channel flow, each norm with its formula.
 
+use touchstone_base::{
+    absent::Absent,
+    functions::cos,
+    record::{Profile, Record},
+};
+use touchstone_harness::snapshot::{Point, Snapshot};
+use touchstone_maths::metrics::norms::{l2, linf};
 use touchstone_solver::EquationOfState;
 
 use super::Setup;
-use touchstone_base::absent::Absent;
-use touchstone_base::functions::cos;
-use touchstone_base::record::{Profile, Record};
-use touchstone_harness::snapshot::{Point, Snapshot};
-use touchstone_maths::metrics::norms::{l2, linf};
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
 /// than a few spacings.

@@ -11,11 +11,15 @@ mod stiff;
 pub mod variants;
 mod waves;
 
+use touchstone_harness::{
+    composed::{Composed, Recommended},
+    table::Table,
+};
+
 use declaration::{facts, studies};
+
 pub use plan::{GHOSTS, ladder};
 pub use setup::{ChannelSettings, Flow, Setup};
-
-use touchstone_harness::{composed::*, table::Table};
 
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];

@@ -1,9 +1,16 @@
 //! The runs of the channel flows, stated once, and their gates.
 
-use super::{ChannelSettings, ChannelTable, Flow, Group, TIMES, maps, measure::*, stiff, waves};
-use touchstone_base::{gate::*, record::MetricName};
-use touchstone_harness::case::Tier;
+use touchstone_base::record::MetricName;
+use touchstone_harness::prelude::*;
 use touchstone_harness::table::{Row, Table};
+
+use super::{
+    ChannelSettings, ChannelTable, Flow, Group, TIMES, maps,
+    measure::{
+        L2, L2_WORST, MOMENTUM_Y, OUTSIDE, P_RMS, SHEAR_LOWER, SHEAR_UPPER, V_RMS, VOLUME_DRIFT,
+    },
+    stiff, waves,
+};
 
 /// Variants whose error is drawn against their cost. In Couette flow, without a body force, `curved` would be
 /// `plain`.

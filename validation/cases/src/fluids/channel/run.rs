@@ -2,17 +2,15 @@
 
 use std::ops::ControlFlow;
 
-use touchstone_base::record::{Record, Status};
-use touchstone_harness::{
-    case::*,
-    method::*,
-    problem::{Asked, Brief, Calls, Problem},
-    snapshot::Snapshot,
-};
-use touchstone_solver::Stepper;
+use touchstone_base::record::Status;
+use touchstone_harness::prelude::*;
+use touchstone_harness::snapshot::Snapshot;
 
-use super::measure::{self, MODE};
-use super::{Setup, setup::DECISIVE};
+use super::{
+    Setup,
+    measure::{self, MODE},
+    setup::DECISIVE,
+};
 
 impl Problem for Setup {
     type Extra = ();

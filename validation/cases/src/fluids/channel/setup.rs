@@ -3,13 +3,13 @@
 
 use nalgebra::Vector2;
 use touchstone_base::random::Random;
-use touchstone_harness::{case::*, method::*};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{case::Step, method::FirstRow};
 use touchstone_maths::exact::StartUp;
-use touchstone_solver::{Domain, Limits, Particle, PlaneWall, Role, Tait};
-
-use crate::fluids::unit_flow::LIMIT_BOX;
+use touchstone_solver::{Limits, PlaneWall, Role, Tait};
 
 use super::{COUETTE, ChannelCase, POISEUILLE, TIMES};
+use crate::fluids::unit_flow::LIMIT_BOX;
 
 touchstone_base::settings! {
     /// Settings of a flow between two plates. Lengths by the width L, times by L²/ν.

@@ -1,13 +1,15 @@
 //! Gain of super-time-stepping of viscosity: pair interactions of `stiff` against `modern` at one error, over
 //! the Reynolds number.
 
-use super::{ChannelSettings, ChannelTable, Flow, Group, Row, measure::L2};
-use touchstone_base::{gate::*, record::Record, spec::RunSpec};
+use touchstone_base::{gate::Cause, spec::RunSpec};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
     runs::Runs,
     section::Section,
     studies::{CustomStudy, Study},
 };
+
+use super::{ChannelSettings, ChannelTable, Flow, Group, Row, measure::L2};
 
 /// Reynolds numbers, and the largest allowed ratio of pair interactions to those of `modern`. At the lower
 /// one sound does not limit the step, so that accuracy determines the cost.

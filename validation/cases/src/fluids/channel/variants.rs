@@ -1,6 +1,9 @@
 //! The variants of the channel flows: methods, and the settings that go with them.
 
-use touchstone_harness::{composed::*, method::Method};
+use touchstone_harness::{
+    composed::{Compositions, Variants},
+    method::Method,
+};
 use touchstone_schemes::flow::{self, OfChannels};
 
 use super::{ChannelSettings, Flow, Setup};

@@ -1,15 +1,20 @@
 //! Hypothesis H3 of the paper: pressure waves leave the walls. The lowest pressure mode between them
 //! oscillates with the period 2L/c0 of a wave that bounces between them, at any c0.
 
-use super::{ChannelTable, Group, Row, measure::MODE};
 use std::f64::consts::{FRAC_1_SQRT_2, SQRT_2};
-use touchstone_base::functions::{cos, hypot, powf, sin};
-use touchstone_base::{gate::*, record::Record, spec::RunSpec};
+
+use touchstone_base::{
+    functions::{cos, hypot, powf, sin},
+    spec::RunSpec,
+};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
     runs::Runs,
     section::Section,
     studies::{CustomStudy, Study},
 };
+
+use super::{ChannelTable, Group, Row, measure::MODE};
 
 /// Adds the runs at Re 20, to νt/L² = 1.5, for waves are judged by the end of a run: two sound speeds \[V\].
 /// The instability grows from the disorder of the start, 1e-4 dx, or from round-off if there is none.

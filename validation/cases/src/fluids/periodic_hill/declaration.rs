@@ -3,19 +3,32 @@
 //! the start matters.
 
 use nalgebra::Vector2;
-
-use super::{
-    CASE, HillSettings, NAME, RECOMMENDED, measure::*, plan::*, reference::*, setup::FLUX,
-};
-use touchstone_base::{gate::*, mutation::Constant, record::*};
+use touchstone_base::{mutation::Constant, record::Status};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
+    case::{Drawn, Draws, Parameter, Planned, Statement},
     runs::Runs,
     section::Section,
-    studies::{causes::*, *},
+    studies::{
+        Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
+        Curves, CustomStudy, Picture, PicturePanel, Sensitivity, Spacing, Stated, StepLimit,
+        StepLimits, Study, Watched,
+        causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
+    },
 };
 use touchstone_maths::metrics::norms::rms;
 use touchstone_report::{Axis, ColourMap, percent};
+
+use super::{
+    CASE, HillSettings, NAME, RECOMMENDED,
+    measure::{
+        ALL, DRAG_BALANCE, FORCE, FORCE_ERROR, L2_U, L2_V, OUTSIDE, POINTS, REATTACHMENT_ERROR,
+        SEPARATION_ERROR, STATIONS,
+    },
+    plan::{END, Group, Row, Table, flow, name, shown, table},
+    reference::{REYNOLDS, Reference, bubble, floor, reference, summary},
+    setup::FLUX,
+};
 
 /// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.
 const SEALED: Draws = Draws {

@@ -2,15 +2,9 @@
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 use serde::{Deserialize, Serialize};
-use touchstone_solver::{
-    EquationOfState,
-    inverse::{Inverse, of_three},
-};
-
-use super::{Setup, reference::KNOWN_SETTINGS};
-use touchstone_base::functions::hypot;
 use touchstone_base::{
     absent::Absent,
+    functions::hypot,
     record::{MetricKey, Profile, Record},
 };
 use touchstone_harness::{
@@ -19,6 +13,12 @@ use touchstone_harness::{
     snapshot::{Point, Snapshot},
 };
 use touchstone_maths::metrics::norms::{largest, rms};
+use touchstone_solver::{
+    EquationOfState,
+    inverse::{Inverse, of_three},
+};
+
+use super::{Setup, reference::KNOWN_SETTINGS};
 
 /// Points across a section.
 pub const POINTS: usize = 200;

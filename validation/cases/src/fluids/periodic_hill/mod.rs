@@ -12,7 +12,7 @@ mod reference;
 mod run;
 mod setup;
 
-use touchstone_harness::composed::*;
+use touchstone_harness::prelude::*;
 use touchstone_schemes::hill;
 
 use crate::fluids::unit_flow::Numerics;

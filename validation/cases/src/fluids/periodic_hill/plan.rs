@@ -1,8 +1,15 @@
 //! The runs of the case and their gates.
 
-use super::{CASE, HillSettings, RECOMMENDED, measure::*};
-use touchstone_base::gate::*;
-use touchstone_harness::{case::Tier, table};
+use touchstone_harness::prelude::*;
+use touchstone_harness::table;
+
+use super::{
+    CASE, HillSettings, RECOMMENDED,
+    measure::{
+        DRAG_BALANCE, FLUX, FORCE, FORCE_ERROR, L2_U, OUTSIDE, REATTACHMENT_ERROR, SECTION_FLUX,
+        SEPARATION_ERROR, WALL_OFFSET,
+    },
+};
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,11 +3,13 @@
 use std::sync::LazyLock;
 
 use nalgebra::Vector2;
+use touchstone_base::{
+    record::MetricKey,
+    reference::{Reference as Package, ReferenceError},
+};
+use touchstone_maths::{geometry::Hill, metrics::norms::rms};
 
 use super::HillSettings;
-use touchstone_base::record::MetricKey;
-use touchstone_base::reference::{Reference as Package, ReferenceError};
-use touchstone_maths::{geometry::Hill, metrics::norms::rms};
 
 /// Reynolds numbers that have a reference.
 pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
@@ -148,7 +150,8 @@ impl Station {
 
 #[cfg(test)]
 mod tests {
-    use super::{super::measure::SEPARATION, *};
+    use super::super::measure::SEPARATION;
+    use super::*;
 
     /// A curve that could not be read is empty, too.
     #[test]

@@ -1,17 +1,15 @@
 //! One run: scene, stepping with the controller between stretches, record.
 
 use serde::{Deserialize, Serialize};
-use touchstone_base::{functions::exp, record::*};
-use touchstone_harness::{
-    case::RunError,
-    method::Parts,
-    problem::{Asked, Brief, Calls, Problem},
-    series::Series,
-    snapshot::Snapshot,
-};
+use touchstone_base::{functions::exp, record::Status};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{series::Series, snapshot::Snapshot};
 use touchstone_schemes::hill::{Driving, HillMethod};
 
-use super::{HillSettings, Setup, measure::*};
+use super::{
+    HillSettings, Setup,
+    measure::{Window, mean_velocity, measure, particles},
+};
 
 /// Steps between looks of the controller.
 const STRETCH: f64 = 10.0;

@@ -1,12 +1,15 @@
 //! From settings to numbers and particles.
 
 use nalgebra::Vector2;
-use touchstone_harness::{case::RunError, method::Parts};
+use touchstone_harness::prelude::*;
 use touchstone_maths::geometry::{Curve, Hill};
 use touchstone_schemes::hill::HillMethod;
-use touchstone_solver::{Domain, Particle, Role};
+use touchstone_solver::Role;
 
-use super::{HillSettings, reference::*};
+use super::{
+    HillSettings,
+    reference::{KNOWN_SETTINGS, Reference},
+};
 use crate::fluids::unit_flow::{Scales, UnitFlow};
 
 /// Gap over the crest of the reference \[H\]: with U_b = 1 the flux per depth.

@@ -3,13 +3,18 @@
 
 mod run;
 
-use touchstone_base::{functions::log10, gate::*, record::Record};
-use touchstone_harness::{case::*, composed::*, studies::*, table};
+use touchstone_base::{functions::log10, gate::Cause};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    case::{Drawn, Draws, Statement},
+    studies::{Accuracy, Budgets, Change, CurveOf, CurvePanel, Curves, Picture, Spacing},
+    table,
+};
 use touchstone_report::{Axis, ColourMap};
 use touchstone_schemes::flow;
 
 use crate::fluids::unit_flow::Numerics;
-use run::*;
+use run::{ENERGY, L2, MOMENTUM_ADDED, NEAREST, Setup};
 
 touchstone_base::settings! {
     /// Settings of the vortices. L = U = ρ = 1.

@@ -2,20 +2,17 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_solver::{Domain, EquationOfState, Particle, Stepper};
-
-use super::VortexSettings;
-use crate::fluids::unit_flow::{Scales, UnitFlow};
-use touchstone_base::{absent::Absent, functions::hypot, random::Random, record::*};
+use touchstone_base::{absent::Absent, functions::hypot, random::Random, record::Status};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::RunError,
-    method::{Method, Parts},
-    pictures,
-    problem::{Asked, Brief, Calls, Problem},
-    rules,
+    pictures, rules,
     snapshot::{self, Point, Snapshot},
 };
 use touchstone_maths::{exact::TaylorGreen, metrics::norms::largest};
+use touchstone_solver::EquationOfState;
+
+use super::VortexSettings;
+use crate::fluids::unit_flow::{Scales, UnitFlow};
 
 /// The numbers of one run, L = U = ρ = 1.
 pub struct Setup {

@@ -13,7 +13,8 @@ mod study;
 #[cfg(test)]
 mod tests;
 
-use touchstone_harness::{case::*, composed::*, method::*};
+use touchstone_harness::case::{Drawn, Draws, Statement};
+use touchstone_harness::prelude::*;
 use touchstone_schemes::lattice;
 
 touchstone_base::settings! {

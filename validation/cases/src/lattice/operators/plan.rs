@@ -1,6 +1,6 @@
 //! The runs of the case and the gates of each.
 
-use touchstone_base::gate::*;
+use touchstone_base::gate::{Bound, Evidence};
 use touchstone_harness::{case::Tier, table};
 
 use super::{

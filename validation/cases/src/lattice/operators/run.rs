@@ -1,25 +1,23 @@
 //! One operator: scene, steps, record.
 
-use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::{cos, sin},
     random::Random,
-    record::*,
+    record::Status,
 };
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::Parameter,
-    case::*,
-    method::*,
-    problem::{Brief, Problem},
+    case::{Parameter, Step},
     snapshot::{Columns, Point, Snapshot},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
 use touchstone_schemes::lattice::summing_step;
-use touchstone_solver::{Domain, EquationOfState, Particle, Stepper, Tait};
+use touchstone_solver::{EquationOfState, Tait};
 
 use super::{Operator, OperatorSettings, Subject};
 

@@ -1,17 +1,22 @@
 //! The orders of the operators, in h, in the number of neighbours and in disorder.
 
-use touchstone_base::{gate::*, record::MetricKey};
+use touchstone_base::{gate::Cause, record::MetricKey};
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::Tier,
     convergence::Level,
     orders::{self, Line, Refinement},
     runs::Runs,
     section::Section,
-    studies::{CustomStudy, Studies},
+    studies::CustomStudy,
     table::Row,
 };
 
-use super::{plan::*, run::*, *};
+use super::{
+    CUBIC, OPERATORS, Operator, OperatorSettings, QUINTIC, Subject,
+    plan::{Group, Table, judged},
+    run::{BIAS, NOISE},
+    subjects,
+};
 
 /// Why an operator does not converge.
 static DISORDERED: Cause = Cause::new(

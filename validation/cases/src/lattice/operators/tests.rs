@@ -4,15 +4,11 @@ use std::f64::consts::TAU;
 
 use approx::assert_relative_eq;
 use touchstone_base::mutation::{Constant, Mutation};
-use touchstone_harness::case::Case;
+use touchstone_harness::{case::Case, context::Context};
 use touchstone_solver::{QuinticSpline, Smoothing};
 
-use touchstone_harness::context::Context;
-
-use super::{
-    run::{NOISE, SUM_ERROR, SYMBOL_ERROR},
-    *,
-};
+use super::run::{NOISE, SUM_ERROR, SYMBOL_ERROR};
+use super::*;
 
 fn value(
     variant: &str,

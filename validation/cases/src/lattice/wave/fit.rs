@@ -12,7 +12,6 @@
 //! A transverse velocity v' = -γ v is the scalar case.
 
 use nalgebra::{Complex, Matrix2, Vector2};
-
 use touchstone_base::functions::complex_sqrt;
 use touchstone_maths::theory::time_step::Integrator;
 

@@ -14,11 +14,10 @@
 mod fit;
 mod run;
 
-use touchstone_base::{gate::*, record::MetricKey};
+use touchstone_base::record::MetricKey;
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    composed::*,
-    studies::Studies,
+    case::Statement,
     table::{Row, Table},
 };
 

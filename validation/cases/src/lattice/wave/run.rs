@@ -1,28 +1,29 @@
 //! One run of a mode: scene, stepping, projection, record.
 
-use serde::{Deserialize, Serialize};
 use std::iter::once;
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::{cos, sin},
     random::Random,
-    record::*,
+    record::digest,
 };
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::*,
-    method::*,
-    problem::{Asked, Brief, Calls, Problem},
+    case::{Limits, PLANNED_DT, Step},
     snapshot::{Snapshot, momentum},
 };
-use touchstone_maths::metrics::norms::largest;
-use touchstone_maths::theory::time_step::{self, Mode, modes};
-use touchstone_solver::{EquationOfState, Stepper, Tait};
+use touchstone_maths::{
+    metrics::norms::largest,
+    theory::time_step::{self, Mode, modes},
+};
+use touchstone_solver::{EquationOfState, Tait};
 
 use super::{
+    DECAY_ERROR, FREQUENCY_ERROR, MOMENTUM_ERROR, Polarisation, TRAJECTORY_ERROR, WaveSettings,
     fit::{self, DampedMode},
-    *,
 };
 use crate::lattice::torus;
 

@@ -1,8 +1,20 @@
 //! Observations of a bar: the path of its end, its energies, its middle line when the end is lowest.
 
-use super::*;
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    series::Series,
+    snapshot::{Point, Snapshot},
+};
+use touchstone_solver::Symmetric;
+
+use super::{
+    AVERAGE_Y_ERROR, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR, COMPARED, CantileverSettings,
+    ENERGY_CHANGE, FREQUENCY_ERROR, OF_METHODS, PATH_RMS, Watch, elements, path,
+};
+use crate::solids::solid::{self, Body, Energy, Path, lagrangian};
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
 const SAMPLES: f64 = 1600.0;
@@ -122,6 +134,7 @@ mod tests {
     use crate::solids::solid::Body;
     use approx::assert_relative_eq;
     use touchstone_harness::method::Parts;
+    use touchstone_harness::{series::Series, snapshot::Snapshot};
 
     /// The frequency goes with the root of the stiffness, the sag with its inverse.
     #[test]

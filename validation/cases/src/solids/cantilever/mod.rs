@@ -4,27 +4,24 @@ mod end;
 mod path;
 mod plan;
 
-use nalgebra::Vector2;
 use std::f64::consts::TAU;
-use touchstone_base::{gate::*, mutation::Constant, record::*};
-use touchstone_harness::{
-    case::*,
-    composed::*,
-    series::Series,
-    snapshot::{Point, Snapshot},
-    studies::*,
-    table::*,
-};
-use touchstone_lagrangian::*;
-use touchstone_schemes::total;
-use touchstone_solver::*;
 
-use crate::solids::{
-    causes::*,
-    solid::{self, *},
+use nalgebra::Vector2;
+use touchstone_base::record::MetricKey;
+use touchstone_harness::prelude::*;
+use touchstone_harness::{series::Series, snapshot::Snapshot};
+use touchstone_lagrangian::{Hencky, Law, SaintVenantKirchhoff};
+use touchstone_schemes::total;
+use touchstone_solver::{Role, Symmetric};
+
+use crate::solids::solid::{
+    self, Body, Common, Elements, LAGRANGIAN, Scales, SolidSettings, TOTAL, Watch, lagrangian,
 };
 use end::End;
-use path::*;
+use path::{
+    AMPLITUDE_X, AMPLITUDE_Y, AVERAGE_X, AVERAGE_Y, FIRST_LEAST_Y, FREQUENCY, HARMONIC_X,
+    HARMONIC_Y, MEAN_X, MEAN_Y,
+};
 
 touchstone_base::settings! {
     /// Settings of a bar that is held at x = 0 and has weight from t = 0 on.

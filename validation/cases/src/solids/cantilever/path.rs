@@ -1,9 +1,16 @@
 //! Metrics of the path of the end of a bar, as for finite elements.
 
-use touchstone_base::functions::{cos, sin};
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+use touchstone_base::{
+    functions::{cos, sin},
+    record::MetricKey,
+};
 use touchstone_maths::metrics::history::passes;
 
-use super::*;
+use super::COMPARED;
+use crate::solids::solid::Path;
 
 touchstone_base::metrics! {
     all OF_PATH;

@@ -1,6 +1,24 @@
 //! The runs of the bar, their gates, and its part of the report.
 
-use super::*;
+use Group::{First, Light, Paper, Whole};
+use nalgebra::Vector2;
+use touchstone_base::mutation::Constant;
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    case::{Curve, Draws, Statement},
+    studies::{Accuracy, Sensitivity, Spacing, Watched},
+    table::{Row, Table},
+};
+
+use super::{
+    ALL, AVERAGE_X_ERROR, AVERAGE_Y_ERROR, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR, CANTILEVER,
+    COMPARED, CantileverSettings, ENERGY_CHANGE, FIRST_LEAST_Y_ERROR, FIRST_SWING, FREQUENCY_ERROR,
+    HARMONIC_X_ERROR, HARMONIC_Y_ERROR, OF_METHODS, PATH_RMS, SAINT_VENANT, STEPWISE, end, path,
+};
+use crate::solids::{
+    causes::VISCOSITY,
+    solid::{LAGRANGIAN, faces},
+};
 
 /// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
@@ -14,7 +32,6 @@ pub enum Group {
     /// By the equations of the paper.
     Paper,
 }
-use Group::{First, Light, Paper, Whole};
 
 /// Every run.
 pub fn table(tier: Tier) -> Table<CantileverSettings, Group> {

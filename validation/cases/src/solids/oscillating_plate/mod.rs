@@ -2,18 +2,20 @@
 
 mod plan;
 
+use std::f64::consts::TAU;
+
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
-use touchstone_base::{functions::*, gate::*, record::*};
-use touchstone_harness::{case::*, composed::*, snapshot::Snapshot, studies::*, table::*};
+use touchstone_base::functions::{cos, cosh, sin, sinh};
+use touchstone_harness::prelude::*;
+use touchstone_harness::snapshot::Snapshot;
 use touchstone_lagrangian::{Hencky, Law as _};
 use touchstone_maths::metrics::history::passes;
-use touchstone_solver::*;
+use touchstone_solver::{Role, Symmetric};
 
-use super::{
-    causes::*,
-    solid::{self, *},
+use super::solid::{
+    self, Body, Common, Elements, Energy, FIRST_MODE, LAGRANGIAN, Path, Scales, SolidSettings,
+    Watch,
 };
 
 touchstone_base::settings! {
@@ -247,6 +249,7 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use touchstone_base::record::Status;
     use touchstone_harness::{case::Case, context::Context};
 
     /// A tip at a sin(2 pi t/T), at times that do not divide the period.

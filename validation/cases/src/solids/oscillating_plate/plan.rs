@@ -1,6 +1,22 @@
 //! The runs of the plate, their gates, and its part of the report.
 
-use super::*;
+use Group::{Damped, Elements as Three, Fast, Locked, Order, Paper};
+use touchstone_base::record::MetricKey;
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    case::Statement,
+    studies::{Accuracy, Spacing},
+    table::{Row, Table},
+};
+
+use super::{
+    ALL, AMPLITUDE_ERROR, AMPLITUDE_RATIO, BENDING_PERIOD_ERROR, ENERGY_CHANGE, OF_METHODS,
+    OSCILLATING_PLATE, PATH_RMS, PERIOD_ERROR, PERIOD_EXCESS, PLAIN, PlateSettings, STEPWISE,
+};
+use crate::solids::{
+    causes::{LOCKING, STRESS_ADDS_ENERGY, VISCOSITY},
+    solid::{Body, LAGRANGIAN, SolidSettings, faces, lagrangian},
+};
 
 /// Purpose of a run.
 #[derive(Clone, Copy, PartialEq)]
@@ -18,7 +34,6 @@ pub enum Group {
     /// The energy of a tip that swings farther than the plate is long.
     Fast,
 }
-use Group::{Damped, Elements as Three, Fast, Locked, Order, Paper};
 
 /// Every run.
 pub fn table(tier: Tier) -> Table<PlateSettings, Group> {

@@ -1,9 +1,37 @@
 //! Declaration of the case: histories against finite elements, errors over spacing and cost, an error budget,
 //! step limits, maps, errors of constants that the gates must detect.
 
+use nalgebra::Vector2;
+use touchstone_base::{
+    mutation::Constant,
+    record::{MetricKey, Status},
+};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    case::{Curve, Drawn, Draws, Statement},
+    pictures::{self, Film},
+    studies::{
+        Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
+        Curves, Ladder, Map, MapPanel, Picture, PicturePanel, Sensitivity, Spacing, Stated,
+        StepLimit, StepLimits, Watched,
+        causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
+    },
+};
 use touchstone_report::{Colour, ColourMap, sig};
 
-use super::*;
+use super::{
+    RUBBER_RINGS, RingSettings, is_stable,
+    measure::{PICTURES, halves},
+    metrics::{
+        self, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ENERGY_GAINED, HEIGHT_MAX, HEIGHT_MAX_ERROR,
+        HEIGHT_RMS, HISTORIES, HOLES_LEAST, IMPULSE, IMPULSE_ERROR, PIECES_MOST, RESTITUTION,
+        RESTITUTION_ERROR, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT, V_C_RMS, WIDTH_MIN,
+        WIDTH_MIN_ERROR, WIDTH_RMS, X_C_RMS, X_C_WORST,
+    },
+    plan::{Group, Row, SPEED, Table, table},
+    reference::{self, Reference},
+};
+use crate::solids::solid::{Body, LAGRANGIAN, corners};
 
 /// Metrics that need the phases of contact, which begin and end between two steps; extremes of every step;
 /// and energies, which need the stress.
@@ -435,6 +463,7 @@ fn sensitivity(tier: Tier) -> Sensitivity {
 mod tests {
     use super::*;
     use touchstone_harness::runs::Runs;
+    use touchstone_harness::studies::Study;
 
     /// A report must not omit the runs and the gate of a refused run.
     #[test]

@@ -1,10 +1,30 @@
 //! Metrics of the rings, by sample and at the end.
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_harness::series::Series as Columns;
+use touchstone_base::{
+    absent::Absent,
+    functions::hypot,
+    record::{MetricKey, Profile, Record, Status},
+};
+use touchstone_harness::{
+    pictures,
+    series::Series as Columns,
+    snapshot::{Point, Snapshot, momentum},
+};
 use touchstone_maths::geometry::{Bonds, Topology};
+use touchstone_solver::{EquationOfState, Symmetric};
 
-use super::*;
+use super::{
+    RingSettings,
+    metrics::{
+        ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM, PHASES,
+        PIECES_MOST, Phase, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT,
+        WIDTH_MIN, phase,
+    },
+    reference,
+};
+use crate::solids::solid::{Body, Energy, Watch, corners, largest};
 
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;
@@ -332,6 +352,7 @@ mod tests {
     use crate::solids::rings::RUBBER_RINGS;
     use touchstone_harness::case::Case;
     use touchstone_harness::context::Context;
+    use touchstone_solver::Particle;
 
     #[test]
     fn centre_velocity_and_extents_are_those_of_the_ring() {

@@ -1,6 +1,6 @@
 //! Metrics of the rings.
 
-use super::*;
+use touchstone_base::record::MetricKey;
 
 touchstone_base::metrics! {
     all ALL;

@@ -13,30 +13,13 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::{Rotation2, Vector2};
-use std::f64::consts::TAU;
-use touchstone_base::{absent::Absent, functions::*, gate::*, mutation::Constant, record::*};
-use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::Properties,
-    pictures,
-    snapshot::{Point, Snapshot, momentum},
-    studies::{causes::*, *},
-    table,
-};
-use touchstone_solver::{EquationOfState, Limits, Particle, Symmetric};
+use touchstone_base::record::Status;
+use touchstone_harness::prelude::*;
 
-use crate::stabilisation::Stabilisation;
-
-use crate::solids::{
-    causes::*,
-    solid::{self, lagrangian as total, *},
+use crate::{
+    solids::solid::{self, LAGRANGIAN, TOTAL, lagrangian as total},
+    stabilisation::Stabilisation,
 };
-use measure::*;
-use metrics::*;
-use plan::*;
-use reference::Reference;
 
 touchstone_base::settings! {
     /// Settings of the collision of two rings; L is 1 m.

@@ -1,6 +1,23 @@
 //! The table of the runs, and their gates.
 
-use super::*;
+use touchstone_base::{functions::exp, record::MetricName};
+use touchstone_harness::prelude::*;
+use touchstone_harness::table::{self};
+
+use super::{
+    COMPONENTWISE, CORRECTED, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings,
+    measure::NEIGHBOURS,
+    metrics::{
+        CONTACT_END_ERROR, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX_ERROR, HISTORIES, HOLES_LEAST,
+        IMPULSE_ERROR, MOMENTUM, PHASES, PIECES_MOST, RESTITUTION_ERROR, STRETCH_MOST, WIDTH_MIN,
+        WIDTH_MIN_ERROR, X_C_WORST, phase,
+    },
+    reference::Reference,
+};
+use crate::solids::{
+    causes::{FOLDS, SHARED_IMPULSE, SOFT_CONTACT, TEARING},
+    solid::{LAGRANGIAN, faces},
+};
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

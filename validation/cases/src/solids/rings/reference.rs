@@ -1,10 +1,20 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
-use touchstone_base::reference::Reference as Package;
+use touchstone_base::{
+    record::{MetricKey, Record},
+    reference::Reference as Package,
+};
 use touchstone_lagrangian::{Hencky, Law as _};
 use touchstone_maths::metrics::{history, norms::rms};
 
-use super::*;
+use super::{
+    RingSettings,
+    metrics::{
+        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, HEIGHT_RMS, HISTORIES, IMPULSE_ERROR,
+        Phase, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
+    },
+};
+use crate::solids::solid::{LAGRANGIAN, Quantities, largest, quantities};
 
 const PACKAGE: &str = "rubber_rings";
 /// The law of (10) to (12), as the tables name it.
@@ -170,6 +180,7 @@ fn diameter([_, _, width, _]: &Histories) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solids::rings::metrics::RESTITUTION;
 
     #[test]
     fn outlines_have_the_extents_of_the_series() {

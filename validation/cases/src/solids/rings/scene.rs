@@ -1,6 +1,14 @@
 //! From settings to a scene: spacing, moduli, particles.
 
-use super::*;
+use std::f64::consts::TAU;
+
+use nalgebra::{Rotation2, Vector2};
+use touchstone_base::functions::{rotation, sin_cos};
+use touchstone_harness::{case::RunError, method::Properties, snapshot::Snapshot};
+use touchstone_solver::{Limits, Particle, Symmetric};
+
+use super::{RingSettings, measure::Series};
+use crate::solids::solid::{Body, Common, Material, Scales};
 
 /// The largest number of layers that stay whole with corrected gradients at the paper's speed. Rings of 20
 /// tear at the inner face (docs/limits.md).

@@ -1,18 +1,24 @@
 //! Runs of made-up motion, whose measures are known.
 
-use super::{
-    RUBBER_RINGS, RingSettings,
-    measure::{self, Series},
-    metrics::*,
-    reference::Reference,
-};
-use crate::solids::solid::Body;
 use approx::assert_abs_diff_eq;
 use touchstone_base::{
     functions::exp,
     record::{MetricName, Record, Status},
 };
 use touchstone_harness::{case::Case, context::Context, snapshot::Snapshot};
+
+use super::{
+    RUBBER_RINGS, RingSettings,
+    measure::{self, Series},
+    metrics::{
+        CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX,
+        HEIGHT_MAX_ERROR, HOLES_LEAST, IMPULSE, IMPULSE_ERROR, MOMENTUM, PHASES, RESTITUTION,
+        RESTITUTION_ERROR, RMS, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, WIDTH_MIN,
+        WIDTH_MIN_ERROR, X_C_WORST, phase,
+    },
+    reference::Reference,
+};
+use crate::solids::solid::Body;
 
 /// Coarse rings that fly at 0.06 c0.
 fn settings() -> RingSettings {

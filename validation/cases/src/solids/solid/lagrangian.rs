@@ -2,9 +2,10 @@
 
 use touchstone_base::settings::{self, Values};
 use touchstone_schemes::total::H_OVER_DX;
-pub use touchstone_schemes::total::{bending, displace, limit_in_contact};
 
 use super::leave_out;
+
+pub use touchstone_schemes::total::{bending, displace, limit_in_contact};
 
 /// The variant.
 pub const LAGRANGIAN: &str = "lagrangian";

@@ -1,7 +1,8 @@
 //! Common parts of clamped plates.
 
-use nalgebra::Vector2;
 use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
 use touchstone_solver::PlaneWall;
 
 use super::Scales;

@@ -1,25 +1,20 @@
 //! A problem of elasticity: its variants, the common part of its records, and its stepping.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector2;
 use serde::{Serialize, de::DeserializeOwned};
-use std::ops::ControlFlow;
-use touchstone_solver::{Domain, Particle, Role, Stepper, Symmetric};
-
-use super::lagrangian::{self, LAGRANGIAN, TOTAL};
-use super::{Material, clamp, limits};
-use touchstone_base::{
-    record::Record,
-    settings::{self, Settings, Values},
-};
-use touchstone_harness::{
-    case::{Rules, RunError, Step},
-    composed::Variants,
-    method::{Medium, Method, Parts, Properties},
-    problem::{Asked, Brief, Calls, Problem},
-    relation::View,
-    snapshot::Snapshot,
-};
+use touchstone_base::settings::{self, Settings, Values};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{case::Step, method::Properties, relation::View, snapshot::Snapshot};
 use touchstone_maths::theory::time_step::Integrator;
+use touchstone_solver::{Role, Symmetric};
+
+use super::{
+    Material, clamp,
+    lagrangian::{self, LAGRANGIAN, TOTAL},
+    limits,
+};
 
 /// The numbers that the settings of every solid state.
 #[derive(Clone, Copy, Debug)]

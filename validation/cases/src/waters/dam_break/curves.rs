@@ -1,11 +1,23 @@
 //! Histories of both experiments with measurements and with the same model by volume of fluid.
 
 use std::f64::consts::FRAC_1_SQRT_2;
+
+use touchstone_base::record::Record;
+use touchstone_harness::{
+    case::Tier,
+    studies::{CurveOf, CurvePanel, Curves},
+};
 use touchstone_report::{Axis, sig};
 
 use super::{
+    DamSettings,
     measure::{PROBES, SENSORS},
-    *,
+    metrics::ARRIVAL,
+    plan::{self, Group, Row},
+    reference::{
+        LOBOVSKY, MARTIN_MOYCE, MODEL, MODEL_OF_MARTIN_MOYCE, Points, arrival, aside, depth, front,
+        front_from, height, pressure, until,
+    },
 };
 
 /// A panel over time until an end, of the judged runs of the recommended variant and of the paper's: names of

@@ -1,11 +1,37 @@
 //! Declaration of the case: the front of the column of Martin & Moyce over resolutions, its error budget, the
 //! longest stable time steps, and the errors of constants that the gates must detect.
 
+use nalgebra::Vector2;
 use serde_json::Value;
-use touchstone_base::reference::Reference;
+use touchstone_base::{
+    mutation::{Constant, Mutation},
+    record::{MetricName, Status},
+    reference::Reference,
+};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    case::{Curve, Draws, Statement},
+    pictures::Film,
+    studies::{
+        Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, Picture, PicturePanel,
+        Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
+        causes::{NOT_MEASURED, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
+    },
+};
 use touchstone_report::{ColourMap, sig};
+use touchstone_solver::Numbers;
 
-use super::{run::COSTLY, *};
+use super::{
+    DAM_BREAK, DamSettings, NAME, Scene, curves, ensembles,
+    metrics::{
+        self, FRONT, FRONT_AWAY, FRONT_BACK, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
+        LEVEL_AWAY, LEVELS, MACH, Z,
+    },
+    plan::{self, Group, Table},
+    reference::{FRONT_SPREAD, IMPULSE_SPREAD, LEVEL_SPREAD, TANK_FRONT_SPREAD},
+    run::{self, COSTLY},
+};
+use crate::waters::water::ledger::ENERGY_GAP;
 
 /// A run that ended, with the energy that it began with.
 pub fn is_stable(record: &Record) -> bool {

@@ -1,7 +1,18 @@
 //! The column in the tank from twenty starts that differ by a millionth of a spacing: the time until which
 //! levels and impulses agree, and the distribution after the jet has fallen back.
 
-use super::*;
+use touchstone_harness::prelude::*;
+use touchstone_harness::studies::{Ensemble, Ensembles, History, Number};
+
+use super::{
+    NAME,
+    metrics::IMPULSE,
+    plan::{self, Group, Table},
+    reference::{
+        IMPULSE_SPREAD, LEVEL_SPREAD, LEVELS_UNTIL, LOBOVSKY, MODEL, Points, WINDOWS, arrival,
+        depth, impulse, mean, pressure, trapezoid,
+    },
+};
 
 /// Times of the levels after the jet has closed \[(H/g)^(1/2)\].
 const LATE: [f64; 2] = [6.0, plan::UNTIL];
@@ -145,6 +156,7 @@ mod tests {
         mutation::{Constant, Disorder, Mutation},
         spec::RunSpec,
     };
+    use touchstone_harness::studies::Study;
     use touchstone_harness::{
         case::{self, Case},
         context::Context,

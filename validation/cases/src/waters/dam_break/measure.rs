@@ -1,10 +1,18 @@
 //! Metrics of the water: front, heights, levels, potential energy, and pressure on the far wall.
 
-use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
-use std::ops::ControlFlow;
+use std::{collections::BTreeSet, ops::ControlFlow};
 
-use super::*;
+use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
+use touchstone_base::absent::Absent;
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    series::Series,
+    snapshot::{Point, Snapshot},
+};
+use touchstone_solver::EquationOfState;
+
+use super::{Dam, metrics};
 
 /// Heights of the sensors on the far wall \[m\], and their diameter (Lobovsky et al. 2014).
 pub const SENSORS: [f64; 4] = [0.003, 0.015, 0.030, 0.080];
@@ -301,6 +309,7 @@ mod tests {
     use super::*;
     use crate::waters::dam_break::lobovsky;
     use touchstone_harness::method::Parts;
+    use touchstone_harness::snapshot::Snapshot;
     use touchstone_solver::{Particle, Smoothing, WendlandC2};
 
     impl Samples {

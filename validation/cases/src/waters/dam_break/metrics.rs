@@ -1,6 +1,8 @@
 //! Metrics of a collapsing column.
 
-use super::*;
+use touchstone_base::record::{MetricKey, MetricName};
+
+use crate::waters::water::ledger::{self};
 
 /// Distance of curves from an experiment's.
 pub struct Distance {

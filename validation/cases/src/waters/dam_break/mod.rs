@@ -15,32 +15,10 @@ mod reference;
 mod run;
 mod setup;
 
-use nalgebra::Vector2;
-use touchstone_base::{absent::Absent, gate::*, mutation::*, record::*};
-use touchstone_harness::{
-    case::*,
-    composed::*,
-    method::*,
-    pictures,
-    problem::{Asked, Brief, Calls, Problem},
-    series::Series,
-    snapshot::{Point, Snapshot},
-    studies::{causes::*, *},
-    table,
-};
-use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::*;
+use touchstone_harness::prelude::*;
 
-use crate::waters::{
-    causes::*,
-    water::{
-        self, Ledger, WaterSettings,
-        ledger::{self, *},
-    },
-};
-use metrics::*;
-use plan::*;
-use reference::*;
+use crate::waters::water::WaterSettings;
+
 pub use setup::Dam;
 
 touchstone_base::settings! {

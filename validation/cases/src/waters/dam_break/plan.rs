@@ -3,7 +3,24 @@
 
 use std::ops::RangeInclusive;
 
-use super::*;
+use touchstone_base::{gate::Cause, record::MetricName};
+use touchstone_harness::prelude::*;
+use touchstone_harness::table;
+
+use super::{
+    DAM_BREAK, DamSettings, lobovsky,
+    metrics::{
+        FRONT, FRONT_AWAY, FRONT_BACK, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY, LEVEL_AWAY,
+        LEVELS, MACH, MASS_ERROR, MOMENTUM_GAP, OUTSIDE, POTENTIAL_AWAY, REACHED, RELEASED, Z,
+    },
+    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS, WINDOWS},
+};
+use crate::waters::{
+    causes::{
+        FREE_SLIP, NO_SLIP_IMAGES, PRESSED_THROUGH, TWO_DIMENSIONS, UNCERTAIN_REFERENCE, VISCOSITY,
+    },
+    water::ledger::{ENERGY_GAP, WORK_WALLS},
+};
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]

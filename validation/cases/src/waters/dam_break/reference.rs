@@ -2,9 +2,20 @@
 //! distance from the model is an error of the method.
 
 use std::{f64::consts::SQRT_2, sync::LazyLock};
-use touchstone_base::reference::Reference as Package;
 
-use super::*;
+use touchstone_base::{
+    record::{MetricName, Record},
+    reference::Reference as Package,
+};
+use touchstone_harness::snapshot::Snapshot;
+
+use super::{
+    Dam, DamSettings,
+    metrics::{
+        ARRIVAL, Distance, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
+        LEVEL_AWAY, LEVELS, PEAK, POTENTIAL_AWAY, Z,
+    },
+};
 
 /// Spread of digitised curves of the front of Martin & Moyce \[a\].
 pub const FRONT_SPREAD: f64 = 0.1;
@@ -373,6 +384,7 @@ mod tests {
         lobovsky,
         measure::{Gauge, Samples},
     };
+    use touchstone_harness::snapshot::Snapshot;
 
     /// Metrics beyond the end of a run must not have the value of the last sample, of a part of a window, or
     /// NaN.

@@ -1,11 +1,25 @@
 //! One run of the collapse: scene, stepping, record.
 
 use serde::{Deserialize, Serialize};
+use touchstone_base::record::{MetricKey, Status};
+use touchstone_harness::prelude::*;
+use touchstone_harness::{
+    pictures,
+    snapshot::{Point, Snapshot},
+};
 use touchstone_maths::metrics::budget::Metered;
+use touchstone_schemes::water::WaterMethod;
+use touchstone_solver::EquationOfState;
 
 use super::{
+    Dam, DamSettings,
     measure::{Gauge, Samples},
-    *,
+    metrics::{MASS_ERROR, MOMENTUM_GAP, REACHED},
+    reference,
+};
+use crate::waters::water::{
+    Ledger,
+    ledger::{self},
 };
 
 /// When particles are kept for a picture, as a share of the run: the jet has risen at the far wall.
@@ -160,6 +174,7 @@ fn stops(dam: &Dam) -> (Vec<f64>, Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::waters::dam_break::metrics;
     use crate::waters::{dam_break::DAM_BREAK, water::ledger::WORK_VISCOSITY};
     use touchstone_base::{
         absent::Absent,

@@ -1,8 +1,14 @@
 //! From settings to a scene: spacing, time step, tank, column.
 
+use nalgebra::Vector2;
+use touchstone_harness::method::{Boundary, FirstRow};
+use touchstone_harness::prelude::*;
 use touchstone_maths::geometry::Tank;
+use touchstone_schemes::water::WaterMethod;
+use touchstone_solver::{EquationOfState, Ghosts};
 
-use super::*;
+use super::{DamSettings, Scene};
+use crate::waters::water::{self};
 
 /// The settings on which time and memory of a run depend.
 const DECISIVE: &str = "end, dt, courant, c0, n or tank";
@@ -141,6 +147,7 @@ mod tests {
 
     use super::*;
     use crate::waters::dam_break::{DAM_BREAK, lobovsky};
+    use crate::waters::water::WaterSettings;
     use touchstone_schemes::water;
 
     impl Dam {

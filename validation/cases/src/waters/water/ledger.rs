@@ -3,16 +3,13 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{
-    absent::Absent,
-    record::{MetricKey, Profile, Record},
-};
-use touchstone_harness::{method::Medium, snapshot::Snapshot};
+use touchstone_base::{absent::Absent, record::MetricKey};
+use touchstone_harness::prelude::*;
+use touchstone_harness::snapshot::Snapshot;
 use touchstone_maths::metrics::{
     budget::{Metered, Powers},
     energy::{Energy, Water, water_slope},
 };
-use touchstone_solver::Stepper;
 
 touchstone_base::metrics! {
     ENERGY_GAP = "energy_gap" ["-"] "max over samples of |E(t) - E(0) - work of all terms|/{}";

@@ -5,14 +5,15 @@ pub mod ledger;
 
 use nalgebra::Vector2;
 use touchstone_base::settings::SettingError;
+use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Rules, RunError, Step},
+    case::Step,
     limits::Limits,
-    method::{FirstRow, Medium, Properties},
+    method::{FirstRow, Properties},
 };
 use touchstone_maths::{exact, geometry::Tank};
 use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::{Particle, Role, Tait};
+use touchstone_solver::{Role, Tait};
 
 pub use ledger::Ledger;
 

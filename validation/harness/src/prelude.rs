@@ -1,0 +1,17 @@
+//! The names that nearly every case needs: `use touchstone_harness::prelude::*;`. Other names are imported one
+//! by one.
+
+pub use touchstone_base::{
+    gate::{Bound, Evidence, Gate},
+    record::{Profile, Record},
+};
+pub use touchstone_solver::{Domain, Particle, Stepper};
+
+pub use crate::{
+    case::{Case, Recommended, Rules, RunError, Tier},
+    composed::{Composed, Compositions, Variants},
+    facts::Facts,
+    method::{Medium, Method, Parts},
+    problem::{Asked, Brief, Calls, Problem},
+    study::Studies,
+};
