@@ -8,9 +8,12 @@ use touchstone_base::record::{Profile, Record, Status};
 use touchstone_base::spec::{RunSpec, Task};
 use touchstone_cases::{CASES, page};
 use touchstone_harness::{
+    batch,
     case::{Case, Planned, Tier},
     context::Context,
-    make::{self, BatchOptions, BatchResult, Job},
+    estimate::estimate,
+    gates::GateIndex,
+    make::{BatchOptions, BatchResult, Job},
     plan, suite,
 };
 
@@ -53,7 +56,7 @@ const TRIED: usize = 4;
 /// Runs of a case, the shortest first.
 pub fn shortest_first(case: &'static dyn Case, planned: Vec<Planned>) -> Vec<Planned> {
     let mut jobs: Vec<Job> = planned.into_iter().map(|planned| Job { case, planned }).collect();
-    make::estimate(&mut jobs, &BatchOptions::new(Tier::Quick, &|_| String::new()));
+    estimate(&mut jobs, &BatchOptions::new(Tier::Quick, &|_| String::new()));
     jobs.sort_by(|a, b| a.planned.seconds.total_cmp(&b.planned.seconds));
     jobs.into_iter().map(|job| job.planned).collect()
 }
@@ -62,11 +65,11 @@ pub fn shortest_first(case: &'static dyn Case, planned: Vec<Planned>) -> Vec<Pla
 /// the paper's, if they have one.
 fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
     let planned = shortest_first(case, plan::of_case(case, Tier::Quick));
-    let recommended = case.recommended();
+    let (recommended, index) = (case.recommended(), GateIndex::of(case));
     let of = |variant: &'static str| {
         let is_one = |spec: &RunSpec| spec.variant == variant && spec.task == Task::Simulate;
         let specs = planned.iter().map(|planned| planned.spec.clone()).filter(is_one);
-        let run = |spec: RunSpec| make::run(case, &spec.measure_all(), &Context::default()).ok();
+        let run = |spec: RunSpec| batch::run(&index, &spec.measure_all(), &Context::default()).ok();
         let mut records = specs.take(TRIED).filter_map(run);
         let record = records.find(|record| record.status == Status::Completed)?;
         Some((variant.to_string(), record))

@@ -9,6 +9,7 @@ use touchstone_exchange::{
 use touchstone_harness::{
     case::{Case, Tier, spec},
     foreign::ForeignParticle,
+    gates::GateIndex,
     make::BatchResult,
     suite,
 };
@@ -31,7 +32,7 @@ fn a_solver_of_another_library_is_judged_and_has_a_section() {
         });
         // Of second order: 16 times less with cells of a quarter.
         assert!((8.0..32.0).contains(&(coarse / fine)), "{name}: errors are {coarse} and {fine}");
-        let run = suite::submitted(case, record(32));
+        let run = suite::submitted(&GateIndex::of(case), record(32));
         let (apply, _) = run.applicable();
         assert!(apply.len() >= 4, "{name}: {} gates apply", apply.len());
         let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure());
@@ -64,7 +65,7 @@ impl Other {
         let of = spec(case, "plain", &["rows=20".into()]).unwrap();
         let record =
             touchstone_exchange::library::record(case, &of, self).unwrap_or_else(|e| panic!("{e}"));
-        let run = suite::submitted(case, record);
+        let run = suite::submitted(&GateIndex::of(case), record);
         let (apply, _) = run.applicable();
         let judged = apply.into_iter().find(|judged| judged.gate.id == gate)?;
         Some((judged.gate.bounds(), judged.judgement.verdict.is_failure()))

@@ -9,6 +9,7 @@ use touchstone_base::spec::{RunSpec, Task};
 use touchstone_cases::CASES;
 use touchstone_harness::{
     case::{self, Case, Drawn, Draws, Planned, RunError, Tier},
+    gates::GateIndex,
     make::BatchResult,
     plan, sealed,
     studies::{Accuracy, Budgets, Change, FINER, Map, STARTS},
@@ -96,6 +97,7 @@ fn sealed_problems_are_judged_as_judged_runs_are() {
     ] {
         let case = *CASES.iter().find(|case| case.name() == name).expect(name);
         let draws = case.facts().sealed.expect(name);
+        let index = GateIndex::of(case);
         let kept = draws.others.iter().filter(|(_, how)| matches!(how, Drawn::Judged));
         let kept: Vec<&str> = kept.map(|(name, _)| *name).collect();
         let number = |spec: &RunSpec, name: &str| spec.settings[name].as_f64().unwrap();
@@ -105,7 +107,7 @@ fn sealed_problems_are_judged_as_judged_runs_are() {
         let (metric, all) = of.find(|(_, all)| !bounds_of(all).is_empty()).expect(name);
         let bounds = bounds_of(&all);
         let near = |spec: &RunSpec, expected: f64| {
-            let gates = sealed::gates(case, spec);
+            let gates = sealed::gates(&index, spec);
             let found = gates.iter().find(|gate| gate.metric == metric).and_then(most);
             let found = found.unwrap_or(f64::NAN);
             let what = format!("{name} {metric} at {}: {found}, not {expected}", spec.settings);
@@ -138,7 +140,7 @@ fn sealed_problems_are_judged_as_judged_runs_are() {
             texts.extend(kept.iter().map(|of| format!("{of}={}", number(spec, of))));
         }
         assert!(seen.len() > 1, "{name}");
-        let drawn = (0..24).flat_map(|seed| sealed::draw(case, variant, &mut Random::new(seed)));
+        let drawn = (0..24).flat_map(|seed| sealed::draw(&index, variant, &mut Random::new(seed)));
         let drawn: BTreeSet<String> = drawn.flatten().filter(|one| texts.contains(one)).collect();
         assert_eq!(drawn, texts, "{name}");
     }

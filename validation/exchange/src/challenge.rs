@@ -3,7 +3,7 @@
 
 use serde_json::{Map, Value, json};
 use touchstone_base::{random::Random, reference::sha256, spec::RunSpec};
-use touchstone_harness::{case::Case, sealed};
+use touchstone_harness::{case::Case, gates::GateIndex, sealed};
 
 use crate::{
     problem::Sealed,
@@ -99,5 +99,5 @@ pub fn draw(
     let text = format!("{} {variant} {seed} {}", case.name(), method.digest_without_prose());
     let digest = sha256(text.as_bytes());
     let start = u64::from_str_radix(&digest[..16], 16).unwrap_or(seed);
-    sealed::draw(case, variant, &mut Random::new(start))
+    sealed::draw(&GateIndex::of(case), variant, &mut Random::new(start))
 }

@@ -12,9 +12,9 @@ use touchstone_base::{
 use touchstone_harness::{
     case::{self, Case, RunError},
     facts::{Curve, Facts, Parameter},
+    gates::GateIndex,
     method::{Medium, MediumSetting, Properties},
     outline::Outline,
-    plan,
     relation::Relation,
     sealed,
 };
@@ -217,7 +217,8 @@ impl Problem {
         // Results of other observers are compared, not measured, and settings are in the frame of the first
         // one.
         if relation.is_none() {
-            gates = plan::gates_of(case, &spec);
+            let index = GateIndex::of(case);
+            gates = index.gates(&spec);
             gates.retain(|gate| !record::is_of(&ours, &gate.metric));
             metrics = statement.metrics;
             metrics.retain(|metric| !record::is_of(&ours, &metric.name));
@@ -228,8 +229,7 @@ impl Problem {
                     let gate = gate.for_submission(false)?;
                     (!record::is_of(&ours, &gate.metric)).then_some(gate)
                 };
-                nearest = plan::nearest_judged(case, &spec, &judges)
-                    .map(|(of, _)| case::command(case, &of));
+                nearest = index.nearest(&spec, &judges).map(|(of, _)| case::command(case, &of));
             }
         }
         let (about, boundary, sealed) = (case.about(), statement.boundary, None);
@@ -264,7 +264,7 @@ impl Problem {
     /// The sealed problem, with gates that follow from the bounds of judged runs.
     #[must_use]
     pub fn sealed(mut self, case: &dyn Case, sealed: Sealed) -> Self {
-        self.gates = sealed::gates(case, &self.spec);
+        self.gates = sealed::gates(&GateIndex::of(case), &self.spec);
         Self { sealed: Some(sealed), ..self }
     }
 

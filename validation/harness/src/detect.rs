@@ -9,9 +9,9 @@ use touchstone_base::{
 
 use crate::{
     bisect::{self, Ended},
-    case::{Case, RunError},
+    case::RunError,
     context::Context,
-    plan,
+    gates::GateIndex,
 };
 
 /// The relative errors that are tried, ascending.
@@ -31,13 +31,13 @@ pub const GATES: &str = "gates";
 /// compares the program with itself and cannot. An invariant counts only for a constant of the
 /// discretisation: it holds for any value of a physical constant or of the strength of a term, unless the
 /// measurement takes this value from the settings, as an energy ledger does.
-pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
+fn gates(index: &GateIndex, run: &RunSpec, constant: Constant) -> Vec<Gate> {
     let counts = |gate: &Gate| match gate.evidence {
         Evidence::Analytic | Evidence::Theory | Evidence::Reference => true,
         Evidence::Invariant => constant.is_of_sums(),
         Evidence::Regression => false,
     };
-    plan::gates_of(case, run).into_iter().filter(counts).collect()
+    index.gates(run).into_iter().filter(counts).collect()
 }
 
 /// Searches the smallest error that the gates of a run detect. The record has the settings of the run, the
@@ -47,13 +47,14 @@ pub fn gates(case: &dyn Case, run: &RunSpec, constant: Constant) -> Vec<Gate> {
 /// # Errors
 /// Errors of a run that cannot be made for reasons other than its settings.
 pub fn run(
-    case: &dyn Case,
+    index: &GateIndex,
     spec: &RunSpec,
     detect: &Detect,
     context: &Context,
 ) -> Result<Record, RunError> {
+    let case = index.case;
     let mut wrong = RunSpec { task: Task::Simulate, ..spec.clone() }.allow_unstable();
-    let gates = gates(case, &wrong, detect.of);
+    let gates = gates(index, &wrong, detect.of);
     wrong.measure = case.facts().measure_for(&gates);
     let mut record = Record::of(spec, 1);
     // The gates that the run fails with a constant multiplied by this factor.
@@ -184,7 +185,7 @@ mod tests {
     fn found(of: Constant, only_allowed: bool) -> Record {
         let detect = Detect { of, only_allowed };
         let spec = spec().detect(detect);
-        run(&Balance, &spec, &detect, &Context::default()).unwrap()
+        run(&GateIndex::of(&Balance), &spec, &detect, &Context::default()).unwrap()
     }
 
     /// 2 % exceeds 1.5 %; the gates of 0.3 and 0.4 % detect one sign only, or are invariant, or regression.

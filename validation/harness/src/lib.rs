@@ -7,6 +7,7 @@
 //! The steps exchange plain data: [`touchstone_base::spec::RunSpec`], [`touchstone_base::record::Record`],
 //! [`section::Section`]. Only the step that makes runs calls the solver.
 
+pub mod batch;
 pub mod bisect;
 pub mod case;
 pub mod checkpoint;
@@ -17,9 +18,11 @@ pub mod context;
 pub mod convergence;
 pub mod detect;
 pub mod error;
+pub mod estimate;
 pub mod facts;
 pub mod foreign;
 pub mod frames;
+pub mod gates;
 pub mod horizon;
 pub mod limits;
 pub mod make;
@@ -49,5 +52,6 @@ pub mod study;
 pub mod suite;
 pub mod symmetry;
 pub mod table;
+pub mod tally;
 #[cfg(test)]
 mod testing;

@@ -1,6 +1,6 @@
 //! The runs of a plan, and their records, looked up by the spec of the run.
 
-use std::cmp::Reverse;
+use std::{cmp::Reverse, collections::BTreeMap};
 
 pub use touchstone_base::gate::Judged;
 use touchstone_base::{
@@ -178,13 +178,15 @@ impl Runs {
         Self { all, by_key, ..Self::default() }
     }
 
-    /// The runs of a plan, none of which was made: each is refused.
-    pub fn of_none(plan: Vec<Planned>) -> Self {
-        let refused = |planned: Planned| {
-            let record = Record::refused(&planned.spec, "it was not made".into());
+    /// The runs of a plan with their records, which it takes; a run without one is refused.
+    pub fn of(plan: Vec<Planned>, records: &mut BTreeMap<RunKey, Record>) -> Self {
+        let judged = |planned: Planned| {
+            let why = || "the store has no record of this run".into();
+            let record = records.remove(&planned.spec.key());
+            let record = record.unwrap_or_else(|| Record::refused(&planned.spec, why()));
             JudgedRun::new(planned, record)
         };
-        Self::new(plan.into_iter().map(refused).collect())
+        Self::new(plan.into_iter().map(judged).collect())
     }
 
     /// All runs that other codes made.

@@ -8,13 +8,13 @@ use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     random::Random,
     settings::Kind,
-    spec::{RunSpec, Task},
+    spec::RunSpec,
 };
 
 use crate::{
-    case::{Case, Planned, Tier},
+    case::{Case, Planned},
     facts::{Drawn, Draws},
-    plan,
+    gates::GateIndex,
 };
 
 /// The bound of a judged run.
@@ -36,7 +36,8 @@ impl Draws {
 
     /// The judged runs of a variant with gates on a metric; none if one of them is a control or has a
     /// limitation, because its bound does not describe the variant.
-    fn levels(&self, case: &dyn Case, variant: &str, metric: &str) -> Vec<Level> {
+    fn levels(&self, index: &GateIndex, variant: &str, metric: &str) -> Vec<Level> {
+        let case = index.case;
         let set: Vec<String> = self.set.iter().map(ToString::to_string).collect();
         if !self.variants.is_empty() && !self.variants.contains(&variant) {
             return Vec::new();
@@ -57,21 +58,19 @@ impl Draws {
                     .all(|(name, value)| may_differ(name) || spec.settings.get(name) == Some(value))
         };
         let mut levels: Vec<Level> = Vec::new();
-        let plans =
-            [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(case, tier));
-        for Planned { spec, gates, .. } in plans {
-            if spec.task != Task::Simulate || !is_alike(&spec) {
+        for Planned { spec, gates, .. } in index.judged() {
+            if !is_alike(spec) {
                 continue;
             }
             let Some(fineness) = self.fineness(case, &spec.settings) else { continue };
-            for gate in gates.into_iter().filter(|gate| gate.metric == metric) {
+            for gate in gates.iter().filter(|gate| gate.metric == metric) {
                 if gate.control || gate.known.is_some() {
                     return Vec::new();
                 }
                 let is_new = levels.iter().all(|level| level.gate.id != gate.id);
                 let settings = spec.settings.clone();
-                if let (true, Some(most)) = (is_new, most(&gate)) {
-                    levels.push(Level { fineness, most, gate, settings });
+                if let (true, Some(most)) = (is_new, most(gate)) {
+                    levels.push(Level { fineness, most, gate: gate.clone(), settings });
                 }
             }
         }
@@ -138,9 +137,10 @@ fn is_count(case: &dyn Case, name: &str) -> bool {
 ///
 /// # Errors
 /// If no judged run gives a bound.
-pub fn draw(case: &dyn Case, variant: &str, random: &mut Random) -> Result<Vec<String>, String> {
+pub fn draw(index: &GateIndex, variant: &str, random: &mut Random) -> Result<Vec<String>, String> {
+    let case = index.case;
     let draws = of(case)?;
-    let levels = draws.metrics.iter().map(|metric| draws.levels(case, variant, metric));
+    let levels = draws.metrics.iter().map(|metric| draws.levels(index, variant, metric));
     let Some(levels) = levels.into_iter().find(|levels| !levels.is_empty()) else {
         return Err(format!(
             "{} {variant} has no sealed problems, for no bound of its errors is known at other settings; \
@@ -199,10 +199,11 @@ fn of(case: &dyn Case) -> Result<Draws, String> {
 }
 
 /// The gates of a sealed problem, one for each metric that judged runs of the variant have.
-pub fn gates(case: &dyn Case, spec: &RunSpec) -> Vec<Gate> {
+pub fn gates(index: &GateIndex, spec: &RunSpec) -> Vec<Gate> {
+    let case = index.case;
     let Ok(draws) = of(case) else { return Vec::new() };
     let gate = |metric: &&str| {
-        let levels = draws.levels(case, &spec.variant, metric);
+        let levels = draws.levels(index, &spec.variant, metric);
         let levels = draws.with_values(&levels, &spec.settings);
         let (most, words) = draws.bound(&levels, draws.fineness(case, &spec.settings)?)?;
         let like = &levels.first()?.gate;

@@ -4,13 +4,14 @@ use rayon::prelude::*;
 use touchstone_base::{
     absent::Absent,
     record::{self, Record, Status},
-    spec::{RunSpec, Task},
+    spec::Task,
     submission::SESSION,
 };
 use touchstone_report::{Counts, Subject};
 
 use crate::{
     case::{Case, Facts, Planned, Tier},
+    gates::GateIndex,
     make::{self, BatchOptions, BatchResult},
     plan,
     runs::{Judged, JudgedRun, Runs, counts},
@@ -145,19 +146,14 @@ pub fn judge(plans: Plans, tier: Tier, mut made: BatchResult) -> Suite {
     if made.interrupted {
         return Suite { tier, cases: Vec::new(), made }; // nothing can be said of runs that were cut short
     }
-    let mut judged = |planned: Planned| {
-        let missing =
-            || Record::refused(&planned.spec, "the store has no record of this run".into());
-        let record = made.records.remove(&planned.spec.key()).unwrap_or_else(missing);
-        JudgedRun::new(planned, record)
-    };
     let of_plans: Vec<(&'static dyn Case, Runs)> = plans
         .into_iter()
         .map(|(case, plan)| {
-            let mut runs = Runs::new(plan.into_iter().map(&mut judged).collect());
+            let mut runs = Runs::of(plan, &mut made.records);
+            let index = GateIndex::of(case);
             let of_case = |records: &[Record]| {
                 let of_case = records.iter().filter(|record| record.run.case == case.name());
-                of_case.map(|record| submitted(case, record.clone())).collect()
+                of_case.map(|record| submitted(&index, record.clone())).collect()
             };
             // Our runs made in turn with other codes are part of the program.
             let others = made.submissions.iter_mut();
@@ -179,16 +175,16 @@ pub fn judge(plans: Plans, tier: Tier, mut made: BatchResult) -> Suite {
 
 /// The run of another code, judged by the gates of our plans for the same settings: see
 /// [`touchstone_base::gate::Gate::for_submission`].
-pub fn submitted(case: &dyn Case, mut record: Record) -> JudgedRun {
-    leave_out_ours(case, &mut record);
+pub fn submitted(index: &GateIndex, mut record: Record) -> JudgedRun {
+    leave_out_ours(index.case, &mut record);
     let spec = record.spec();
     let of = spec.submission.as_deref();
     // Bounds of sealed problems apply to any method.
     let is_sealed = of.is_some_and(|of| of.seed.is_some());
     let states = is_sealed || of.is_some_and(|of| of.states_our_method);
     let gates = match is_sealed {
-        true => sealed::gates(case, &spec),
-        false => plan::gates_of(case, &RunSpec { submission: None, ..spec.clone() }),
+        true => sealed::gates(index, &spec),
+        false => index.gates(&spec),
     };
     let (mut judged, mut not_of_others) = (Vec::new(), Vec::new());
     for gate in gates {

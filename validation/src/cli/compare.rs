@@ -9,12 +9,11 @@ use touchstone_base::{
     functions::ln,
     gate::{Bound, Verdict},
     record::{Record, Status},
-    spec::RunSpec,
     submission::MACHINE,
 };
 use touchstone_harness::{
-    case::{Case, Planned, Tier},
-    plan,
+    case::{Case, Planned},
+    gates::GateIndex,
     runs::Judged,
     store::Store,
     suite,
@@ -87,7 +86,7 @@ fn add(all: &mut Vec<Submitted>, record: Record, session: &Session) {
     }
     let case = session.cases.iter().find(|case| case.name() == record.run.case);
     let judged = case.and_then(|case| {
-        let run = suite::submitted(*case, record.clone());
+        let run = suite::submitted(&GateIndex::of(*case), record.clone());
         SubmissionVerdicts::of(*case, &run, false)
     });
     all.extend(judged.map(|of| Submitted { of, record: Some(record) }));
@@ -230,15 +229,15 @@ type Bounds = BTreeMap<(String, String), Bound>;
 
 fn bounds(session: &Session, records: &BTreeMap<String, Record>) -> Bounds {
     let is_asked = |case: &&&'static dyn Case| records.values().any(|r| r.run.case == case.name());
-    let plans = session.cases.iter().filter(is_asked).flat_map(|case| {
-        [Tier::Quick, Tier::Full].into_iter().flat_map(|tier| plan::of_case(*case, tier))
-    });
-    let of_run = |planned: Planned| {
-        let RunSpec { case, variant, .. } = &planned.spec;
-        let run = format!("{case} {variant} {}", planned.spec.key());
-        planned.gates.into_iter().map(move |gate| ((run.clone(), gate.metric), gate.bound))
-    };
-    plans.flat_map(of_run).collect()
+    let mut bounds = Bounds::new();
+    for case in session.cases.iter().filter(is_asked) {
+        for Planned { spec, gates, .. } in GateIndex::of(*case).judged() {
+            let run = format!("{} {} {}", spec.case, spec.variant, spec.key());
+            bounds
+                .extend(gates.iter().map(|gate| ((run.clone(), gate.metric.clone()), gate.bound)));
+        }
+    }
+    bounds
 }
 
 fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {

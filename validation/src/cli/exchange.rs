@@ -24,6 +24,7 @@ use touchstone_exchange::{
 use touchstone_harness::{
     case::{self, Case},
     context::Context,
+    gates::GateIndex,
     problem::Steps,
     relation::Relation,
     store::Store,
@@ -254,7 +255,8 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
         Some(store) => keep(&Store::open(store)?, &record)?.display().to_string(),
         None => "nothing was recorded".into(),
     };
-    let (text, exit) = submitted::verdict(case, &suite::submitted(case, record), arguments.all);
+    let judged = suite::submitted(&GateIndex::of(case), record);
+    let (text, exit) = submitted::verdict(case, &judged, arguments.all);
     output::print(&text)?;
     output::say(&said);
     Ok(exit)

@@ -48,9 +48,11 @@ use touchstone_base::manifest::{Known, Source, UNKNOWN, tell_source};
 use touchstone_base::reference::{Reference, ReferenceError};
 use touchstone_base::spec::RunKey;
 use touchstone_harness::case::{Case, RunError, Tier};
-use touchstone_harness::make::{self, BatchOptions, BatchResult, Done, Job, StoredRuns};
+use touchstone_harness::estimate::estimate;
+use touchstone_harness::make::{self, BatchOptions, BatchResult, Job, StoredRuns};
 use touchstone_harness::store::Store;
 use touchstone_harness::suite::Plans;
+use touchstone_harness::tally::Done;
 
 use arguments::{Arguments, Command};
 
@@ -172,7 +174,7 @@ impl Session {
         });
         let made = on_threads(threads, || {
             let mut stored = make::stored(jobs, &making);
-            make::estimate(&mut stored.missing, &making);
+            estimate(&mut stored.missing, &making);
             let finished = finished.as_ref().map(|finished| finished as _);
             Ok(make::make(stored, &BatchOptions { progress: Some(&show), finished, ..making }))
         });

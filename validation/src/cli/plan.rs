@@ -13,7 +13,8 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{self, Case, Planned, Tier},
-    make::{BatchOptions, BatchResult, Job, size, time},
+    estimate::{size, time},
+    make::{BatchOptions, BatchResult, Job},
     plan,
     size::{self, Size},
     store::Store,

@@ -5,7 +5,7 @@ use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use touchstone_harness::{context::Progress, make::Done};
+use touchstone_harness::{context::Progress, tally::Done};
 use touchstone_report::sig;
 
 use super::output;

@@ -21,7 +21,7 @@ use touchstone_harness::{
     case::{self, Case, RunError},
     checkpoint::Checkpoints,
     context::{Context, Progress},
-    plan,
+    gates::GateIndex,
     runs::Judged,
     size::Size,
     store::MOST_BYTES,
@@ -99,7 +99,7 @@ fn carry_out(
     let is_asked =
         |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| *why != Absent::NotAsked);
     let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
-        plan::gates_of(case, &asked.spec).into_iter().partition(is_asked);
+        GateIndex::of(case).gates(&asked.spec).into_iter().partition(is_asked);
     let verdicts: Vec<Judged> =
         gates.into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
     // If a file cannot be written, the record is printed, and if printing fails as well, its numbers are, so

@@ -5,7 +5,7 @@ use touchstone_harness::{
     case::Case,
     limits::{ADVISED_SHARE, Mechanism},
     make::Job,
-    runs::{JudgedRun, Planned, Runs},
+    runs::{Planned, Runs},
     studies::{StepLimit, StepLimits, limit::of_theory as limit_of_theory},
 };
 
@@ -45,11 +45,8 @@ pub fn stability(arguments: &arguments::Stability, session: &Session) -> Outcome
     if made.interrupted {
         return Err(Failure::interrupted("no limit was determined; the same command begins again"));
     }
-    let found = jobs.into_iter().filter_map(|job| {
-        let record = made.records.remove(&job.planned.spec.key())?;
-        Some(JudgedRun::new(job.planned, record))
-    });
-    let runs = Runs::new(found.collect());
+    let plan = jobs.into_iter().map(|job| job.planned).collect();
+    let runs = Runs::of(plan, &mut made.records);
     let all = || declared.iter().map(|declared| json(declared, &runs)).collect();
     output::answer(arguments.json, all, || table(&declared, &runs))?;
     Ok(trouble(&made).unwrap_or(Exit::Pass))

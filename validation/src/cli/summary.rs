@@ -8,7 +8,7 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{self, Case, Tier},
-    plan,
+    gates::GateIndex,
     runs::{Judged, counts},
     studies::{
         Accuracy, Breaks, Card, StepLimits, Studies,
@@ -162,11 +162,11 @@ pub fn nearest(
     let card = studies.first::<Card>().map(|card| &card.metric.name);
     let of_card = |gate: Gate| measured(gate).filter(|gate| Some(&gate.metric) == card);
     let spec = record.spec();
-    let of_card = plan::nearest_judged(case, &spec, &of_card);
+    let index = GateIndex::of(case);
+    let of_card = index.nearest(&spec, &of_card);
     let is_own = |(of, _): &(RunSpec, Gate)| of.variant == spec.variant;
     let found = of_card.clone().filter(is_own);
-    let (spec, gate) =
-        found.or_else(|| plan::nearest_judged(case, &spec, &measured)).or(of_card)?;
+    let (spec, gate) = found.or_else(|| index.nearest(&spec, &measured)).or(of_card)?;
     Some(Nearest { spec, gate })
 }
 

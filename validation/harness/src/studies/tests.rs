@@ -1,5 +1,7 @@
 //! Runs whose records are made up by hand, for the tests of studies.
 
+use std::collections::BTreeMap;
+
 use serde_json::json;
 use touchstone_base::{record::Record, spec::RunSpec};
 use touchstone_report::{Block, Table};
@@ -45,7 +47,7 @@ pub fn evaluate(study: &impl Study, made: Runs) -> Section {
 
 /// The runs of a plan: those that were made, and all others as refused.
 pub fn whole(plan: Vec<Planned>, made: Runs) -> Runs {
-    let mut all = Runs::of_none(crate::plan::merged(plan)).all;
+    let mut all = Runs::of(crate::plan::merged(plan), &mut BTreeMap::new()).all;
     let is_made = |run: &JudgedRun| {
         made.all.iter().any(|made| made.planned.spec.key() == run.planned.spec.key())
     };

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use touchstone_base::{record::Status, spec::RunSpec};
 use touchstone_harness::{
     case::{self, Case, Planned, Tier},
-    make::{self, BatchOptions, Job},
+    make::{BatchOptions, Job},
     plan,
     runner::Context,
 };
@@ -178,7 +178,10 @@ fn short_runs_in_documents_end_as_documents_say() {
         jobs.push((job, comment.contains("diverges"), line));
     }
     let mut timed: Vec<Job> = jobs.iter().map(|(job, ..)| job.clone()).collect();
-    make::estimate(&mut timed, &BatchOptions::new(Tier::Quick, &|_| String::new()));
+    touchstone_harness::estimate::estimate(
+        &mut timed,
+        &BatchOptions::new(Tier::Quick, &|_| String::new()),
+    );
     let short = jobs.into_iter().zip(timed).filter(|(_, timed)| timed.planned.seconds <= SHORT);
     let short: Vec<(Job, bool, String)> = short.map(|(job, _)| job).collect();
     let wrong = short.par_iter().filter_map(|(job, diverges, line)| {

@@ -462,6 +462,7 @@ fn sensitivity(tier: Tier) -> Sensitivity {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeMap;
     use touchstone_harness::runs::Runs;
     use touchstone_harness::studies::Study;
 
@@ -469,7 +470,7 @@ mod tests {
     #[test]
     fn a_step_limit_whose_run_is_refused_keeps_its_gate_and_fails_it() {
         let limits = StepLimits { about: String::new(), of: vec![step_limit("no such variant")] };
-        let runs = Runs::of_none(limits.runs());
+        let runs = Runs::of(limits.runs(), &mut BTreeMap::new());
         let section = limits.evaluate("rubber_rings", &runs).expect("a section");
         assert_eq!(section.judged.len(), 1);
         assert!(section.judged[0].judgement.verdict.is_failure());
