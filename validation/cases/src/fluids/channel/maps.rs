@@ -53,8 +53,8 @@ pub fn runs(table: &mut ChannelTable) {
     }
 }
 
-/// The declared maps: none for Couette flow, and no remedies in the quick tier.
-pub fn declared(table: &ChannelTable) -> Vec<Map> {
+/// The maps: none for Couette flow, and no remedies in the quick tier.
+pub fn all(table: &ChannelTable) -> Vec<Map> {
     let over_sound = MapPanel::over("", &reynolds(table), &SOUND, |re, sound| {
         of_sound(table, re, sound).collect()
     });

@@ -1,7 +1,7 @@
 //! Flow between two parallel plates from rest: Couette and Poiseuille flow, which have settings, the rules
 //! that turn them into a scene, variants and measurements in common.
 
-mod declaration;
+mod studies;
 mod maps;
 mod measure;
 mod plan;
@@ -16,7 +16,7 @@ use touchstone_harness::{
     table::Table,
 };
 
-use declaration::{facts, studies};
+use studies::{facts, studies};
 
 pub use plan::{GHOSTS, ladder};
 pub use setup::{ChannelSettings, Flow, Setup};

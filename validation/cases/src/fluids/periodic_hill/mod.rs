@@ -5,7 +5,7 @@
 //! Judged against finite elements (`references/periodic_hill`), because no published numbers exist for this
 //! flow.
 
-mod declaration;
+mod studies;
 mod measure;
 mod plan;
 mod reference;
@@ -96,6 +96,6 @@ pub static CASE: Composed<HillSettings> = Composed {
             trough, or on the next hill. It is steady and laminar. The reference is a finite-element \
             computation of this project, because none is published.",
     variants,
-    facts: declaration::facts,
-    studies: declaration::studies,
+    facts: studies::facts,
+    studies: studies::studies,
 };

@@ -4,7 +4,7 @@
 //! Judged against conservation and an independent finite-element run of one ring
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
-mod declaration;
+mod studies;
 mod measure;
 mod metrics;
 mod plan;
@@ -109,8 +109,8 @@ pub static RUBBER_RINGS: Composed<RingSettings> = Composed {
             is exact, and a ring must not break: numerical fracture is the tensile instability that \
             artificial stress is there to prevent.",
     variants,
-    facts: declaration::facts,
-    studies: declaration::studies,
+    facts: studies::facts,
+    studies: studies::studies,
 };
 
 /// The largest energy at any time over the initial one, minus 1: the error of stress rates in time.

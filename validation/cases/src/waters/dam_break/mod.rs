@@ -6,7 +6,7 @@
 //! the energy budget closes over all terms.
 
 mod curves;
-mod declared;
+mod studies;
 mod ensembles;
 mod measure;
 mod metrics;
@@ -140,6 +140,6 @@ pub static DAM_BREAK: Composed<DamSettings> = Composed {
             residual height, levels, pressures and impulses are compared with the experiments and with the \
             same model by volume of fluid; energy and momentum are accounted for term by term.",
     variants,
-    facts: declared::facts,
-    studies: declared::studies,
+    facts: studies::facts,
+    studies: studies::studies,
 };

@@ -1,4 +1,4 @@
-//! Declaration of the case: profiles and shear against finite elements, order, error against run time, error
+//! Studies of the case: profiles and shear against finite elements, order, error against run time, error
 //! budget, largest stable time step, errors of constants that gates must detect; and for hills only: whether
 //! the start matters.
 

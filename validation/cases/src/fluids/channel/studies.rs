@@ -1,4 +1,4 @@
-//! Declaration of the channel flows: profiles against exact ones, ladders of resolutions, an error budget,
+//! Studies of the channel flows: profiles against exact ones, ladders of resolutions, an error budget,
 //! the largest stable steps, maps and the errors of constants that gates must detect; and studies of channels
 //! only: the gain of a step that viscosity does not limit, and the paper's hypotheses on waves and
 //! instability. Its claims on profiles (H1, H2) and walls (M4) are gates.
@@ -43,7 +43,7 @@ pub fn studies(flow: Flow, tier: Tier) -> Studies {
         .with(budgets)
         .with(limits(flow, tier))
         .with(sensitivity(flow, tier))
-        .with_all(maps::declared(&table))
+        .with_all(maps::all(&table))
         .with(card)
 }
 

@@ -1,4 +1,4 @@
-//! Declaration of the case: the front of the column of Martin & Moyce over resolutions, its error budget, the
+//! Studies of the case: the front of the column of Martin & Moyce over resolutions, its error budget, the
 //! longest stable time steps, and the errors of constants that the gates must detect.
 
 use nalgebra::Vector2;

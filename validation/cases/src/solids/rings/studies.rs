@@ -1,4 +1,4 @@
-//! Declaration of the case: histories against finite elements, errors over spacing and cost, an error budget,
+//! Studies of the case: histories against finite elements, errors over spacing and cost, an error budget,
 //! step limits, maps, errors of constants that the gates must detect.
 
 use nalgebra::Vector2;
