@@ -1,13 +1,13 @@
 //! Flow between two parallel plates from rest: Couette and Poiseuille flow, which have settings, the rules
 //! that turn them into a scene, variants and measurements in common.
 
-mod studies;
 mod maps;
 mod measure;
 mod plan;
 mod run;
 mod setup;
 mod stiff;
+mod studies;
 pub mod variants;
 mod waves;
 

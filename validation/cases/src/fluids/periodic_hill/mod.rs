@@ -5,12 +5,12 @@
 //! Judged against finite elements (`references/periodic_hill`), because no published numbers exist for this
 //! flow.
 
-mod studies;
 mod measure;
 mod plan;
 mod reference;
 mod run;
 mod setup;
+mod studies;
 
 use touchstone_harness::prelude::*;
 use touchstone_schemes::hill;

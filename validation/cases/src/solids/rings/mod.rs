@@ -4,12 +4,12 @@
 //! Judged against conservation and an independent finite-element run of one ring
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
-mod studies;
 mod measure;
 mod metrics;
 mod plan;
 mod reference;
 mod scene;
+mod studies;
 #[cfg(test)]
 mod tests;
 

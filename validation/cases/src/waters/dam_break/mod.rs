@@ -6,7 +6,6 @@
 //! the energy budget closes over all terms.
 
 mod curves;
-mod studies;
 mod ensembles;
 mod measure;
 mod metrics;
@@ -14,6 +13,7 @@ mod plan;
 mod reference;
 mod run;
 mod setup;
+mod studies;
 
 use touchstone_harness::prelude::*;
 
