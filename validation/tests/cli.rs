@@ -1179,13 +1179,13 @@ fn twelve_commands_are_listed_and_earlier_names_say_the_new_one() {
     let names = listed.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
     let names: Vec<&str> = names.filter(|name| !["", "help"].contains(name)).collect();
     assert!(names.len() <= 12, "{names:?}");
-    let folder = tempfile::tempdir().unwrap();
-    let store = folder.path().to_str().unwrap();
-    let [old, new] = [&["judge"][..], &["verify", "--no-runs"]].map(|command| {
-        let output = touchstone(&[command, &["extremes", "--store", store, "--json"]].concat());
-        (output.status.code(), stdout(&output), stderr(&output))
-    });
-    assert!(old.0 == new.0 && old.1 == new.1 && old.0 == Some(1), "{old:?} {new:?}");
-    assert!(old.2.contains("`judge` is `verify --no-runs` now"), "{}", old.2);
-    assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none(), "a run was made");
+    for (old, new) in [
+        ("judge --store records --any-build", "verify --no-runs"),
+        ("challenge couette --seed 1 --method m --out o", "export --sealed"),
+        ("relate couette a b --map x=X", "symmetry CASE --results"),
+    ] {
+        let output = touchstone(&old.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(2), "{old}");
+        assert!(stderr(&output).contains(&format!("is `touchstone {new}")), "{}", stderr(&output));
+    }
 }

@@ -1,4 +1,4 @@
-//! Limits of sizes, and safe handling of folders, paths and files, for `export`, `submit`, `relate` and
+//! Limits of sizes, and safe handling of folders, paths and files, for `export`, `submit`, `symmetry` and
 //! others.
 
 #![cfg(unix)]

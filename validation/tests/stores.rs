@@ -303,7 +303,7 @@ fn drawn(at: &Path, method: &str, arguments: &str) -> Result<String, String> {
     fs::write(at.join("method.json"), method).unwrap();
     let output = touchstone(
         at,
-        &format!("challenge {arguments} --method method.json --out sealed --overwrite"),
+        &format!("export {arguments} --method method.json --out sealed --overwrite"),
     );
     let [out, error] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text));
     match output.status.code() {
@@ -324,7 +324,7 @@ fn words_of_a_method_draw_nothing_and_what_it_is_does() {
         )
     };
     let settings = r#"{"h": 1.5, "note": "a", "on": true, "times": [1, {"end": 2}]}"#;
-    let of = |text: &str| drawn(folder.path(), text, "couette --seed 7").unwrap();
+    let of = |text: &str| drawn(folder.path(), text, "couette --sealed 7").unwrap();
     let first = of(&method("1", settings, "nothing"));
     let spaced = method("1", settings, "nothing").replace(": ", " :\n ");
     let same = [
@@ -353,7 +353,7 @@ fn words_of_a_method_draw_nothing_and_what_it_is_does() {
     for text in others {
         assert_ne!(of(&text), first, "{text}");
     }
-    let other_seed = drawn(folder.path(), &method("1", settings, "nothing"), "couette --seed 8");
+    let other_seed = drawn(folder.path(), &method("1", settings, "nothing"), "couette --sealed 8");
     assert_ne!(other_seed.unwrap(), first);
 }
 
@@ -366,7 +366,7 @@ fn a_method_has_one_digest_however_its_numbers_are_written() {
             "{{\"code\": \"c\", \"version\": \"1\", \"scheme\": \"s\", \"division\": \"closed\", \
              \"settings\": {settings}, \"changed\": \"\"}}"
         );
-        drawn(folder.path(), &method, "couette --seed 1").unwrap();
+        drawn(folder.path(), &method, "couette --sealed 1").unwrap();
         let problem = fs::read_to_string(folder.path().join("sealed/problem.json")).unwrap();
         let problem: Value = serde_json::from_str(&problem).unwrap();
         problem["sealed"]["method"].as_str().expect("a digest").to_string()
@@ -394,13 +394,13 @@ fn what_has_no_bound_or_is_no_method_is_not_sealed() {
     for text in
         ["", "[]", "<script>", &method.replace("closed", "none"), &method.replace("\"c\"", "\"\"")]
     {
-        let words = drawn(at, text, "couette --seed 1").unwrap_err();
+        let words = drawn(at, text, "couette --sealed 1").unwrap_err();
         assert!(words.contains("no submission can have this method"), "{text}: {words}");
     }
     for (arguments, expected) in [
-        ("elastic_bar --seed 1", "elastic_bar has no sealed problems"),
-        ("couette --variant seed --seed 1", "variants that have: modern"),
-        ("couette --variant nothing --seed 1", "is called \"nothing\""),
+        ("elastic_bar --sealed 1", "elastic_bar has no sealed problems"),
+        ("couette --variant seed --sealed 1", "variants that have: modern"),
+        ("couette --variant nothing --sealed 1", "is called \"nothing\""),
     ] {
         let words = drawn(at, method, arguments).unwrap_err();
         assert!(words.contains(expected), "{arguments}: {words}");
@@ -417,7 +417,7 @@ fn sealed_settings_lie_where_the_reference_holds() {
         [("couette", "re", [0.05, 20.0]), ("hydrostatic", "compressibility", [0.001, 0.05])]
     {
         let value = |seed: u32| -> f64 {
-            let set = drawn(folder.path(), &method, &format!("{case} --seed {seed}")).unwrap();
+            let set = drawn(folder.path(), &method, &format!("{case} --sealed {seed}")).unwrap();
             let value =
                 set.split_whitespace().find_map(|one| one.strip_prefix(&format!("{name}=")));
             value.expect(&set).parse().unwrap()
@@ -439,7 +439,7 @@ fn a_sealed_error_with_a_sign_is_bounded_on_both_sides() {
         ("periodic_hill --variant carried", "force_error"),
         ("rubber_rings --variant lagrangian", "width_min_error"),
     ] {
-        drawn(folder.path(), &method, &format!("{case} --seed 1")).unwrap();
+        drawn(folder.path(), &method, &format!("{case} --sealed 1")).unwrap();
         let problem = fs::read_to_string(folder.path().join("sealed/problem.json")).unwrap();
         let problem: Value = serde_json::from_str(&problem).unwrap();
         let gates = problem["judged_by"].as_array().unwrap();
@@ -464,7 +464,7 @@ fn sealed_problems_are_judged() {
     for (case, metric, seeds) in cases {
         for seed in seeds {
             let _ = fs::remove_dir_all(at.join("sealed"));
-            let set = drawn(at, &method, &format!("{case} --seed {seed}")).unwrap();
+            let set = drawn(at, &method, &format!("{case} --sealed {seed}")).unwrap();
             let set: String = set.split_whitespace().map(|one| format!(" --set {one}")).collect();
             let (words, code) =
                 of(at, &format!("export {case}{set} --out own{case}{seed} --solve"));

@@ -891,7 +891,7 @@ fn a_sealed_problem_holds_its_method_and_its_settings() {
     fs::copy(whole().join("whole/method.json"), at.join("method.json")).unwrap();
     let line = |seed: u32, out: &str| {
         format!(
-            "challenge taylor_green --variant consistent --seed {seed} --method method.json --out {out}"
+            "export taylor_green --variant consistent --sealed {seed} --method method.json --out {out}"
         )
     };
     let drawn = |seed: u32, out: &str| {

@@ -37,14 +37,14 @@ pub enum Command {
     Verify(Verify),
     /// Earlier name of `verify --no-runs`
     #[command(hide = true)]
-    Judge(Judge),
+    Judge(Earlier),
     /// Do what `verify` does and write the report; with --store, write it without making any run
     Report(Report),
     /// Write a problem into a folder for another code: particles, walls, material, times
     Export(Export),
     /// Earlier name of `export --sealed`
     #[command(hide = true)]
-    Challenge(Challenge),
+    Challenge(Earlier),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
     /// Compare what observers who are turned, mirrored, in motion and so on have of our own runs, or what
@@ -52,7 +52,7 @@ pub enum Command {
     Symmetry(Symmetry),
     /// Earlier name of `symmetry --results`
     #[command(hide = true)]
-    Relate(Relate),
+    Relate(Earlier),
     /// Show the differences between two reports or stores
     Compare(Compare),
     /// Find the largest stable time steps by bisection and compare them with theory
@@ -306,34 +306,12 @@ pub struct Symmetry {
     pub allow_long: bool,
 }
 
+/// The arguments of a command under an earlier name, which are not read.
 #[derive(Debug, Args)]
-pub struct Relate {
-    /// Name of the case
-    pub case: String,
-    /// Results for the problem that `export --relation same` wrote
-    pub same: PathBuf,
-    /// Results for the problem that `export` wrote with another relation
-    pub other: PathBuf,
-    /// Do it even if it is estimated to take more than 4 GB of memory
-    #[arg(long)]
-    pub allow_long: bool,
-    /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
-    #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
-    pub map: Vec<(String, String)>,
-}
-
-#[derive(Debug, Args)]
-pub struct Challenge {
-    #[command(flatten)]
-    pub of: Written,
-    /// The number from which settings are drawn: public, and known only after the method was published, such
-    /// as the first digits of a lottery or of a random beacon at a stated time
-    #[arg(long, value_name = "N")]
-    pub seed: u64,
-    /// The method.json that the submission will have; if its code, version, scheme, division or settings are
-    /// changed afterwards, the submission is refused
-    #[arg(long, value_name = "FILE")]
-    pub method: PathBuf,
+pub struct Earlier {
+    /// What the command took
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+    pub arguments: Vec<String>,
 }
 
 #[derive(Debug, Args)]
@@ -420,18 +398,6 @@ pub struct Verify {
     pub no_runs: bool,
     #[command(flatten)]
     pub making: MakeArguments,
-}
-
-#[derive(Debug, Args)]
-pub struct Judge {
-    #[command(flatten)]
-    pub of: Judged,
-    /// Folder with the records
-    #[arg(long, value_name = "DIR")]
-    pub store: PathBuf,
-    /// Also judge records made by a build of other sources
-    #[arg(long)]
-    pub any_build: bool,
 }
 
 #[derive(Debug, Args)]

@@ -333,16 +333,10 @@ fn dispatch(command: &Command, session: &Session) -> Outcome {
         Command::Run(arguments) => run::run(arguments, session),
         Command::Plan(arguments) => plan::plan(arguments, session).map(done),
         Command::Verify(arguments) => verify::verify(arguments, session),
-        Command::Judge(arguments) => {
-            renamed("judge", "verify --no-runs");
-            verify::judge(arguments, session)
-        }
+        Command::Judge(_) => Err(renamed("judge", "verify --no-runs")),
         Command::Report(arguments) => report::report(arguments, session),
         Command::Export(arguments) => exchange::export(arguments, session).map(done),
-        Command::Challenge(arguments::Challenge { of, seed, method }) => {
-            renamed("challenge", "export --sealed");
-            exchange::sealed(of, *seed, method, session).map(done)
-        }
+        Command::Challenge(_) => Err(renamed("challenge", "export --sealed SEED --method FILE")),
         Command::Submit(arguments) => exchange::submit(arguments, session),
         Command::Symmetry(of) => match of.results.as_deref() {
             Some([same, other]) => match &of.cases[..] {
@@ -351,11 +345,7 @@ fn dispatch(command: &Command, session: &Session) -> Outcome {
             },
             _ => symmetry::symmetry(of, session),
         },
-        Command::Relate(arguments) => {
-            renamed("relate", "symmetry --results");
-            let arguments::Relate { case, same, other, allow_long, map } = arguments;
-            exchange::relate(case, [same, other], map, *allow_long, session)
-        }
+        Command::Relate(_) => Err(renamed("relate", "symmetry CASE --results SAME OTHER")),
         Command::Compare(arguments) => compare::compare(arguments, session),
         Command::Stability(arguments) => stability::stability(arguments, session),
         Command::Explain(arguments) => explain::explain(arguments, session).map(done),
@@ -365,9 +355,9 @@ fn dispatch(command: &Command, session: &Session) -> Outcome {
     }
 }
 
-/// Prints the new name of a renamed command.
-fn renamed(old: &str, new: &str) {
-    output::say(&format!("note: `{old}` is `{new}` now, and will be removed"));
+/// The refusal of a command under an earlier name.
+fn renamed(old: &str, new: &str) -> Failure {
+    Failure::usage(format!("`touchstone {old}` is `touchstone {new}` now"))
 }
 
 /// The script of a shell, on standard output.

@@ -207,7 +207,7 @@ fn an_interrupt_while_a_store_is_read_judges_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
     assert_eq!(exit_with(&NEVER, "verify right --store OUT/records", folder.path()), Exit::Pass);
     for line in [
-        "judge right --store OUT/records",
+        "verify right --no-runs --store OUT/records",
         "report --store OUT/records --out OUT/report",
         "explain right --reports OUT",
     ] {
@@ -352,7 +352,7 @@ fn a_changed_table_fails_every_case_that_uses_it_by_name() {
         format!("run --resume {out}"),
         format!("verify right --store {out}/store"),
         format!("verify --store {out}/store"),
-        format!("judge --store {out}"),
+        format!("verify --no-runs --store {out}"),
         format!("report --out {out}/report"),
         "run right --variant right".into(),
         format!("run --specs {out}/specs --store {out}/store"),
@@ -521,8 +521,8 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
     let other: fn(&str) -> String = |_| "other".into();
     assert_eq!(build(sources, "verify --store OUT"), Exit::Pass);
     for (line, of_its_own, of_another) in [
-        ("judge --store OUT", Exit::Pass, Exit::GateFailed),
-        ("judge --store OUT --any-build", Exit::Pass, Exit::Pass),
+        ("verify --no-runs --store OUT", Exit::Pass, Exit::GateFailed),
+        ("verify --no-runs --store OUT --any-build", Exit::Pass, Exit::Pass),
         ("report --store OUT --out OUT/page", Exit::Pass, Exit::GateFailed),
         ("report --store OUT --out OUT/page --any-build", Exit::Pass, Exit::Pass),
     ] {
@@ -531,7 +531,11 @@ fn a_build_judges_its_own_records_unless_any_build_will_do() {
     }
     let unknown: fn(&str) -> String = |_| touchstone_base::manifest::UNKNOWN.into();
     assert_eq!(build(unknown, "verify --store OUT"), Exit::Pass);
-    assert_eq!(build(unknown, "judge --store OUT"), Exit::GateFailed, "of whom are they?");
+    assert_eq!(
+        build(unknown, "verify --no-runs --store OUT"),
+        Exit::GateFailed,
+        "of whom are they?"
+    );
 }
 
 /// Puts a non-empty folder in place of a file: its parent is writable, but the file cannot be written, even

@@ -30,11 +30,6 @@ pub fn verify(arguments: &arguments::Verify, session: &Session) -> Outcome {
     })
 }
 
-pub fn judge(arguments: &arguments::Judge, session: &Session) -> Outcome {
-    let arguments::Judge { of, store, any_build } = arguments;
-    show(of, session, |cases| of_store(cases, of.tier, store, *any_build, session))
-}
-
 /// The results on standard output; how they came about on standard error.
 fn show(
     of: &arguments::Judged,
