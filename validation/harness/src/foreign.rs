@@ -11,8 +11,7 @@ use touchstone_solver::{
 
 use crate::{
     error::RunError,
-    method::Properties,
-    snapshot::{Columns, DENSITY, Sums},
+    snapshot::{Columns, Sums},
 };
 
 /// A particle of a frame.
@@ -206,34 +205,16 @@ pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str
 
 /// A simulation of our method, into which particles of another code are put when a measure asks for sums.
 pub(crate) struct OurSums<D: ?Sized> {
-    /// None if the code chose its own particles and gives them no densities.
-    simulation: Option<RefCell<Box<D>>>,
-    /// W \[1/m²\] of r² \[m²\].
-    kernel: Box<dyn Fn(f64) -> f64>,
+    pub simulation: RefCell<Box<D>>,
     /// Do places and velocities determine all else, by the deformation from a reference?
-    is_lagrangian: bool,
-}
-
-impl<D: ?Sized> OurSums<D> {
-    /// Sums of a simulation of a method with this smoothing length \[m\].
-    pub fn new(simulation: Option<Box<D>>, of: &Properties, h: f64) -> Self {
-        let (simulation, kernel) = (simulation.map(RefCell::new), Box::new(of.kernel(h)));
-        Self { simulation, kernel, is_lagrangian: of.law.is_some() }
-    }
-
-    /// The particles of the simulation.
-    pub fn particles<X: Numbers>(&self) -> Option<Columns<X>>
-    where
-        D: Stepper<X>,
-    {
-        let mut simulation = self.simulation.as_ref()?.borrow_mut();
-        Some(Columns::all(&simulation.stepper().particles()))
-    }
+    pub is_lagrangian: bool,
+    /// The column without which the simulation has particles of the problem in place of those of the code.
+    pub lacks: Option<Absent>,
 }
 
 impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
     fn weight(&self, r2: f64) -> f64 {
-        (self.kernel)(r2)
+        self.simulation.borrow_mut().stepper().weight(r2)
     }
     fn read(
         &self,
@@ -241,8 +222,8 @@ impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
         particles: &Columns<X>,
         read: &mut dyn FnMut(&dyn Stepper<X>),
     ) -> Result<(), Absent> {
-        let none = || Absent::NotGiven(DENSITY.into());
-        let mut simulation = self.simulation.as_ref().ok_or_else(none)?.borrow_mut();
+        self.lacks.clone().map_or(Ok(()), Err)?;
+        let mut simulation = self.simulation.borrow_mut();
         let simulation = simulation.stepper();
         let mut state = simulation.checkpoint();
         for (id, particle) in &mut state.particles {

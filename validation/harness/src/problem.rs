@@ -4,8 +4,9 @@
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use serde_json::Value;
-use std::ops::ControlFlow;
+use std::{cell::RefCell, ops::ControlFlow};
 use touchstone_base::{
+    absent::Absent,
     number,
     record::{Profile, Record, Status},
     spec::{Keep, Measure, RunSpec},
@@ -25,7 +26,7 @@ use crate::{
     rules::Rules,
     runner::{self, Drive, check_size},
     size::Size,
-    snapshot::{Columns, Snapshot},
+    snapshot::{Columns, DENSITY, Snapshot},
 };
 
 /// Name of the kernel in the numerics of a record.
@@ -551,8 +552,8 @@ trait Parted: Problem {
         let (own, limits) = (foreign.own_start(), parts.limits);
         let scene = own.clone().unwrap_or_else(|| Columns::all(&parts.particles));
         let sums = self.sums(parts, foreign)?;
-        let start = own.or_else(|| sums.particles());
-        let mut start = start.unwrap_or_else(|| scene.clone());
+        let of_problem = || Columns::all(&sums.simulation.borrow_mut().stepper().particles());
+        let mut start = own.unwrap_or_else(of_problem);
         let mut record = self.begun(spec, 1, &brief);
         record.cost.particles = start.points.iter().filter(|point| point.is_fluid()).count();
         let mut last = Snapshot::given(0.0, start.clone(), &sums);
@@ -595,14 +596,14 @@ trait Parted: Problem {
         parts: Parts<Self::Extra>,
         foreign: &Foreign,
     ) -> Result<OurSums<Self::Simulation>, RunError> {
-        let h = parts.medium.h;
-        let particles = match foreign.own.is_empty() {
-            true => Some(parts.particles),
-            false => foreign.own_particles(),
-        };
-        let built =
-            particles.map(|particles| self.built(Parts { particles, ..parts }, &View::default()));
-        Ok(OurSums::new(built.transpose()?, &self.method().properties, h))
+        let own = foreign.own_particles();
+        let lacks = own.is_none().then(|| Absent::NotGiven(DENSITY.into()));
+        // Without densities the kernel alone is asked for.
+        let own = own.filter(|own| !own.is_empty());
+        let parts = Parts { particles: own.unwrap_or(parts.particles), ..parts };
+        let simulation = RefCell::new(self.built(parts, &View::default())?);
+        let is_lagrangian = self.method().properties.law.is_some();
+        Ok(OurSums { simulation, is_lagrangian, lacks })
     }
 }
 

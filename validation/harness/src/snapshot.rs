@@ -62,7 +62,7 @@ impl<X, T: Copy> Column<'_, X, T> {
 }
 
 /// Particles as arrays in the order of the scene. Optional columns are absent if they were not handed in.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Columns<X = ()> {
     /// The particles.
     pub points: Vec<Point>,
@@ -124,23 +124,6 @@ pub trait Sums<X: Numbers> {
     ) -> Result<(), Absent>;
 }
 
-/// No method sums over the neighbours.
-struct NoMethod;
-
-impl<X: Numbers> Sums<X> for NoMethod {
-    fn weight(&self, _: f64) -> f64 {
-        f64::NAN
-    }
-    fn read(
-        &self,
-        _: f64,
-        _: &Columns<X>,
-        _: &mut dyn FnMut(&dyn Stepper<X>),
-    ) -> Result<(), Absent> {
-        Err(Absent::OwnTerms)
-    }
-}
-
 /// Particles at one time.
 pub struct Snapshot<'a, X: Numbers = ()> {
     time: f64,
@@ -149,7 +132,7 @@ pub struct Snapshot<'a, X: Numbers = ()> {
 
 enum Source<'a, X: Numbers> {
     Ours(&'a dyn Stepper<X>),
-    Given(Columns<X>, &'a dyn Sums<X>),
+    Given(Columns<X>, Option<&'a dyn Sums<X>>),
 }
 
 impl<'a, X: Numbers> Snapshot<'a, X> {
@@ -160,12 +143,12 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
 
     /// Particles with every column at a time \[s\], without a method: the kernel is not a number.
     pub fn of(time: f64, particles: &[Particle<X>]) -> Self {
-        Self::given(time, Columns::all(particles), &NoMethod)
+        Self { time, source: Source::Given(Columns::all(particles), None) }
     }
 
     /// Particles that were handed in for a time \[s\], and our method, which sums over their neighbours.
     pub fn given(time: f64, columns: Columns<X>, sums: &'a dyn Sums<X>) -> Self {
-        Self { time, source: Source::Given(columns, sums) }
+        Self { time, source: Source::Given(columns, Some(sums)) }
     }
 
     /// \[s\].
@@ -227,20 +210,12 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
         })
     }
 
-    /// The particles as arrays.
-    pub fn columns(&self) -> Columns<X> {
-        let mut points = self.all();
-        let density = |density: Column<X, f64>| points.iter().map(|p| density.of(p)).collect();
-        let densities = self.density().ok().map(density);
-        let extras = match &self.source {
-            Source::Ours(simulation) => {
-                let state = simulation.data().state();
-                Some(points.iter().map(|p| state[p.index].extra).collect())
-            }
-            Source::Given(columns, _) => columns.extras.clone(),
-        };
-        points.iter_mut().enumerate().for_each(|(index, point)| point.index = index);
-        Columns { points, densities, extras }
+    /// The arrays of particles that are none of our simulation.
+    pub fn columns(&self) -> Option<&Columns<X>> {
+        match &self.source {
+            Source::Ours(_) => None,
+            Source::Given(columns, _) => Some(columns),
+        }
     }
 
     /// Our simulation.
@@ -258,7 +233,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
     pub fn weight(&self, r2: f64) -> f64 {
         match &self.source {
             Source::Ours(simulation) => simulation.weight(r2),
-            Source::Given(_, sums) => sums.weight(r2),
+            Source::Given(_, sums) => sums.map_or(f64::NAN, |sums| sums.weight(r2)),
         }
     }
 
@@ -269,7 +244,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
     pub fn sums<R>(&self, read: impl FnOnce(&dyn Stepper<X>) -> R) -> Result<R, Absent> {
         let (columns, sums) = match &self.source {
             Source::Ours(simulation) => return Ok(read(*simulation)),
-            Source::Given(columns, sums) => (columns, sums),
+            Source::Given(columns, sums) => (columns, sums.ok_or(Absent::OwnTerms)?),
         };
         let (mut read, mut found) = (Some(read), None);
         sums.read(self.time, columns, &mut |simulation| {

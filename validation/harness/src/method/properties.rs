@@ -85,12 +85,6 @@ impl Properties {
         }
     }
 
-    /// The kernel W \[1/m²\] of r² \[m²\] with a smoothing length \[m\].
-    pub fn kernel(&self, h: f64) -> impl Fn(f64) -> f64 + use<> {
-        let weight = self.weight;
-        move |r2| weight(h, r2)
-    }
-
     /// A medium with this equation of state, spacing \[m\] and smoothing length \[m\], and nothing else.
     pub fn medium(&self, eos: Tait, [dx, h]: [f64; 2]) -> Medium {
         Medium {

@@ -97,39 +97,35 @@ impl Operator {
         let pairs = || start.points.iter().zip(&all).enumerate();
         let along = |value| Vector2::new(value, 0.0);
         let accelerated = |start: &Point, end: &Point| (end.velocity - start.velocity) / time;
+        // Of the index, the start and the end of a particle.
+        type Value<'a> = &'a dyn Fn(usize, &Point, &Point) -> [Vector2<f64>; 2];
+        let each = |value: Value| pairs().map(|(k, (start, end))| value(k, start, end)).collect();
         Ok(match self {
             Self::Density => {
                 let density = end.density()?;
-                let exact = |x| along(DENSITY * scalar(x));
-                pairs()
-                    .map(|(_, (start, end))| [along(density.of(end) - 1.0), exact(start.position)])
-                    .collect()
+                each(&|_, start, end| {
+                    [along(density.of(end) - 1.0), along(DENSITY * scalar(start.position))]
+                })
             }
             Self::Gradient => {
                 let density = start.densities()?;
-                let exact = |k: usize, x: Vector2<f64>| {
-                    let gradient =
-                        Vector2::new(cos(K * x.x) * cos(K * x.y), -sin(K * x.x) * sin(K * x.y));
-                    -gradient * (PRESSURE * K / density[k])
-                };
-                pairs()
-                    .map(|(k, (start, end))| [accelerated(start, end), exact(k, start.position)])
-                    .collect()
+                each(&|k, start, end| {
+                    let [x, y] = [start.position.x, start.position.y];
+                    let gradient = Vector2::new(cos(K * x) * cos(K * y), -sin(K * x) * sin(K * y));
+                    [accelerated(start, end), -gradient * (PRESSURE * K / density[k])]
+                })
             }
-            Self::Laplacian => {
-                let exact = |x| vector(x) * (-2.0 * K * K * m.nu * SPEED);
-                pairs()
-                    .map(|(_, (start, end))| [accelerated(start, end), exact(start.position)])
-                    .collect()
-            }
+            Self::Laplacian => each(&|_, start, end| {
+                let exact = vector(start.position) * (-2.0 * K * K * m.nu * SPEED);
+                [accelerated(start, end), exact]
+            }),
             Self::Divergence => {
                 let (before, after) = (start.densities()?, end.density()?);
-                let exact = |x: Vector2<f64>| along(2.0 * SPEED * K * cos(K * x.x) * cos(K * x.y));
-                pairs()
-                    .map(|(k, (start, end))| {
-                        [along((before[k] - after.of(end)) / time), exact(start.position)]
-                    })
-                    .collect()
+                each(&|k, start, end| {
+                    let divergence = 2.0 * SPEED * K * cos(K * start.position.x);
+                    let divergence = divergence * cos(K * start.position.y);
+                    [along((before[k] - after.of(end)) / time), along(divergence)]
+                })
             }
         })
     }
@@ -301,7 +297,7 @@ impl Problem for Sampled {
     }
 
     fn watch(&self, scene: &Snapshot, _: &Snapshot) -> Start {
-        Start { particles: scene.columns() }
+        Start { particles: scene.columns().cloned().unwrap_or_default() }
     }
 
     fn measure(&self, Start { particles: start }: Start, end: &Snapshot, record: &mut Record) {
