@@ -471,7 +471,7 @@ fn nothing_judged_ends_with_2_and_names_what_is() {
     let words = said.text.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in [
         "Nothing was judged",
-        "the nearest that is judged is couette --variant",
+        "the nearest run with a bound is couette --variant",
         "largest relative rms",
         // The bound is on the number that is stated as the error.
         ": l2_worst at most",

@@ -12,4 +12,4 @@ small none
 touchstone submit couette none --store st >out 2>&1
 code=$?
 cat out
-test $code = 2 && grep -q 'Nothing was judged' out && grep -q 'nearest that is judged' out
+test $code = 2 && grep -q 'Nothing was judged' out && grep -q 'nearest run with a bound' out
