@@ -18,7 +18,7 @@ use crate::tidy::{assert_none, root};
 
 /// Words that README may have outside of code blocks and comments.
 const README_WORDS: usize = 450;
-/// Words that all documents may have together, those of `references` apart.
+/// Allowed number of words of all documents together, except `references`.
 const ALL_WORDS: usize = 15_000;
 /// Folders whose paths, in backquotes, must exist.
 const FOLDERS: [&str; 7] =
@@ -193,7 +193,7 @@ fn sources(comment: &str, gates: &[Gate]) -> Option<Vec<f64>> {
         return Some(ladder_says(kind, ladder).unwrap_or_default());
     }
     let [name, run, metric] = comment.split("; ").collect::<Vec<_>>()[..] else { return None };
-    // Metrics are in the snapshot of the case, steps and pair interactions in that of its work.
+    // Metrics are in the snapshot of the case, steps and pair interactions in the snapshot of its work.
     let (case, variant) = name.split_once('.')?;
     let of = |kept: Kept| kept.get(&(variant.into(), run.into()))?.get(metric).copied();
     Some([kept_numbers(case), kept_work(case)].into_iter().filter_map(of).collect())

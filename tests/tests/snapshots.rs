@@ -244,7 +244,7 @@ fn number(value: f64) -> String {
     format!("{:?}", format!("{value:.8e}").parse().unwrap_or(value))
 }
 
-/// What the runs of a variant measured: a row a metric, a column a run; and the names of numerics and
+/// The metrics of the runs of a variant: a row a metric, a column a run; and the names of numerics and
 /// profiles.
 fn results(variant: &str, of: &[(&Run, &Record)]) -> String {
     let names: BTreeMap<&String, &String> = of
@@ -278,7 +278,7 @@ fn columns(profile: &Profile) -> String {
     profile.columns.iter().map(name).collect::<Vec<_>>().join(", ")
 }
 
-/// What the runs of a variant took: a row a run.
+/// The work of the runs of a variant: a row a run.
 fn work(variant: &str, of: &[(&Run, &Record)]) -> String {
     let heads = [variant, "steps", "pair_interactions", "particle_rhs"].map(String::from).to_vec();
     let row = |(run, record): &(&Run, &Record)| {
@@ -550,8 +550,8 @@ fn told(changed: &[String]) -> String {
     )
 }
 
-/// What `list --json` says of settings and variants: a row a setting, then a row a variant with the settings
-/// in which it differs from the defaults, and those that it lacks.
+/// Settings and variants of `list --json`: a row a setting, then a row a variant with its settings that
+/// differ from the defaults, and the settings that it lacks.
 #[test]
 fn settings_are_as_they_were() {
     for case in touchstone_cases::CASES {

@@ -1,4 +1,4 @@
-//! The commands of documents, as a reader types them: those of a page run one after another in one folder.
+//! The commands of documents, as a reader types them: the commands of a page run in sequence in one folder.
 //!
 //! - `sh`: each line runs, unless `<!-- not run: REASON -->` stands before the block. It ends with exit code
 //!   0, with 3 if its comment says that it diverges, or with the code that its comment states.
@@ -110,7 +110,7 @@ impl Reader {
         shell.args(["-c", command]).current_dir(folder).env("PATH", path).output().unwrap()
     }
 
-    /// What is wrong with a page, and how many of its commands ran.
+    /// The faults of a page, and the number of its executed commands.
     fn reads(&self, page: &str) -> (Vec<String>, usize) {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in &self.files {

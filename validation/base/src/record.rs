@@ -257,7 +257,7 @@ impl MetricKey {
 macro_rules! metrics {
     (all $all:ident; $($constant:ident = $name:literal [$unit:literal] $formula:literal;)+) => {
         $crate::metrics! { $($constant = $name [$unit] $formula;)+ }
-        /// All of these metrics.
+        /// Every metric of this list.
         pub const $all: &[$crate::record::MetricKey] = &[$($constant),+];
     };
     ($($constant:ident = $name:literal [$unit:literal] $formula:literal;)+) => {$(

@@ -138,7 +138,7 @@ pub trait Values {
 
 /// A settings struct; implemented by [`settings!`](crate::settings!).
 pub trait Settings: SettingType + Clone + Default + PartialEq + fmt::Debug + 'static {
-    /// All settings in the order of declaration, those of groups in the place of the group.
+    /// All settings in the order of declaration; the settings of a group are at the place of the group.
     fn all() -> &'static [Field];
 
     /// The path of the module that declares them, which begins with the name of its crate.
@@ -312,8 +312,8 @@ fn count(text: &str) -> Option<u64> {
     text.parse().ok().or_else(real)
 }
 
-/// A type that a setting may have: a [`Scalar`], or another settings struct, a group, whose settings then
-/// stand in its place.
+/// Type of a setting: a [`Scalar`], or a group, which is another settings struct whose settings are included
+/// at its place.
 pub trait SettingType {
     /// The fields that a setting of this type declares, with this value as default: `declared` with its kind
     /// and default, or the fields of the group.

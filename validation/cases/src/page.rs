@@ -129,7 +129,8 @@ fn errors(main: &[&CaseResults]) -> Figure {
     main.iter().filter_map(panel).fold(figure, Figure::panel)
 }
 
-/// Run times of our own runs on the machine of the other codes over those of this report, least and most.
+/// Ratio of the run times of our own runs on the machine of the other codes to the run times of this report,
+/// least and largest.
 fn machines(main: &[&CaseResults]) -> Option<String> {
     let ratio = |results: &&CaseResults, peer: &JudgedRun| {
         let peer = &peer.record;

@@ -156,8 +156,8 @@ impl Foreign<'_> {
         })
     }
 
-    /// The particle of a frame in place of the median by what is in its square, if that is more than any
-    /// density: particles of whatever densities that lie on a line or in a corner.
+    /// The median particle of a frame by the mass in its square, if the density there exceeds any allowed
+    /// one: particles crowded on a line or in a corner, whatever densities they state.
     pub(crate) fn crowded<X>(&self, frame: &Frame, all: &Columns<X>) -> Option<InvalidState> {
         let moving: Vec<_> =
             frame.particles.iter().map(|of| (of.id, all.points[of.id as usize])).collect();
@@ -175,7 +175,7 @@ impl Foreign<'_> {
     }
 }
 
-/// The further fields of so many particles: a method without such fields lacks none.
+/// The extra fields of `count` particles: `Some` for a method without such fields.
 fn extras<X: Numbers>(count: usize) -> Option<Vec<X>> {
     X::default().stress().is_none().then(|| vec![X::default(); count])
 }

@@ -578,7 +578,7 @@ trait Parted: Problem {
             for (_, call) in &after_step {
                 let _goes_on = call(self, &mut watch, &last);
             }
-            // A time may be stated twice, such as that of a sample and of a picture.
+            // A time may be stated twice, for example for a sample and for a picture.
             while next(reached).is_some() {
                 at.iter()
                     .for_each(|(_, _, call)| call(self, &mut watch, &last, reached, &mut record));

@@ -66,14 +66,14 @@ impl Studies {
         Self::default().with(JudgedRuns(runs))
     }
 
-    /// The same with one more study.
+    /// Adds a study.
     #[must_use]
     pub fn with(mut self, study: impl Study) -> Self {
         self.0.push(Box::new(study));
         self
     }
 
-    /// The same with more studies of one type.
+    /// Adds studies of one type.
     #[must_use]
     pub fn with_all(self, studies: impl IntoIterator<Item = impl Study>) -> Self {
         studies.into_iter().fold(self, Self::with)
@@ -99,7 +99,7 @@ impl Studies {
         self.0.iter().filter_map(|study| study.evaluate(case, runs)).collect()
     }
 
-    /// The studies of the deep tier, from those of the full one.
+    /// The studies of the deep tier, from the studies of the full one.
     #[must_use]
     pub fn deepened(mut self) -> Self {
         let full = self.runs();

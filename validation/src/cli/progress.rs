@@ -68,8 +68,8 @@ impl Bar {
         self.show(share, words);
     }
 
-    /// Draws the bar. The elapsed time goes on while a long run does; not before, because a bar that was
-    /// drawn stays on the screen above whatever is said without [`Self::suspend`].
+    /// Draws the bar. The elapsed time advances during a long run, and not before its start: a drawn bar
+    /// stays on the screen above messages printed without [`Self::suspend`].
     fn show(&self, share: f64, words: String) {
         self.bar.set_position((share * PARTS as f64) as u64);
         self.bar.set_message(words);

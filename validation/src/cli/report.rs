@@ -102,11 +102,11 @@ pub fn report(arguments: &arguments::Report, session: &Session) -> Outcome {
     }
 }
 
-/// Name of the folder of records in that of their report.
+/// Name of the folder of records in the folder of their report.
 const RECORDS: &str = "records";
 
-/// The folder of a report, and the name of its records on the page: their folder inside that of the report,
-/// or a digest of the folder of another store. A page of other records is replaced only if that is asked for.
+/// The folder of a report, and the name of its records on the page: their folder inside the report's, or a
+/// digest of the folder of another store. A page of other records is replaced only on request.
 fn place(
     folder: &Path,
     store: Option<&Path>,

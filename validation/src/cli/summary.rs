@@ -143,7 +143,7 @@ pub fn outcome(
     [told.map(|(head, words)| output::hanging(head, 7, words)).collect(), next]
 }
 
-/// The judged run whose settings are the nearest to those of a run that no gate judges.
+/// The judged run with the nearest settings to a run that no gate judges.
 pub struct Nearest {
     pub spec: RunSpec,
     pub gate: Gate,

@@ -1,5 +1,5 @@
-//! The page of a store whose runs no tier plans, such as those of a sweep: a table and a figure a case, and
-//! no verdict.
+//! The page of a store with runs of no tier, such as a sweep: a table and a figure for each case, and no
+//! verdict.
 
 use std::collections::BTreeSet;
 use std::path::Path;

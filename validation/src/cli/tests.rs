@@ -714,7 +714,7 @@ fn a_run_states_the_error_by_its_own_settings() {
     }
 }
 
-/// A case had up to three errors: that of its card, that of its first figure and that of its documents.
+/// A case has one error, on its card, in its first figure and in documents.
 #[test]
 fn page_list_run_and_readme_state_the_same_number_of_a_case() {
     let readme = include_str!("../../../README.md");

@@ -149,7 +149,8 @@ impl History {
         });
         let energy = Energy::of(now, &self.settings.material()).map(|energy| energy.total());
         let spin = angular_momentum(now);
-        // A sample after the last step, when the velocities of a leapfrog lag, gives way to that of the end.
+        // A sample after the last step, when the velocities of a leapfrog lag, is replaced by the
+        // synchronised one.
         if self.series.last(0) == Ok(now.time()) {
             self.series.pop();
         }

@@ -114,7 +114,7 @@ impl Studies {
     }
 }
 
-/// The card stands for itself before all sections.
+/// The card is shown before all sections.
 impl Study for Card {
     fn runs(&self) -> Vec<Planned> {
         self.runs.iter().cloned().map(Planned::new).collect()
@@ -192,7 +192,7 @@ struct Answer<'a> {
     studies: &'a Studies,
     runs: &'a Runs,
     metric: &'a MetricName,
-    /// The run of the recommended variant, and that of the paper's if there is one.
+    /// The run of the recommended variant, and the run of the paper's if there is one.
     shown: Vec<RunSpec>,
 }
 

@@ -203,7 +203,7 @@ impl Study for Accuracy {
 }
 
 /// The error of a case over run time: the recommended variant, the paper's, and other codes at the settings
-/// of the case. The names are those of the legend, the same in the panels of all cases.
+/// of the case. Names are the names of the legend, equal in the panels of all cases.
 pub fn against_run_time(
     title: &str,
     case: &dyn Case,

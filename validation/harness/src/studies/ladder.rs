@@ -47,26 +47,25 @@ impl<T> Clone for Spacing<T> {
 impl<T> Copy for Spacing<T> {}
 
 impl<T: Settings> Spacing<T> {
-    /// A setting that is the number of spacings in the unit of length; in the words of its resolution `{}`
-    /// stands for the number.
+    /// A setting that is the number of spacings in the unit of length; in the words of its resolution `{}` is
+    /// replaced by the number.
     pub fn count(setting: fn(&mut T) -> &mut usize, words: &'static str) -> Self {
         Self { setting: Setting::Count(setting), beside: None, length: |_| 1.0, words }
     }
 
-    /// A setting that is the spacing; in the words of its resolution `{}` stands for the number of spacings in
-    /// the unit of length.
+    /// A setting that is the spacing; in the words of its resolution `{}` is replaced by the number of
+    /// spacings in the unit of length.
     pub fn length(setting: fn(&mut T) -> &mut f64, words: &'static str) -> Self {
         Self { setting: Setting::Length(setting), beside: None, length: |_| 1.0, words }
     }
 
-    /// The same with the number of spacings in another length, in the unit of
-    /// [`Accuracy::spacing`](super::Accuracy::spacing).
+    /// Counts the spacings in another length, in the unit of [`Accuracy::spacing`](super::Accuracy::spacing).
     #[must_use]
     pub fn over(self, length: fn(&T) -> f64) -> Self {
         Self { length, ..self }
     }
 
-    /// The same with another number of spacings that changes in proportion.
+    /// Adds another number of spacings that changes in proportion.
     #[must_use]
     pub fn beside(self, other: fn(&mut T) -> &mut usize) -> Self {
         Self { beside: Some(other), ..self }
@@ -121,7 +120,7 @@ pub struct Ladder {
 }
 
 impl Ladder {
-    /// Adds a run before those that are finer.
+    /// Adds a run before the finer ones.
     pub(crate) fn add(&mut self, level: Level) {
         let place = self.levels.partition_point(|other| other.spacing >= level.spacing);
         self.levels.insert(place, level);
@@ -154,7 +153,7 @@ pub struct Level {
 pub struct Resolution {
     /// The number.
     pub count: usize,
-    /// Words in which `{}` stands for the number.
+    /// Words in which `{}` is replaced by the number.
     pub words: &'static str,
 }
 

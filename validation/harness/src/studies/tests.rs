@@ -40,12 +40,12 @@ pub fn run(spec: RunSpec, fill: impl FnOnce(&mut Record)) -> JudgedRun {
     JudgedRun::new(Planned::new(spec), record)
 }
 
-/// The section of a study, from the runs that were made; those of its other runs are refused.
+/// The section of a study from these runs; its other runs count as refused.
 pub fn evaluate(study: &impl Study, made: Runs) -> Section {
     study.evaluate("case", &whole(study.runs(), made)).expect("a section")
 }
 
-/// The runs of a plan: those that were made, and all others as refused.
+/// The runs of a plan: the given ones, and all others as refused.
 pub fn whole(plan: Vec<Planned>, made: Runs) -> Runs {
     let mut all = Runs::of(crate::plan::merged(plan), &mut BTreeMap::new()).all;
     let is_made = |run: &JudgedRun| {

@@ -11,8 +11,8 @@ use touchstone_harness::{
 
 use super::{ChannelSettings, ChannelTable, Flow, Group, Row, measure::L2};
 
-/// Reynolds numbers, and the largest allowed ratio of pair interactions to those of `modern`. At the lower
-/// one sound does not limit the step, so that accuracy determines the cost.
+/// Reynolds numbers, and the largest allowed ratio of pair interactions to `modern`. At the lower one sound
+/// does not limit the step, so that accuracy determines the cost.
 pub const REYNOLDS: [(f64, f64); 2] = [(0.5, 1.0 / 5.0), (1e-4, 1.0 / 10.0)];
 
 static SOUND: Cause = Cause::new(

@@ -183,7 +183,7 @@ mod tests {
             assert_eq!((reference.stations.len(), reference.wall.len()), (10, 361));
             assert!(reference.stations.iter().all(|s| s.y.len() == 200));
             assert_eq!(reference.number(SEPARATION).is_some(), re > 10.0);
-            // The start: its own stations as they stand, and the finer profiles as far as it holds them.
+            // The start: its own stations unchanged, and the finer profiles as far as it contains them.
             assert_eq!(reference.starts.len(), 29);
             assert!(reference.starts.iter().all(|s| s.y.len() == 100));
             let on_them = distance(reference, &reference.starts);

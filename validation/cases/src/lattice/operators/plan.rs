@@ -55,7 +55,7 @@ pub(super) fn table(tier: Tier) -> Table {
     table
 }
 
-/// The runs of a tier, those with a known answer judged.
+/// The runs of a tier; runs with a known answer are judged.
 pub(super) fn judged(tier: Tier) -> Table {
     let mut table = table(tier);
     table.judge(|row| {

@@ -88,7 +88,7 @@ impl Operator {
         Particle::fluid(x, velocity, density, dx * dx)
     }
 
-    /// What was made of the field of each particle since the start, and the exact value.
+    /// The operator applied to the field of each particle since the start, and the exact value.
     ///
     /// # Errors
     /// Without densities that the operator reads.

@@ -112,7 +112,7 @@ pub trait Body: Values {
 pub trait Watch: Serialize + DeserializeOwned {
     /// Called after every step.
     fn after_step(&mut self, now: &Snapshot<Symmetric>);
-    /// Keeps the particles at a stop, of a run that is asked to; velocities may be half a step old.
+    /// Keeps the particles at a stop, if the run keeps particles; velocities may be half a step old.
     fn keep(&self, _: &Snapshot<Symmetric>, _stop: usize, _: &mut Record) {}
     /// Puts metrics and profiles at the end.
     fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record);

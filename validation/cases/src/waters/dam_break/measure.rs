@@ -107,7 +107,7 @@ impl Samples {
     pub fn sample(&mut self, dam: &Dam, now: &Snapshot) {
         let (s, dx) = (&dam.settings, dam.medium.dx);
         let foremost = foremost(now.stored(), s.height);
-        // In the order of the scene: that of storage changes, and with it the last bits of a sum.
+        // In the order of the scene: the order of storage changes, and with it the last bits of a sum.
         let water = now.moving();
         let centre = centre(&water);
         let half = 0.5 * s.height;

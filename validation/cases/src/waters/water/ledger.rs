@@ -96,7 +96,7 @@ impl Ledger {
     /// Were samples taken until this end?
     ///
     /// # Errors
-    /// Why not: the run is of another code, or nobody asked for the balances.
+    /// An error is the reason: the run belongs to another code, or the balances were not requested.
     pub fn sampled(&self, end: &Snapshot) -> Result<(), Absent> {
         end.simulation()?;
         if self.rows.is_empty() { Err(Absent::NotAsked) } else { Ok(()) }
