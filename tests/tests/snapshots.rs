@@ -501,6 +501,9 @@ fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) ->
     outside
 }
 
+/// Runs with their records, by variant.
+type ByVariant<'a> = BTreeMap<&'a str, Vec<(&'a Run, &'a Record)>>;
+
 /// Runs what is kept of every case and compares, two snapshots for each case, metrics and work. All of them
 /// are compared before the test fails, so that it tells what changed.
 #[test]
@@ -512,7 +515,7 @@ fn results_are_as_they_were() {
     let record =
         |(case, run): &(&dyn Case, Run)| case.run(&run.spec, &Context::default()).expect("planned");
     let records: Vec<Record> = kept.par_iter().map(record).collect();
-    let mut by_case: BTreeMap<&str, BTreeMap<&str, Vec<(&Run, &Record)>>> = BTreeMap::new();
+    let mut by_case: BTreeMap<&str, ByVariant> = BTreeMap::new();
     let mut outside = Vec::new();
     for ((case, run), record) in kept.iter().zip(&records) {
         let variants = by_case.entry(case.name()).or_default();

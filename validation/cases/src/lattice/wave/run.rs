@@ -318,7 +318,7 @@ mod tests {
         let momentum: Vector2<f64> = parts.particles.iter().map(|p| p.velocity * p.mass).sum();
         let simulation = (method.build)(parts).expect("a scene");
         let mut projection = Projection::new(&wave);
-        let _goes_on = projection.after_step(&wave, &*simulation);
+        projection.after_step(&wave, &*simulation);
         let [p, along, across] = projection.series[0];
         assert_relative_eq!(p, 0.003, max_relative = 1e-9);
         assert_relative_eq!(along, 0.02, max_relative = 1e-9);
