@@ -2,6 +2,7 @@
 //! reach an error with the least work, in seconds of a run that was made alone, and in pair interactions,
 //! which do not depend on the machine or on other programs.
 
+use serde_json::Value;
 use touchstone_base::{
     record::{MetricName, Record, Status, median},
     spec::RunSpec,
@@ -11,7 +12,7 @@ use touchstone_report::{
     Axis, Block, Cell, Colour, Figure, Plot, Series, Shape, Table, exact, first_sentence, percent,
 };
 
-use super::{Card, Ladder, sweep::Resolution};
+use super::{Card, Ladder};
 use crate::{
     case::Case,
     columns::Columns,
@@ -88,6 +89,35 @@ pub(super) struct Line<'a> {
     pub name: &'a str,
     /// The runs, coarse to fine.
     pub points: &'a [Point],
+}
+
+/// The setting that refines the runs of a case.
+pub(super) struct RefiningSetting {
+    /// Its name.
+    pub setting: &'static str,
+    /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
+    is_count: bool,
+}
+
+impl RefiningSetting {
+    /// The first setting in which the coarsest and the finest level of a ladder differ.
+    pub(super) fn of(case: &dyn Case, studies: &Studies) -> Option<Self> {
+        let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
+        let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
+        let ends = [ladder.levels.first()?, ladder.levels.last()?];
+        let [coarse, fine] = ends.map(|level| &level.run.spec.settings);
+        case.fields().iter().map(|field| field.name).find_map(|setting| {
+            let [coarse, fine] = [coarse, fine].map(|settings| settings[setting].as_f64());
+            let (coarse, fine) = coarse.zip(fine)?;
+            (coarse != fine).then_some(Self { setting, is_count: coarse < fine })
+        })
+    }
+
+    /// The spacing of a run in units common to all runs of the case; NaN if it has none.
+    pub(super) fn spacing(&self, settings: &Value) -> f64 {
+        let value = settings[self.setting].as_f64().unwrap_or(f64::NAN);
+        if self.is_count { 1.0 / value } else { value }
+    }
 }
 
 impl Point {
@@ -215,7 +245,7 @@ pub fn against_run_time(
     // A ladder at another value of the setting than the run of the card says so.
     let setting = |of: &RunSpec| of.settings[card.breaks.setting].as_f64();
     let finest = accuracy.finest(&[case.recommended().variant]).first().and_then(setting);
-    let resolution = Resolution::of(case, studies);
+    let resolution = RefiningSetting::of(case, studies);
     let is_other = |value: &f64| card.runs.first().and_then(setting) != Some(*value);
     let is_resolution = resolution.is_some_and(|of| of.setting == card.breaks.setting);
     let other = finest.filter(is_other).filter(|_| !is_resolution);

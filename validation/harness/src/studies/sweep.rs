@@ -7,43 +7,14 @@ use touchstone_base::record::{MetricName, Record};
 use touchstone_report::{Cell, Column, Figure, Table, code, sig};
 
 use super::{
-    Accuracy, Card, Studies, anchor,
-    cost::{Line, Point, error_of, panel},
+    Card, Studies, anchor,
+    cost::{Line, Point, RefiningSetting, error_of, panel},
 };
 use crate::{
     case::{self, Case},
     runs::Tier,
     section::Section,
 };
-
-/// The setting that refines the runs of a case.
-pub(super) struct Resolution {
-    /// Its name.
-    pub setting: &'static str,
-    /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
-    is_count: bool,
-}
-
-impl Resolution {
-    /// The first setting in which the coarsest and the finest level of a ladder differ.
-    pub(super) fn of(case: &dyn Case, studies: &Studies) -> Option<Self> {
-        let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
-        let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
-        let ends = [ladder.levels.first()?, ladder.levels.last()?];
-        let [coarse, fine] = ends.map(|level| &level.run.spec.settings);
-        case.fields().iter().map(|field| field.name).find_map(|setting| {
-            let [coarse, fine] = [coarse, fine].map(|settings| settings[setting].as_f64());
-            let (coarse, fine) = coarse.zip(fine)?;
-            (coarse != fine).then_some(Self { setting, is_count: coarse < fine })
-        })
-    }
-
-    /// The spacing of a run in units common to all runs of the case; NaN if it has none.
-    fn spacing(&self, settings: &Value) -> f64 {
-        let value = settings[self.setting].as_f64().unwrap_or(f64::NAN);
-        if self.is_count { 1.0 / value } else { value }
-    }
-}
 
 /// A run and the settings in which it differs from the defaults of its variant, but for its resolution.
 struct Row<'a> {
@@ -59,7 +30,7 @@ struct Row<'a> {
 pub fn section(case: &dyn Case, records: &[Record]) -> Section {
     let studies = case.studies(Tier::Quick);
     let error = studies.error();
-    let resolution = Resolution::of(case, &studies);
+    let resolution = RefiningSetting::of(case, &studies);
     let mut rows: Vec<Row> =
         records.iter().map(|of| row(case, of, error, resolution.as_ref())).collect();
     let coarser = |a: &Row, b: &Row| b.point.spacing.total_cmp(&a.point.spacing);
@@ -79,7 +50,7 @@ fn row<'a>(
     case: &dyn Case,
     record: &'a Record,
     error: Option<&MetricName>,
-    resolution: Option<&Resolution>,
+    resolution: Option<&RefiningSetting>,
 ) -> Row<'a> {
     let mut others = case::changed(case, &record.spec());
     let settings = &record.run.settings;
