@@ -1,10 +1,8 @@
 //! Turns the studies of cases into a list of runs in which each run occurs once.
 
-use touchstone_base::gate::Gate;
-
 use crate::{
     case::Case,
-    runs::{self, Planned, Tier},
+    runs::{Planned, Tier},
 };
 
 /// The runs of a case in a tier: those of its studies, each once, with the gates of all. The measured
@@ -17,27 +15,6 @@ pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
     runs
 }
 
-/// Each run once, at its first place, with all gates; timed if one of them is, and all of it measured if one
-/// of them asks for all.
-pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
-    let mut merged: Vec<Planned> = Vec::new();
-    let mut places = Vec::new();
-    for planned in all {
-        let place = *runs::entry(&mut places, planned.spec.key(), || merged.len());
-        let Some(first) = merged.get_mut(place) else {
-            merged.push(planned);
-            continue;
-        };
-        // A run of a table occurs in the plan and in a ladder, with equal gates.
-        let others = planned.gates.into_iter().filter(|gate| !first.gates.contains(gate));
-        let others: Vec<Gate> = others.collect();
-        first.gates.extend(others);
-        first.timed |= planned.timed;
-        first.spec.measure = first.spec.measure.max(planned.spec.measure);
-    }
-    merged
-}
-
 #[cfg(test)]
 mod tests {
     use serde_json::json;
@@ -47,6 +24,7 @@ mod tests {
     };
 
     use super::*;
+    use crate::runs::merged;
 
     #[test]
     fn a_run_that_is_planned_twice_is_made_once_and_judged_by_all_gates() {

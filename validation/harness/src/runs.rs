@@ -154,6 +154,27 @@ pub fn find<'a, K: Ord, V>(all: &'a Sorted<K, V>, key: &K) -> Option<&'a V> {
     all.binary_search_by(|(other, _)| other.cmp(key)).ok().map(|place| &all[place].1)
 }
 
+/// Each run once, at its first place, with all gates; timed if one of them is, and all of it measured if one
+/// of them asks for all.
+pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
+    let mut merged: Vec<Planned> = Vec::new();
+    let mut places = Vec::new();
+    for planned in all {
+        let place = *entry(&mut places, planned.spec.key(), || merged.len());
+        let Some(first) = merged.get_mut(place) else {
+            merged.push(planned);
+            continue;
+        };
+        // A run of a table occurs in the plan and in a ladder, with equal gates.
+        let others = planned.gates.into_iter().filter(|gate| !first.gates.contains(gate));
+        let others: Vec<Gate> = others.collect();
+        first.gates.extend(others);
+        first.timed |= planned.timed;
+        first.spec.measure = first.spec.measure.max(planned.spec.measure);
+    }
+    merged
+}
+
 /// The judged runs of a case. A study looks up by its [`RunSpec`] a run that is among its
 /// [`runs`](crate::study::Study::runs). To look up another run, or one of which less is measured, is a fault of
 /// the program: it panics where debug assertions are on, as in tests, and finds nothing elsewhere.

@@ -6,8 +6,7 @@
 use std::any::Any;
 
 use crate::{
-    plan,
-    runs::{Planned, Runs},
+    runs::{self, Planned, Runs},
     section::Section,
 };
 
@@ -91,7 +90,7 @@ impl Studies {
 
     /// The runs of all studies, each once, with the gates of all studies that plan it.
     pub fn runs(&self) -> Vec<Planned> {
-        plan::merged(self.0.iter().flat_map(|study| study.runs()).collect())
+        runs::merged(self.0.iter().flat_map(|study| study.runs()).collect())
     }
 
     /// The sections of all studies, from the records of their runs.

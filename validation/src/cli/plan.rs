@@ -15,7 +15,7 @@ use touchstone_harness::{
     case::{self, Case, Planned, Tier},
     estimate::{size, time},
     make::{BatchOptions, BatchResult, Job},
-    plan,
+    plan, runs,
     size::{self, Size},
     store::Store,
 };
@@ -137,7 +137,7 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, session: &Ses
     let job = |planned: Planned| -> Result<Job, Failure> {
         Ok(Job { case: touchstone_cases::find_in(session.cases, &planned.spec.case)?, planned })
     };
-    let jobs = plan::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
+    let jobs = runs::merged(planned).into_iter().map(job).collect::<Result<Vec<Job>, _>>()?;
     session.check_references(&jobs.iter().map(|job| job.case).collect::<Vec<_>>())?;
     let store = Store::open(store)?;
     let allow_long = arguments.allow_long;

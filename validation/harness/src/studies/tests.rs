@@ -47,7 +47,7 @@ pub fn evaluate(study: &impl Study, made: Runs) -> Section {
 
 /// The runs of a plan: the given ones, and all others as refused.
 pub fn whole(plan: Vec<Planned>, made: Runs) -> Runs {
-    let mut all = Runs::of(crate::plan::merged(plan), &mut BTreeMap::new()).all;
+    let mut all = Runs::of(crate::runs::merged(plan), &mut BTreeMap::new()).all;
     let is_made = |run: &JudgedRun| {
         made.all.iter().any(|made| made.planned.spec.key() == run.planned.spec.key())
     };
