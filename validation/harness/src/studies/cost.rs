@@ -481,12 +481,16 @@ mod tests {
         assert_eq!((&*judged.gate.id, &judged.judgement.verdict), ("case.order", &Verdict::Pass));
         let order = judged.judgement.value.expect("an order");
         assert!((order - 3.0).abs() < 1e-12, "order {order} of errors 8/n³");
-        let Block::Figure(figure) = &study.blocks[0] else { panic!("a figure") };
-        assert!(figure.caption.ends_with(" The grey line has order 2."), "{}", figure.caption);
-        let [_, touchstone_report::Layer::Series(seed), _] = &figure.panels[1].layers[..] else {
+        let [Block::Figure(timed), Block::Details { blocks, .. }, _] = &study.blocks[..] else {
+            panic!("a figure, a folded one and a table")
+        };
+        let [_, touchstone_report::Layer::Series(seed), _] = &timed.panels[0].layers[..] else {
             panic!("the front and two ladders")
         };
         assert_eq!(seed.x_bars, [(0.25, 1.0), (0.5, 2.0), (1.0, 4.0), (2.0, 8.0)], "over run time");
+        assert_eq!(seed.labels, ["0", "", "", "0"], "the ends of lines alone are named");
+        let [Block::Figure(refined)] = &blocks[..] else { panic!("a folded figure") };
+        assert!(refined.caption.ends_with(" The grey line has order 2."), "{}", refined.caption);
     }
 
     #[test]
