@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use touchstone_base::absent::Absent;
 use touchstone_solver::{
-    Checkpoint, Domain, InvalidState, Limits, Numbers, Outcome, Particle, Progress, Role, Stepper,
+    Checkpoint, Divergence, Domain, InvalidState, Limits, Numbers, Outcome, Particle, Progress,
+    Role, Stepper,
 };
 
 use crate::{
@@ -212,16 +213,12 @@ pub(crate) struct OurSums<D: ?Sized> {
     pub lacks: Option<Absent>,
 }
 
-impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
-    fn weight(&self, r2: f64) -> f64 {
-        self.simulation.borrow_mut().stepper().weight(r2)
-    }
-    fn read(
-        &self,
-        time: f64,
-        particles: &Columns<X>,
-        read: &mut dyn FnMut(&dyn Stepper<X>),
-    ) -> Result<(), Absent> {
+impl<D: ?Sized> OurSums<D> {
+    /// Puts particles into the simulation, and derives everything that pair sweeps read.
+    fn put<X: Numbers>(&self, time: f64, particles: &Columns<X>) -> Result<Outcome, Absent>
+    where
+        D: Stepper<X>,
+    {
         self.lacks.clone().map_or(Ok(()), Err)?;
         let mut simulation = self.simulation.borrow_mut();
         let simulation = simulation.stepper();
@@ -238,12 +235,36 @@ impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
             state.built_at = state.particles.iter().map(|(_, p)| p.position).collect();
         }
         let progress = Progress { time, ..Progress::default() };
-        state = Checkpoint { progress, lag: 0.0, past: Vec::new(), ..state };
-        simulation.restore(&state)?;
-        match simulation.advance(time, 1.0, &mut ()) {
+        simulation.restore(&Checkpoint { progress, lag: 0.0, past: Vec::new(), ..state })?;
+        Ok(simulation.advance(time, 1.0, &mut ()))
+    }
+
+    /// How particles of a body that derives density and stress from its deformation diverge, if so.
+    pub fn divergence<X: Numbers>(&self, time: f64, particles: &Columns<X>) -> Option<Divergence>
+    where
+        D: Stepper<X>,
+    {
+        match self.is_lagrangian.then(|| self.put(time, particles)) {
+            Some(Ok(Outcome::Diverged(divergence))) => Some(Divergence { step: 0, ..divergence }),
+            _ => None,
+        }
+    }
+}
+
+impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
+    fn weight(&self, r2: f64) -> f64 {
+        self.simulation.borrow_mut().stepper().weight(r2)
+    }
+    fn read(
+        &self,
+        time: f64,
+        particles: &Columns<X>,
+        read: &mut dyn FnMut(&dyn Stepper<X>),
+    ) -> Result<(), Absent> {
+        match self.put(time, particles)? {
             Outcome::Diverged(divergence) => Err(divergence.to_string().into()),
             Outcome::Reached | Outcome::Stopped => {
-                read(simulation);
+                read(self.simulation.borrow_mut().stepper());
                 Ok(())
             }
         }

@@ -574,6 +574,10 @@ trait Parted: Problem {
                 record.status = diverged(fault);
                 break;
             }
+            if let Some(divergence) = sums.divergence(time, &columns) {
+                record.status = runner::diverged(divergence);
+                break;
+            }
             last = Snapshot::given(time, columns, &sums);
             for (_, call) in &after_step {
                 let _goes_on = call(self, &mut watch, &last);
