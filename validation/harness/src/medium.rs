@@ -5,7 +5,8 @@ use touchstone_base::settings::{Field, Value, Values};
 use touchstone_maths::theory::time_step;
 use touchstone_solver::Tait;
 
-/// The parameters of a material at a particle spacing. Parameters that a case does not use are 0.
+/// The parameters of a material at a particle spacing. Parameters that a case does not use are 0. A parameter
+/// with a unit has it in [`crate::relation::View::medium`] too.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
     /// Equation of state, with density at rest and sound speed; a solid takes these two of it.

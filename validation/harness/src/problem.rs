@@ -204,7 +204,8 @@ impl<P: Problem> Default for Calls<P> {
 }
 
 impl<P: Problem> Calls<P> {
-    /// Calls a function after every step, and at every frame of another code.
+    /// Calls a function after every step, and at every frame of another code. In a leapfrog, velocities and
+    /// extra fields are half a step old there.
     #[must_use]
     pub fn after_step(mut self, name: &'static str, call: AfterStep<P>) -> Self {
         self.after_step.push((name, call));

@@ -39,7 +39,8 @@ impl<T, G> Row<T, G> {
     }
 }
 
-/// The runs of a case in one tier. `G` is the group of a run, an enum of the case.
+/// The runs of a case in one tier; a table of a page is a [`touchstone_report::Table`]. `G` is the group of a
+/// run, an enum of the case.
 pub struct Table<T: 'static, G> {
     case: &'static Composed<T>,
     tier: Tier,
