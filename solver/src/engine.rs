@@ -207,7 +207,8 @@ pub(crate) struct TypedEquations<P: Physics> {
 type ExtrapolationOf<P> = <<P as Physics>::Walls as Walls<<P as Physics>::Extra>>::Extrapolation;
 
 impl<P: Physics> TypedEquations<P> {
-    /// The pair sweep of these terms, whose derived data of a column `read` selects. `moving`: dx/dt includes v.
+    /// The pair sweep of these terms, whose derived data of a column `read` selects. `moving`: dx/dt includes
+    /// v.
     fn sweep<T: Term<P::Extra>>(
         &self,
         terms: &T,
@@ -231,8 +232,8 @@ impl<P: Physics> TypedEquations<P> {
     }
 }
 
-// Functions in place of closures, which in generic code have a type for each scheme: the sweep would be compiled
-// for each.
+// Functions in place of closures, which in generic code have a type for each scheme: the sweep would be
+// compiled for each.
 
 fn first<A: Copy, B>(derived: &(A, B)) -> A {
     derived.0
@@ -370,8 +371,8 @@ impl<P: Physics> Engine<P> {
         self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
 
-    /// Sums a part of the forces, whose derived data of a column `read` selects: `update` with dv/dt, for fluid
-    /// particles.
+    /// Sums a part of the forces, whose derived data of a column `read` selects: `update` with dv/dt, for
+    /// fluid particles.
     pub fn sweep_part<T: Term<P::Extra>>(
         &mut self,
         targets: &mut Particles<P>,

@@ -347,8 +347,8 @@ fn round_trip(problem: &str) -> [Record; 2] {
 /// Rings of the paper have more samples than their problem has times.
 const SAMPLED: &str = "rubber_rings --variant leapfrog";
 
-/// Our own results are measured like our run; a metric that the run has and they have not is known to be absent
-/// before their numbers are read.
+/// Our own results are measured like our run; a metric that the run has and they have not is known to be
+/// absent before their numbers are read.
 #[test]
 fn our_own_results_have_the_metrics_of_our_run() {
     let of_path = "cantilever --variant lagrangian --set n=4 --set end=0.05";

@@ -123,7 +123,8 @@ struct Contact {
 impl Row {
     /// The row at the distance d.
     fn at(d: f64, kernel: &Smoothing<WendlandC2>) -> Self {
-        // The mean over positions along the row, by a sum that is exact to 1e-6: the kernel has two derivatives.
+        // The mean over positions along the row, by a sum that is exact to 1e-6: the kernel has two
+        // derivatives.
         let mut row = Self { density: 0.0, slope: 0.0 };
         for x in (-200..200).map(|k| (f64::from(k) + 0.5) * 0.01) {
             let r2 = d * d + x * x;

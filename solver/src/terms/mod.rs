@@ -135,8 +135,8 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     fn place(&self, _position: Vector2<f64>, _rate: &mut Rate<X>) {}
 }
 
-/// A sum over the neighbours of a particle and its result `O`: rates, the state of a wall particle, or inverse
-/// moments. `S` is the derived data of a column.
+/// A sum over the neighbours of a particle and its result `O`: rates, the state of a wall particle, or
+/// inverse moments. `S` is the derived data of a column.
 pub(crate) trait PairSum<S, O>: Sync {
     /// The part of the derived data that the sum reads.
     type Derived: Numbers;

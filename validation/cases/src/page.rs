@@ -98,8 +98,8 @@ fn recommended(suite: &Suite) -> Vec<String> {
         });
     let but = worst.map(|(_, error)| {
         format!(
-            ": in [vortices from a lattice](#taylor_green) `modern`, which two main cases recommend, is wrong \
-             by **{error}**"
+            ": in [vortices from a lattice](#taylor_green) `modern`, which two main cases recommend, is \
+             wrong by **{error}**"
         )
     });
     vec![
@@ -212,7 +212,7 @@ fn provenance(made_by: &Manifest) -> String {
     let cores = counted(made_by.cores, "core", "cores");
     let threads = counted(made_by.threads, "thread", "threads");
     format!(
-        "BatchResult by touchstone {touchstone} at {state} ({profile} build, {}) on {}, \
+        "Made by touchstone {touchstone} at {state} ({profile} build, {}) on {}, \
          {cores}, {threads}.",
         plain(rustc),
         plain(cpu)
@@ -248,10 +248,11 @@ fn verdicts(suite: &Suite) -> Section {
     let reasons = notes.all().map(|(_, reason)| reason.to_string()).collect();
     Section::new(VERDICTS, "All verdicts")
         .prose(
-            "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is a \
-             known limitation if it lies outside and inside of a second bound, which follows from the cause, \
-             or is fitted to own runs and says so, and fails otherwise; controls must lie outside. The margin \
-             is the unused share of what a bound allows: 100 % is far inside, 0 % is at the bound. Group a limitation, the wider bound counts. Select a gate to read its reasons.",
+            "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is \
+             a known limitation if it lies outside and inside of a second bound, which follows from the \
+             cause, or is fitted to own runs and says so, and fails otherwise; controls must lie outside. \
+             The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the \
+             bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
         .block(Block::Details {

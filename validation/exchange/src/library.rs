@@ -22,8 +22,8 @@ pub trait Solver {
     fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System;
 }
 
-/// The record of a solver for a run of a case. Put into [`touchstone_harness::make::BatchResult::submissions`] it
-/// has a section of the report.
+/// The record of a solver for a run of a case. Put into
+/// [`touchstone_harness::make::BatchResult::submissions`] it has a section of the report.
 ///
 /// # Errors
 /// If the case refuses the run, or the results of the solver do not fit: each flaw in a line.

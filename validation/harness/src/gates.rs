@@ -56,8 +56,8 @@ impl<'a> GateIndex<'a> {
         gates
     }
 
-    /// The judged simulation with the nearest settings, and its gate selected by `judges`: of the same variant
-    /// if there is one, then with the fewest other settings, then with the least ratios of these.
+    /// The judged simulation with the nearest settings, and its gate selected by `judges`: of the same
+    /// variant if there is one, then with the fewest other settings, then with the least ratios of these.
     pub fn nearest(
         &self,
         spec: &RunSpec,

@@ -121,8 +121,8 @@ pub struct StoredRuns {
 
 /// Looks up the records of the jobs. A record made from other sources does not serve unless allowed, nor does
 /// the record of a refused run if longer runs are allowed now: trying again takes no time. The record of a
-/// timed run must have been made while no other run was. After an interrupt, see [`BatchResult::interrupted`], the
-/// result may be incomplete.
+/// timed run must have been made while no other run was. After an interrupt, see
+/// [`BatchResult::interrupted`], the result may be incomplete.
 pub fn stored(jobs: &[Job], making: &BatchOptions) -> StoredRuns {
     let mut stored = StoredRuns::default();
     for job in jobs {
@@ -171,7 +171,8 @@ pub fn stored(jobs: &[Job], making: &BatchOptions) -> StoredRuns {
 }
 
 /// Makes the runs that the store lacks. A refused or diverged run has a record; a run that fails otherwise
-/// has none, see [`BatchResult::failed`]. For records that the store cannot keep see [`BatchResult::not_kept`].
+/// has none, see [`BatchResult::failed`]. For records that the store cannot keep see
+/// [`BatchResult::not_kept`].
 pub fn make(StoredRuns { made, missing, .. }: StoredRuns, making: &BatchOptions) -> BatchResult {
     let batch = Batch::new(&missing, made, making);
     let first = making.finished.and_then(|_| first(&missing, making.tier));

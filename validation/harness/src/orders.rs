@@ -39,7 +39,8 @@ pub struct Line {
     pub gate: Gate,
 }
 
-/// Adds the figure, the table and the judged orders to a section; lines that `is_drawn` refuses are not drawn.
+/// Adds the figure, the table and the judged orders to a section; lines that `is_drawn` refuses are not
+/// drawn.
 pub fn add(
     section: Section,
     [figure, table]: [&str; 2],

@@ -1,5 +1,5 @@
-//! The names that nearly every case needs: `use touchstone_harness::prelude::*;`. Other names are imported one
-//! by one.
+//! The names that nearly every case needs: `use touchstone_harness::prelude::*;`. Other names are imported
+//! one by one.
 
 pub use touchstone_base::{
     gate::{Bound, Evidence, Gate},

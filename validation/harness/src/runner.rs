@@ -1,7 +1,7 @@
 //! Steps a simulation through the times of interest: the only time loop of the program. It measures the cost,
 //! shows progress, writes frames and stops at an interrupt; cases contain only their own measurements. The
-//! loop accesses a run of a case only through `ObservedRun`, so it is compiled once for all cases of fluids, and
-//! once for solids.
+//! loop accesses a run of a case only through `ObservedRun`, so it is compiled once for all cases of fluids,
+//! and once for solids.
 
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};

@@ -176,8 +176,8 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 }
 
 /// The judged runs of a case. A study looks up by its [`RunSpec`] a run that is among its
-/// [`runs`](crate::study::Study::runs). To look up another run, or one of which less is measured, is a fault of
-/// the program: it panics where debug assertions are on, as in tests, and finds nothing elsewhere.
+/// [`runs`](crate::study::Study::runs). To look up another run, or one of which less is measured, is a fault
+/// of the program: it panics where debug assertions are on, as in tests, and finds nothing elsewhere.
 #[derive(Debug, Default)]
 pub struct Runs {
     /// All runs in the order of the plan.

@@ -1,4 +1,5 @@
-//! A section of a report: the result of a study, with its prose, figures, tables, and the gates that judge it.
+//! A section of a report: the result of a study, with its prose, figures, tables, and the gates that judge
+//! it.
 
 use touchstone_base::gate::Gate;
 use touchstone_report::Block;

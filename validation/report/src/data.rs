@@ -9,8 +9,8 @@ use super::figure::{Dots, Layer};
 use super::plot::Prepared;
 use super::ticks::Scale;
 
-/// Axes, place of the axes on the drawing and values of a panel: series as name, x, y and the names of points,
-/// and cells and particles as further series.
+/// Axes, place of the axes on the drawing and values of a panel: series as name, x, y and the names of
+/// points, and cells and particles as further series.
 pub(super) fn panel(panel: &Prepared, area: Rect) -> Value {
     let (plot, [x, y]) = panel.parts();
     let axis = |ruler: &Ruler| {

@@ -59,7 +59,8 @@ impl Movie {
         // The page is XML too: every element is closed.
         PreEscaped(format!(
             "<picture class=\"movie\"><source media=\"(prefers-reduced-motion: reduce)\" \
-             srcset=\"data:image/png;base64,{}\"/><img alt=\"{}\" src=\"data:image/png;base64,{}\"/></picture>",
+             srcset=\"data:image/png;base64,{}\"/>\
+             <img alt=\"{}\" src=\"data:image/png;base64,{}\"/></picture>",
             data(encode(&self.pixels(still))),
             escaped(&aloud(&self.caption)),
             data(self.apng())

@@ -58,8 +58,8 @@ methods! { stepped => Method:
     wendland_sum: Summing<WendlandC2>;
 }
 
-/// ρ ← Σ m W within a step of [`summing_step`], the density of many other codes; the schemes of the benchmarks
-/// integrate (3) instead.
+/// ρ ← Σ m W within a step of [`summing_step`], the density of many other codes; the schemes of the
+/// benchmarks integrate (3) instead.
 #[derive(Clone, Copy, Debug)]
 pub struct Summation<K> {
     kernel: Smoothing<K>,

@@ -675,7 +675,8 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
     let finer = "next   touchstone run couette --variant plain --set rows=40";
     has(&end(vec![of(metric, 0.0246)]), &["error  1.2 %", "at most 2.46 %: pass, 50", finer]);
     has(&end(vec![of(metric, 0.01)]), &["fail", "next   touchstone explain couette.staged"]);
-    let nearest = "the nearest run with a bound is couette --variant modern --set end=1.5: l2_worst at most 1 %";
+    let nearest = "the nearest run with a bound is couette --variant modern --set end=1.5: l2_worst at \
+        most 1 %";
     has(
         &end(Vec::new()).replace("\n       ", " "),
         &["bound  none", nearest, "next   touchstone run"],

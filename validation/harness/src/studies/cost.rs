@@ -283,8 +283,8 @@ pub fn against_run_time(
 fn timed(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
     let about = first_sentence(&accuracy.about).0;
     let caption = format!(
-        "{about} Error over run time on one core. Numbers at the ends of lines are resolutions; no point beats \
-         the pale line in both error and time."
+        "{about} Error over run time on one core. Numbers at the ends of lines are resolutions; no point \
+         beats the pale line in both error and time."
     );
     let axes = ["", "run time on one core [s]", &accuracy.label];
     Figure::new(id, caption).panel(panel(axes, &lines(rows), Point::median, true))

@@ -87,8 +87,8 @@ impl<T: Settings> Spacing<T> {
         Level { run, spacing, resolution: Resolution { count, words } }
     }
 
-    /// The level of this run with its spacing multiplied by a factor, whole numbers rounded; none if a setting
-    /// is then out of range.
+    /// The level of this run with its spacing multiplied by a factor, whole numbers rounded; none if a
+    /// setting is then out of range.
     pub(crate) fn refined(self, run: &RunSpec, factor: f64) -> Option<Level> {
         let mut finer: T = settings::of_json(&run.settings).ok()?;
         let refine = |count: &mut usize| *count = (*count as f64 / factor).round() as usize;

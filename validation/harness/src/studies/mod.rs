@@ -1,5 +1,5 @@
-//! The kinds of studies that any case may have, each in one file: the type that a case declares, the runs that
-//! it needs, and its section as a pure function of their records.
+//! The kinds of studies that any case may have, each in one file: the type that a case declares, the runs
+//! that it needs, and its section as a pure function of their records.
 
 mod budget;
 pub mod card;

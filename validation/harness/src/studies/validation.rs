@@ -295,7 +295,7 @@ fn order_of_differences(differences: f64, [wide, ratio]: [f64; 2]) -> Option<f64
 
 const OF_EXACT: &str = "\
     Errors against references that are exact, by the finest level. All of such an error is numerical: \
-    V&V 20 has nothing to say of it. FittedOrder: of all levels, with its interval of 95 %. *Converges*: this \
+    V&V 20 has nothing to say of it. Order: of all levels, with its interval of 95 %. *Converges*: this \
     interval is above 0. *Stops at*: the differences of the last three levels approach another limit \
     than 0, by more than three times the distance from it, or the error fell and then stopped falling.";
 

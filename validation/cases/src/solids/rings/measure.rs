@@ -83,8 +83,8 @@ pub struct Series {
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
     next: f64,
-    /// t \[L/c0\], place \[L\] and velocity \[c0\] of the centre, width and height \[L\], pieces, holes, and the
-    /// longest distance of neighbours \[dx\].
+    /// t \[L/c0\], place \[L\] and velocity \[c0\] of the centre, width and height \[L\], pieces, holes, and
+    /// the longest distance of neighbours \[dx\].
     rows: Vec<[f64; COLUMNS]>,
     /// Kinetic, compression and shear energy of each row \[J/m\].
     energies: Columns<3>,

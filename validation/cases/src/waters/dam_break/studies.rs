@@ -159,8 +159,8 @@ fn picture(table: &Table) -> Picture {
     });
     // A few drops that meet have many times the pressure of the water.
     let film = Film {
-        caption: "Dam break in the tank of Lobovsky et al. by variant `modern`, coloured by pressure: the water \
-                  rises at the far wall, and its jet plunges back.",
+        caption: "Dam break in the tank of Lobovsky et al. by variant `modern`, coloured by pressure: the \
+                  water rises at the far wall, and its jet plunges back.",
         time: |record, share| {
             let end = record.run.settings["end"].as_f64().unwrap_or(f64::NAN);
             format!("t = {:.2} √(H/g)", share * end)
