@@ -38,7 +38,7 @@ pub struct Planned {
     pub gates: Vec<Gate>,
     /// Are its seconds shown? Then it is made in the quiet phase, while this program does nothing else.
     pub timed: bool,
-    /// How long it takes \[s\], by [`estimate`](crate::make::estimate); long runs start first, so that no
+    /// How long it takes \[s\], by [`estimate`](crate::estimate::estimate); long runs start first, so that no
     /// core waits for the last one.
     pub seconds: f64,
 }
