@@ -629,8 +629,8 @@ fn told(folder: &Path) -> (String, u32) {
 }
 
 /// Checkpoints with other numbers and a matching digest, and the expected messages. The numbers begin after
-/// two lines: seven times, the first of which is the state's, and five counts, the first of which is the
-/// number of steps.
+/// two lines: time and step of the state, eight bytes each, and the number of steps, of which the last byte
+/// alone is below 128.
 #[cfg(unix)]
 fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
     let lines: Vec<&[u8]> = whole.splitn(3, |byte| *byte == b'\n').collect();
@@ -648,12 +648,19 @@ fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
         numbers[place..place + 8].copy_from_slice(&number);
         sealed(&head, &numbers)
     };
+    let last = 16 + numbers[16..].iter().position(|byte| *byte < 128).unwrap();
+    let most = [&[0xFF; 9][..], &[1]].concat();
+    let mut stated: Value = serde_json::from_str(&head).unwrap();
+    let length = stated[1][0].as_u64().unwrap() as usize + most.len() - (last - 15);
+    stated[1][0] = length.into();
+    let steps = [&numbers[..16], &most, &numbers[last + 1..]].concat();
+    let endless = sealed(&stated.to_string(), &steps);
     vec![
         (sealed(&head.replace("\"n\":56", "\"n\":57"), numbers), "particles of another scene"),
         (sealed(&head.replace("\"n\":56", "\"n\":-1"), numbers), "setting n is"),
         (with(0, 1e9_f64.to_le_bytes()), "a time that is not on its way"),
         (with(0, f64::NAN.to_le_bytes()), "a time that is not on its way"),
-        (with(56, u64::MAX.to_le_bytes()), "a count that no run reaches"),
+        (endless, "a count that no run reaches"),
         // The length of a list of observations.
         (sealed(&head, &numbers[..numbers.len() - 40]), "damaged or truncated"),
     ]

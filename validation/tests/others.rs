@@ -471,10 +471,10 @@ fn nothing_judged_ends_with_2_and_names_what_is() {
     let words = said.text.split_whitespace().collect::<Vec<_>>().join(" ");
     for part in [
         "Nothing was judged",
-        "the nearest run with a bound is couette --variant",
+        "the nearest run with a bound is couette --variant plain",
         "largest relative rms",
-        // The bound is on the number that is stated as the error.
-        ": l2_worst at most",
+        // A bound of the variant itself comes before a bound on the stated error of another variant.
+        ": l2@0.1 at most",
         "next touchstone export couette --variant",
         "error ",
     ] {
