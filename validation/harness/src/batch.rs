@@ -18,7 +18,7 @@ use crate::{
     context::{self, Context},
     detect,
     gates::GateIndex,
-    make::{BatchOptions, BatchResult, Job},
+    jobs::{BatchOptions, BatchResult, Job},
     runs::{Tier, entry},
     store::RunLease,
     tally::{Done, Tally},

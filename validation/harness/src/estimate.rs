@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use touchstone_base::spec::{RunSpec, Task};
 
 use crate::{
-    make::{BatchOptions, Job},
+    jobs::{BatchOptions, Job},
     problem::Steps,
     size::Size,
 };

@@ -24,6 +24,7 @@ pub mod foreign;
 pub mod frames;
 pub mod gates;
 pub mod horizon;
+pub mod jobs;
 pub mod limits;
 pub mod make;
 pub mod medium;
