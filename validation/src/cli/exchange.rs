@@ -255,8 +255,9 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
         Some(store) => keep(&Store::open(store)?, &record)?.display().to_string(),
         None => "nothing was recorded".into(),
     };
-    let judged = suite::submitted(&GateIndex::of(case), record);
-    let (text, exit) = submitted::verdict(case, &judged, arguments.all);
+    let index = GateIndex::of(case);
+    let judged = suite::submitted(&index, record);
+    let (text, exit) = submitted::verdict(&index, &judged, arguments.all);
     output::print(&text)?;
     output::say(&said);
     Ok(exit)

@@ -98,8 +98,9 @@ fn carry_out(
     let written = folder.as_ref().map(|folder| write(&record, last, folder, frames)).transpose();
     let is_asked =
         |gate: &Gate| record.absent.get(&gate.metric).is_none_or(|why| *why != Absent::NotAsked);
+    let index = GateIndex::of(case);
     let (gates, unasked): (Vec<Gate>, Vec<Gate>) =
-        GateIndex::of(case).gates(&asked.spec).into_iter().partition(is_asked);
+        index.gates(&asked.spec).into_iter().partition(is_asked);
     let verdicts: Vec<Judged> =
         gates.into_iter().map(|gate| Judged::of_record(gate, &record)).collect();
     // If a file cannot be written, the record is printed, and if printing fails as well, its numbers are, so
@@ -109,7 +110,7 @@ fn carry_out(
         let count = unasked.len();
         table += &format!("more gates on metrics not asked for (--metrics all): {count}\n\n");
     }
-    let [first, next] = outcome(case, &asked.spec, &record, &verdicts);
+    let [first, next] = outcome(&index, &asked.spec, &record, &verdicts);
     let text = format!(
         "{}, variant {}\n{first}\n{table}{}{}",
         record.run.case,

@@ -4,6 +4,7 @@
 use touchstone_base::{gate::Gate, record::Status, spec::RunSpec};
 use touchstone_harness::{
     case::{self, Case, Tier},
+    gates::GateIndex,
     runs::{Judged, JudgedRun},
     studies::{Studies, card::cost as cost_in_words},
 };
@@ -15,7 +16,7 @@ use super::{
 };
 
 /// The verdict on a submission, and the exit code.
-pub fn verdict(case: &dyn Case, run: &JudgedRun, all: bool) -> (String, Exit) {
+pub fn verdict(index: &GateIndex, run: &JudgedRun, all: bool) -> (String, Exit) {
     let (apply, others) = run.applicable();
     let verdicts: Vec<Judged> = apply.into_iter().cloned().collect();
     let mut text = judged::shown(&verdicts, all);
@@ -27,18 +28,19 @@ pub fn verdict(case: &dyn Case, run: &JudgedRun, all: bool) -> (String, Exit) {
         let rows = others.into_iter().map(|(id, why)| vec![id.to_string(), why]);
         text += &(output::table(&["not applicable", "because"], rows) + "\n");
     }
-    let (lines, exit) = lines(case, run, &verdicts);
+    let (lines, exit) = lines(index, run, &verdicts);
     (text + &lines, exit)
 }
 
 /// The lines after the tables of a submission, and its exit code.
-fn lines(case: &dyn Case, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit) {
-    let record = &run.record;
+fn lines(index: &GateIndex, run: &JudgedRun, verdicts: &[Judged]) -> (String, Exit) {
+    let (case, record) = (index.case, &run.record);
     let studies = case.studies(Tier::Quick);
     let (mut error, mut metric) = error_of(&studies, record);
     let states = record.run.submission.as_ref().is_some_and(|of| of.states_our_method);
     let judges = |gate: Gate| gate.for_submission(states);
-    let nearest = if verdicts.is_empty() { nearest(case, &studies, record, &judges) } else { None };
+    let nearest =
+        if verdicts.is_empty() { nearest(index, &studies, record, &judges) } else { None };
     let judged = worst(verdicts.iter()).map(|judged| &judged.gate);
     let other = judged.or(nearest.as_ref().map(|nearest| &nearest.gate));
     let has_error = record.metrics.contains_key(&metric) || record.status != Status::Completed;

@@ -114,16 +114,17 @@ fn failures(suite: &Suite) -> String {
 
 /// The lines about a run that come before its tables, and the command to go on with, which comes after them.
 pub fn outcome(
-    case: &dyn Case,
+    index: &GateIndex,
     spec: &RunSpec,
     record: &Record,
     verdicts: &[Judged],
 ) -> [String; 2] {
+    let case = index.case;
     let studies = case.studies(Tier::Quick);
     let (error, metric) = error_of(&studies, record);
     let card = studies.first::<Card>();
     let beside = card.and_then(|card| card.beside).and_then(|beside| beside(record));
-    let nearest = if verdicts.is_empty() { nearest(case, &studies, record, &Some) } else { None };
+    let nearest = if verdicts.is_empty() { nearest(index, &studies, record, &Some) } else { None };
     let (bound, gates) = match &nearest {
         Some(nearest) => (nearest.in_words(case, &studies), String::new()),
         None => (bound(&studies, record, verdicts, &metric), counts(verdicts).headline()),
@@ -152,7 +153,7 @@ pub struct Nearest {
 /// The nearest settings at which a gate that `judges` allows reads a number of this record: the error of the
 /// case, if there is such a gate of the same variant.
 pub fn nearest(
-    case: &dyn Case,
+    index: &GateIndex,
     studies: &Studies,
     record: &Record,
     judges: &dyn Fn(Gate) -> Option<Gate>,
@@ -162,7 +163,6 @@ pub fn nearest(
     let card = studies.first::<Card>().map(|card| &card.metric.name);
     let of_card = |gate: Gate| measured(gate).filter(|gate| Some(&gate.metric) == card);
     let spec = record.spec();
-    let index = GateIndex::of(case);
     let of_card = index.nearest(&spec, &of_card);
     let is_own = |(of, _): &(RunSpec, Gate)| of.variant == spec.variant;
     let found = of_card.clone().filter(is_own);

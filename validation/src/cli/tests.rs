@@ -20,6 +20,7 @@ use touchstone_cases::page;
 use touchstone_harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
+    gates::GateIndex,
     make::{self, BatchOptions, BatchResult},
     runs::{Judged, Runs},
     section::Section,
@@ -664,7 +665,8 @@ fn a_run_ends_with_error_bound_cost_and_the_next_command() {
     let end = |gates: Vec<Gate>| {
         let judged = gates.into_iter().map(|gate| Judged::of_record(gate, &record));
         let judged: Vec<Judged> = judged.collect();
-        super::summary::outcome(couette, &spec("rows=20"), &record, &judged).concat()
+        super::summary::outcome(&GateIndex::of(couette), &spec("rows=20"), &record, &judged)
+            .concat()
     };
     let has = |text: &str, parts: &[&str]| {
         for part in parts {
@@ -704,7 +706,7 @@ fn a_run_states_the_error_by_its_own_settings() {
         let card: &Card = studies.first().expect("a card");
         let mut record = Record::new(name, &spec.variant, spec.settings.clone(), 1);
         record.put(card.metric.clone(), 0.0123);
-        let [text, _] = super::summary::outcome(case, &spec, &record, &[]);
+        let [text, _] = super::summary::outcome(&GateIndex::of(case), &spec, &record, &[]);
         let text = text.split("bound ").next().unwrap_or_default().replace('\n', " ");
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ").replace(" H", "\u{a0}H");
         says.iter().for_each(|words| {
@@ -755,8 +757,9 @@ fn a_dam_break_states_both_distances_from_its_experiment() {
     for (name, value) in put.into_iter().chain([("front_shift", 0.2225)]) {
         record.put(MetricKey::new(name, "-", "made up"), value);
     }
-    let text =
-        super::summary::outcome(case, &spec, &record, &[]).concat().replace(['\u{a0}', '\n'], " ");
+    let text = super::summary::outcome(&GateIndex::of(case), &spec, &record, &[])
+        .concat()
+        .replace(['\u{a0}', '\n'], " ");
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     for words in
         ["error −0.058 a, front at T = 2", "(± 0.10 a)", "0.28 a as released", "0.037 a after"]
