@@ -736,9 +736,18 @@ fn page_list_run_and_readme_state_the_same_number_of_a_case() {
             assert!(run.starts_with(&page), "{name}: `run` states {run}, the page {page}");
             let of = format!("{name}.{};", recommended.variant);
             let end = format!("; {} ", metric.name);
+            let card: &Card = studies.first().expect("a card");
+            let shown = card.runs.first().expect("the run of the recommended variant");
             let states = |text: &str| {
-                let mut sources = text.split("<!-- ").filter_map(|text| text.split("-->").next());
-                sources.any(|source| source.starts_with(&of) && source.ends_with(&end))
+                let sources = text.split("<!-- ").filter_map(|text| text.split("-->").next());
+                let set = |source: &str| {
+                    let set = source.strip_prefix(&of)?.strip_suffix(&end)?;
+                    Some(set.split_whitespace().map(str::to_string).collect::<Vec<_>>())
+                };
+                sources.filter_map(set).any(|set| {
+                    let of = case::spec(case, recommended.variant, &set).expect("settings");
+                    (of.variant, of.settings) == (shown.variant.clone(), shown.settings.clone())
+                })
             };
             assert!(states(recommended.because), "{name}: `list` has no {end}of {of}");
             assert!(states(readme), "{name}: README has no {end}of {of}");

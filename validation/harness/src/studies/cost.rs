@@ -66,6 +66,16 @@ impl Accuracy {
         let finest = variants.iter().filter_map(ladder).filter_map(|ladder| ladder.levels.last());
         finest.map(|level| level.run.spec.clone()).collect()
     }
+
+    /// The runs of these variants with this spacing.
+    pub fn spaced(&self, variants: &[&str], spacing: f64) -> Vec<RunSpec> {
+        let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
+        let level = |ladder: &Ladder| {
+            let mut levels = ladder.levels.iter();
+            levels.find(|level| level.spacing == spacing).map(|level| level.run.spec.clone())
+        };
+        variants.iter().filter_map(ladder).filter_map(level).collect()
+    }
 }
 
 /// One run of a ladder.

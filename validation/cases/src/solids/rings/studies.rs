@@ -224,7 +224,8 @@ fn card(accuracy: &Accuracy) -> Card {
             }
         },
         beside: None,
-        runs: accuracy.finest(&SHOWN),
+        // Both variants with five layers: their ladders end at different spacings.
+        runs: accuracy.spaced(&SHOWN, 0.2),
         breaks: Breaks {
             setting: "speed",
             words: ["", " c0 each"],
