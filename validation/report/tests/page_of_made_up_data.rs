@@ -94,7 +94,7 @@ fn page() -> io::Result<Page> {
     let columns = vec![Column::num("error", ""), Column::num("order", "")];
     let overview = Overview { caption: "Results".into(), columns, rows: vec![row] };
     let curves = Section::new("curves", "Curves")
-        .counts(Counts::of([Verdict::Fail]))
+        .counts(Counts::of([Verdict::Pass]))
         .prose(
             "See [the figure](#figure) and [Morris et al.](https://doi.org/10.1006/jcph.1997.5776). \
              Run `touchstone report`.",
