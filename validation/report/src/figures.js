@@ -1,13 +1,7 @@
 "use strict";
 // Figures: values at the pointer, series on and off, one variant lit in all figures, files of data and drawing.
 (function () {
-  var all = function (selector, within) { return Array.from((within || document).querySelectorAll(selector)); };
-  var make = function (tag, attributes, text) {
-    var element = document.createElement(tag);
-    Object.keys(attributes).forEach(function (name) { element.setAttribute(name, attributes[name]); });
-    element.textContent = text || "";
-    return element;
-  };
+  var all = dom.all, make = dom.make;
   var variant = function (name) { return name.split(",")[0]; };
   var shown = function (value) { return typeof value === "number" ? String(Number(value.toPrecision(4))) : value; };
 

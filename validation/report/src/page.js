@@ -1,12 +1,6 @@
 "use strict";
 (function () {
-  var all = function (selector, within) { return Array.from((within || document).querySelectorAll(selector)); };
-  var make = function (tag, attributes, text) {
-    var element = document.createElement(tag);
-    Object.keys(attributes).forEach(function (name) { element.setAttribute(name, attributes[name]); });
-    element.textContent = text || "";
-    return element;
-  };
+  var all = dom.all, make = dom.make;
 
   // The button in a column's head sorts the table by that column; pressed again it turns the order.
   var sort = function (head, turn) {

@@ -12,7 +12,7 @@ use touchstone_report::{
     Axis, Block, Cell, Colour, Figure, Plot, Series, Shape, Table, exact, first_sentence, percent,
 };
 
-use super::{Card, Ladder};
+use super::{Card, Ladder, ladder};
 use crate::{
     case::Case,
     columns::Columns,
@@ -62,19 +62,22 @@ impl Accuracy {
 
     /// The runs of these variants with the finest spacing of their ladders.
     pub fn finest(&self, variants: &[&str]) -> Vec<RunSpec> {
-        let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
-        let finest = variants.iter().filter_map(ladder).filter_map(|ladder| ladder.levels.last());
-        finest.map(|level| level.run.spec.clone()).collect()
+        self.runs_of(variants, |levels| levels.last())
     }
 
     /// The runs of these variants with this spacing.
     pub fn spaced(&self, variants: &[&str], spacing: f64) -> Vec<RunSpec> {
-        let ladder = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
-        let level = |ladder: &Ladder| {
-            let mut levels = ladder.levels.iter();
-            levels.find(|level| level.spacing == spacing).map(|level| level.run.spec.clone())
-        };
-        variants.iter().filter_map(ladder).filter_map(level).collect()
+        self.runs_of(variants, |levels| levels.iter().find(|level| level.spacing == spacing))
+    }
+
+    fn runs_of(
+        &self,
+        variants: &[&str],
+        pick: impl Fn(&[ladder::Level]) -> Option<&ladder::Level>,
+    ) -> Vec<RunSpec> {
+        let of = |name: &&str| self.ladders.iter().find(|ladder| ladder.variant == *name);
+        let levels = variants.iter().filter_map(of).filter_map(|of| pick(&of.levels));
+        levels.map(|level| level.run.spec.clone()).collect()
     }
 }
 
