@@ -59,6 +59,13 @@ impl Entry {
         Self { _holds: holds, folder, case, head, rows }
     }
 
+    /// States that the code chose its particles itself.
+    fn state_own_particles(&self) {
+        let path = self.folder.join("method.json");
+        let method = fs::read_to_string(&path).unwrap();
+        fs::write(path, method.replace("\"closed\"", "\"open\"")).unwrap();
+    }
+
     fn column(&self, name: &str) -> usize {
         let is = |head: &String| head.split('[').next() == Some(name);
         self.head.iter().position(is).unwrap_or_else(|| panic!("no column {name}"))
@@ -904,10 +911,38 @@ fn particles_that_a_code_chose_itself_are_the_ones_that_are_measured() {
                 .push(cells(&format!("{time},{id},{x},{y},0,0,{density},{},0", density * dx * dx)));
         }
     }
-    let method = fs::read_to_string(own.folder.join("method.json")).unwrap();
-    fs::write(own.folder.join("method.json"), method.replace("\"closed\"", "\"open\"")).unwrap();
+    own.state_own_particles();
     let said = own.submit(&head, &lines);
     let record = said.record.unwrap_or_else(|| panic!("{}", said.text));
     assert_eq!(record.cost.particles, (rows * columns) as usize, "{}", said.text);
     assert!(record.metric("p_l2").is_some_and(|error| error < 1e-9), "{:?}", record.metric("p_l2"));
+}
+
+/// A total Lagrangian method derives densities from the deformation of its own particles. Without densities,
+/// particles of another code are not put into it: their energy is not the energy of its particles.
+#[test]
+fn own_particles_without_densities_are_not_put_into_a_total_lagrangian_method() {
+    let own = Entry::own("elastic_bar --variant lagrangian --set n=10");
+    own.state_own_particles();
+    let text = fs::read_to_string(own.folder.join("particles.csv")).unwrap();
+    let mut start = text.lines().map(cells);
+    let head = start.next().unwrap();
+    let start: Vec<_> = start.collect();
+    let at = |name: &str| head.iter().position(|h| h.split('[').next() == Some(name)).unwrap();
+    let [mass, role] = ["mass", "role"].map(at);
+    let row = |time: &str, cells: &[String], columns: [usize; 5]| -> Vec<String> {
+        let of = &start[cells[columns[0]].parse::<usize>().unwrap()];
+        let moved = columns.map(|k| cells[k].clone());
+        [vec![time.to_string()], moved.into(), vec![of[mass].clone(), of[role].clone()]].concat()
+    };
+    let columns = ["id", "x", "y", "u", "v"];
+    let (begun, ended) = (columns.map(at), columns.map(|name| own.column(name)));
+    let first = start.iter().map(|cells| row("0", cells, begun));
+    let last = own.rows.iter().map(|cells| row(&cells[own.column("t")], cells, ended));
+    let rows: Vec<_> = first.chain(last).collect();
+    let head = ["t"].into_iter().chain(columns).chain(["mass", "role"]).map(String::from);
+    let said = own.submit(&head.collect::<Vec<_>>(), &rows);
+    let record = said.record.unwrap_or_else(|| panic!("{}", said.text));
+    assert_eq!(lacking(&record, "density"), "energy_change", "{}", said.text);
+    assert_eq!(record.state, None, "{}", said.text);
 }
