@@ -71,7 +71,7 @@ TABLES = {
     ],
     "spread": [
         SCENE,
-        ("variant", "string", "-", "mules, tension, half_step or high_rim: see the README"),
+        ("variant", "string", "-", "mules, tension, double_step or high_rim: see the README"),
         MESH,
         *QUANTITY,
         ("value", "number", "see column unit", "of the variant on that mesh"),
