@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rayon::prelude::*;
 use touchstone_base::record::{Profile, Record, Status};
-use touchstone_base::spec::{RunSpec, Task};
+use touchstone_base::spec::RunSpec;
 use touchstone_cases::{CASES, page};
 use touchstone_harness::{
     batch,
@@ -67,7 +67,7 @@ fn cheapest(case: &'static dyn Case) -> BTreeMap<String, Record> {
     let planned = shortest_first(case, plan::of_case(case, Tier::Quick));
     let (recommended, index) = (case.recommended(), GateIndex::of(case));
     let of = |variant: &'static str| {
-        let is_one = |spec: &RunSpec| spec.variant == variant && spec.task == Task::Simulate;
+        let is_one = |spec: &RunSpec| spec.variant == variant && spec.is_simulation();
         let specs = planned.iter().map(|planned| planned.spec.clone()).filter(is_one);
         let run = |spec: RunSpec| batch::run(&index, &spec.measure_all(), &Context::default()).ok();
         let mut records = specs.take(TRIED).filter_map(run);

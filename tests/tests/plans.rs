@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use touchstone_base::functions::powf;
 use touchstone_base::gate::{Bound, Cause, Evidence, Gate};
 use touchstone_base::random::Random;
-use touchstone_base::spec::{RunSpec, Task};
+use touchstone_base::spec::RunSpec;
 use touchstone_cases::CASES;
 use touchstone_harness::{
     case::{self, Case, Drawn, Draws, Planned, RunError, Tier},
@@ -53,7 +53,7 @@ fn judged_of(case: &dyn Case, variant: &str, draws: &Draws, metric: &str) -> Vec
     let is_alike = |spec: &RunSpec| {
         let base = base.as_object().unwrap().iter();
         spec.variant == variant
-            && (spec.task == Task::Simulate && spec.mutation.is_none() && spec.disorder.is_none())
+            && (spec.is_simulation() && spec.mutation.is_none() && spec.disorder.is_none())
             && base.into_iter().all(|(name, value)| {
                 *name == draws.resolution.0
                     || names.contains(&&**name)
@@ -146,8 +146,8 @@ fn sealed_problems_are_judged_as_judged_runs_are() {
     }
 }
 
-/// A study that reads a run that is not planned, or more than is measured of it, shows gaps. Debug assertions
-/// catch it, with and without records.
+/// A study that reads a run that is not planned, or more than is measured of it, panics: no study
+/// of ours does, with and without records.
 #[test]
 fn studies_ask_for_no_more_than_is_planned() {
     for tier in [Tier::Quick, Tier::Full, Tier::Deep] {

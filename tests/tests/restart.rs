@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use touchstone_base::{
     record::{Cost, Metric, Profile, Record},
-    spec::{RunSpec, Task},
+    spec::RunSpec,
 };
 use touchstone_harness::{
     case::{Case, Planned, Tier, changed},
@@ -411,7 +411,7 @@ fn two_records_are_compared_to_the_last_bit() {
 fn every_case_goes_on_with_an_equal_record() {
     let of_case = |case: &&'static dyn Case| {
         let mut runs = plan::of_case(*case, Tier::Quick);
-        runs.retain(|run| run.spec.task == Task::Simulate);
+        runs.retain(|run| run.spec.is_simulation());
         let runs = shortest_first(*case, runs);
         let specs = case.variants().into_iter().filter_map(|v| short(*case, &runs, v.name));
         specs.map(|spec| (*case, spec)).collect::<Vec<_>>()

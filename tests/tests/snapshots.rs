@@ -20,7 +20,7 @@ use touchstone_base::{
     gate::{Bound, Evidence, Gate},
     record::{Column, Profile, Record, Status},
     settings::Field,
-    spec::{RunSpec, Task},
+    spec::RunSpec,
 };
 use touchstone_cases::fluids::channel::{Flow, ladder};
 use touchstone_harness::{
@@ -208,7 +208,7 @@ fn runs(case: &dyn Case) -> Vec<Run> {
     let is_planned = |spec: &RunSpec| {
         planned.iter().map(|planned| &planned.spec).any(|other| {
             (&other.variant, &other.settings) == (&spec.variant, &spec.settings)
-                && other.task == Task::Simulate
+                && other.is_simulation()
         })
     };
     let mut runs = Vec::new();

@@ -92,6 +92,17 @@ impl fmt::Display for Value {
     }
 }
 
+impl Value {
+    /// The number; none of a flag or of a value by rule.
+    pub fn number(self) -> Option<f64> {
+        match self {
+            Value::Count(count) => Some(count as f64),
+            Value::Real(real) => Some(real),
+            Value::Flag(_) | Value::Auto => None,
+        }
+    }
+}
+
 /// Static description of a setting.
 #[derive(Debug, Clone, Copy)]
 pub struct Field {
@@ -286,6 +297,11 @@ impl Field {
         limits: [0.0; 2],
         default: Value::Flag(false),
     };
+
+    /// Its value in settings as JSON; none if it is missing, of another kind or out of range.
+    pub fn of_json(&self, settings: &serde_json::Value) -> Option<Value> {
+        self.read(&text(settings.get(self.name)?)).ok()
+    }
 
     /// Reads a value. One that is not finite, or outside of the range, is refused.
     fn read(&self, text: &str) -> Result<Value, SettingError> {

@@ -200,6 +200,17 @@ impl RunSpec {
         Self { case: case.to_string(), variant: variant.to_string(), settings, ..Self::default() }
     }
 
+    /// Is it one simulation, and no search by many?
+    pub fn is_simulation(&self) -> bool {
+        self.task == Task::Simulate
+    }
+
+    /// The simulation with these settings, of a search one of many.
+    #[must_use]
+    pub fn simulation(&self) -> Self {
+        Self { task: Task::Simulate, ..self.clone() }
+    }
+
     /// This run with any time step.
     pub fn allow_unstable(self) -> Self {
         Self { allow_unstable: true, ..self }

@@ -1,6 +1,5 @@
 //! The known limitations, grouped by cause.
 
-use touchstone_base::spec::Task;
 use touchstone_harness::{
     case::{self, Planned},
     runs::{Judged, JudgedRun, by_cause},
@@ -41,7 +40,7 @@ fn gate(found: &JudgedOf) -> String {
 fn command(found: &JudgedOf) -> String {
     match found.of {
         Of::Run(JudgedRun { planned: Planned { spec, .. }, .. })
-            if spec.task == Task::Simulate && spec.mutation.is_none() =>
+            if spec.is_simulation() && spec.mutation.is_none() =>
         {
             case::command(found.case, spec)
         }

@@ -144,7 +144,7 @@ impl<'a> Batch<'a> {
     fn run(&self, job: &Job, profile: bool) -> Option<Record> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
         let begun = self.making.store.map(|store| store.begin(spec));
-        let is_one = spec.task == Task::Simulate;
+        let is_one = spec.is_simulation();
         let show = |progress: context::Progress| {
             begun.iter().for_each(RunLease::beat);
             if !is_one {

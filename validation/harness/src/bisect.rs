@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use touchstone_base::{
     record::{Cost, Record, Status},
-    spec::{Bisect, RunSpec, Task},
+    spec::{Bisect, RunSpec},
 };
 
 use crate::{
@@ -69,7 +69,7 @@ pub fn simulate(
 /// The simulation of one x.
 fn at(spec: &RunSpec, bisect: &Bisect, x: f64) -> RunSpec {
     let value = x * bisect.unit;
-    let one = RunSpec { task: Task::Simulate, ..spec.clone() }.with_setting(&bisect.setting, value);
+    let one = spec.simulation().with_setting(&bisect.setting, value);
     match bisect.end {
         Some(end) => one.with_setting("end", end.steps * value / end.unit),
         None => one,
@@ -258,7 +258,7 @@ mod tests {
         fn made(&self, spec: &RunSpec, _: &Context) -> Result<Record, RunError> {
             let setting = |name: &str| spec.settings[name].as_f64().unwrap_or(f64::NAN);
             let (dt, end) = (setting("dt"), setting("end"));
-            assert_eq!(spec.task, Task::Simulate, "one simulation at a time");
+            assert!(spec.is_simulation(), "one simulation at a time");
             let mut asked = self.0.lock().expect("no panic before");
             asked.push((dt, end));
             let mut record = Record::of(spec, 1);

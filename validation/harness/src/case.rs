@@ -150,18 +150,24 @@ pub fn command(case: &dyn Case, spec: &RunSpec) -> String {
     format!("touchstone run {} --variant {}{}", case.name(), spec.variant, set.collect::<String>())
 }
 
-/// `key=value` of the settings in which a run differs from the defaults of its variant.
-pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
+/// The settings in which a run differs from the defaults of its variant, with their values.
+pub fn changes(case: &dyn Case, spec: &RunSpec) -> Vec<(&'static Field, settings::Value)> {
     let defaults = case.settings(&spec.variant, &[]).unwrap_or_default();
-    let text = |value: &Value| match value {
-        Value::String(word) => word.clone(),
-        Value::Number(number) if number.is_f64() => number.as_f64().unwrap_or_default().to_string(),
-        value => value.to_string(),
-    };
-    let fields = case.fields().iter().map(|field| field.name);
-    let given = fields.filter_map(|name| Some((name, spec.settings.get(name)?)));
-    let others = given.filter(|(name, value)| defaults.get(name) != Some(value));
-    others.map(|(name, value)| format!("{name}={}", text(value))).collect()
+    let given = case.fields().iter().filter_map(|of| Some((of, of.of_json(&spec.settings)?)));
+    given.filter(|(field, value)| field.of_json(&defaults) != Some(*value)).collect()
+}
+
+/// [`changes`] as `key=value`.
+pub fn changed(case: &dyn Case, spec: &RunSpec) -> Vec<String> {
+    changes(case, spec).into_iter().map(assignment).collect()
+}
+
+/// A setting with its value as `key=value`, without the decimals of a whole number.
+pub fn assignment((field, value): (&'static Field, settings::Value)) -> String {
+    match value {
+        settings::Value::Real(real) => format!("{}={real}", field.name),
+        other => format!("{}={other}", field.name),
+    }
 }
 
 /// The case of that name among these.

@@ -4,7 +4,7 @@ use touchstone_base::{
     gate::{Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
     record::Record,
-    spec::{RunSpec, Task},
+    spec::RunSpec,
 };
 
 use crate::{
@@ -53,7 +53,7 @@ pub fn run(
     context: &Context,
 ) -> Result<Record, RunError> {
     let case = index.case;
-    let mut wrong = RunSpec { task: Task::Simulate, ..spec.clone() }.allow_unstable();
+    let mut wrong = spec.simulation().allow_unstable();
     let gates = gates(index, &wrong, detect.of);
     wrong.measure = case.facts().measure_for(&gates);
     let mut record = Record::of(spec, 1);

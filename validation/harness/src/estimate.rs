@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rayon::prelude::*;
-use touchstone_base::spec::{RunSpec, Task};
+use touchstone_base::spec::RunSpec;
 
 use crate::{
     jobs::{BatchOptions, Job},
@@ -26,12 +26,12 @@ pub fn estimate(jobs: &mut [Job], making: &BatchOptions) {
 
 /// Processor time of a run, one simulation or several of this size \[s\].
 pub fn time(spec: &RunSpec, size: &Size) -> f64 {
-    if spec.task == Task::Simulate { size.seconds() } else { SIMULATIONS * size.seconds() }
+    if spec.is_simulation() { size.seconds() } else { SIMULATIONS * size.seconds() }
 }
 
 /// The size of the simulation of a job, unless it is refused.
 pub fn size(job: &Job, allow_long: bool) -> Option<Size> {
-    let spec = RunSpec { task: Task::Simulate, ..job.planned.spec.clone() };
+    let spec = job.planned.spec.simulation();
     // An error here occurs again when the run is made, and is reported then.
     let size = || job.case.pose(&spec)?.size(&spec, Steps::All, allow_long);
     catch_unwind(AssertUnwindSafe(size)).ok()?.ok()

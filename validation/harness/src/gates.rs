@@ -3,11 +3,7 @@
 use std::sync::OnceLock;
 
 use serde_json::Value;
-use touchstone_base::{
-    functions::log10,
-    gate::Gate,
-    spec::{RunSpec, Task},
-};
+use touchstone_base::{functions::log10, gate::Gate, spec::RunSpec};
 
 use crate::{
     case::Case,
@@ -35,7 +31,7 @@ impl<'a> GateIndex<'a> {
             let tiers = [Tier::Quick, Tier::Full].into_iter();
             let mut planned: Vec<Planned> =
                 tiers.flat_map(|tier| plan::of_case(self.case, tier)).collect();
-            planned.retain(|of| of.spec.task == Task::Simulate && !of.gates.is_empty());
+            planned.retain(|of| of.spec.is_simulation() && !of.gates.is_empty());
             planned
         })
     }

@@ -6,7 +6,7 @@ pub use touchstone_base::gate::Judged;
 use touchstone_base::{
     gate::{Cause, Gate},
     record::{MetricName, Record, Status},
-    spec::{RunKey, RunSpec, Task},
+    spec::{RunKey, RunSpec},
 };
 use touchstone_report::Counts;
 
@@ -177,7 +177,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 
 /// The judged runs of a case. A study looks up by its [`RunSpec`] a run that is among its
 /// [`runs`](crate::study::Study::runs). To look up another run, or one of which less is measured, is a fault
-/// of the program: it panics where debug assertions are on, as in tests, and finds nothing elsewhere.
+/// of the program, and panics: no page has a gap where a study reads what nobody planned.
 #[derive(Debug, Default)]
 pub struct Runs {
     /// All runs in the order of the plan.
@@ -221,7 +221,7 @@ impl Runs {
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         // Without a plan, a store of submissions alone is judged.
         let is_planned = found.is_some() || self.all.is_empty();
-        debug_assert!(is_planned, "a study reads what it does not plan: {}", spec.canonical());
+        assert!(is_planned, "a study reads what it does not plan: {}", spec.canonical());
         found
     }
 
@@ -237,7 +237,7 @@ impl Runs {
 
     /// The records of all simulations, in the order of the plan.
     pub fn simulations(&self) -> impl Iterator<Item = &Record> {
-        self.all.iter().map(|run| &run.record).filter(|record| record.run.task == Task::Simulate)
+        self.all.iter().map(|run| &run.record).filter(|record| record.run.is_simulation())
     }
 
     /// The record of a run that reached its end.

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 use touchstone_base::{
     absent::Absent,
     record::{self, Record, Status},
-    spec::Task,
     submission::SESSION,
 };
 use touchstone_report::{Counts, Subject};
@@ -116,7 +115,7 @@ impl Suite {
     pub fn counts(&self) -> Counts {
         let all = self.cases.iter().flat_map(|case| &case.runs.all);
         let has_diverged = |run: &&JudgedRun| {
-            let is_simulation = run.record.run.task == Task::Simulate;
+            let is_simulation = run.record.run.is_simulation();
             is_simulation && matches!(run.record.status, Status::Diverged { .. })
         };
         let diverged: Vec<&JudgedRun> = all.filter(has_diverged).collect();

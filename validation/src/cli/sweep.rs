@@ -4,11 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use touchstone_base::{
-    files::FileError,
-    record::Record,
-    spec::{RunKey, Task},
-};
+use touchstone_base::{files::FileError, record::Record, spec::RunKey};
 use touchstone_harness::{
     case::{Case, Tier},
     make::StoredRuns,
@@ -63,7 +59,7 @@ fn read(path: &Path) -> (Vec<Record>, Vec<FileError>) {
     for read in Store::each(path) {
         match read {
             Ok(record) if record.run.submission.is_some() => {}
-            Ok(record) if record.run.task != Task::Simulate => {}
+            Ok(record) if !record.run.is_simulation() => {}
             Ok(record) => records.push(record),
             Err(error) => unread.push(error),
         }

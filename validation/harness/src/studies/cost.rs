@@ -2,9 +2,9 @@
 //! reach an error with the least work, in seconds of a run that was made alone, and in pair interactions,
 //! which do not depend on the machine or on other programs.
 
-use serde_json::Value;
 use touchstone_base::{
     record::{MetricName, Record, Status, median},
+    settings::{Field, Kind},
     spec::RunSpec,
     submission::OURS,
 };
@@ -104,12 +104,9 @@ pub(super) struct Line<'a> {
     pub points: &'a [Point],
 }
 
-/// The setting that refines the runs of a case.
+/// The setting that refines the runs of a case: a number of particles, or else a spacing.
 pub(super) struct RefiningSetting {
-    /// Its name.
-    pub setting: &'static str,
-    /// Does it count particles, so that a larger value is finer? Otherwise it is a spacing.
-    is_count: bool,
+    pub setting: &'static Field,
 }
 
 impl RefiningSetting {
@@ -119,17 +116,18 @@ impl RefiningSetting {
         let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
         let ends = [ladder.levels.first()?, ladder.levels.last()?];
         let [coarse, fine] = ends.map(|level| &level.run.spec.settings);
-        case.fields().iter().map(|field| field.name).find_map(|setting| {
-            let [coarse, fine] = [coarse, fine].map(|settings| settings[setting].as_f64());
-            let (coarse, fine) = coarse.zip(fine)?;
-            (coarse != fine).then_some(Self { setting, is_count: coarse < fine })
-        })
+        let differs = |field: &&Field| field.of_json(coarse) != field.of_json(fine);
+        case.fields().iter().find(differs).map(|setting| Self { setting })
     }
 
-    /// The spacing of a run in units common to all runs of the case; NaN if it has none.
-    pub(super) fn spacing(&self, settings: &Value) -> f64 {
-        let value = settings[self.setting].as_f64().unwrap_or(f64::NAN);
-        if self.is_count { 1.0 / value } else { value }
+    /// Its value of a run.
+    pub(super) fn value(&self, settings: &serde_json::Value) -> Option<f64> {
+        self.setting.of_json(settings)?.number()
+    }
+
+    /// The spacing of a run with this value, in units common to all runs of the case.
+    pub(super) fn spacing(&self, value: f64) -> f64 {
+        if self.setting.kind == Kind::Count { 1.0 / value } else { value }
     }
 }
 
@@ -260,7 +258,7 @@ pub fn against_run_time(
     let finest = accuracy.finest(&[case.recommended().variant]).first().and_then(setting);
     let resolution = RefiningSetting::of(case, studies);
     let is_other = |value: &f64| card.runs.first().and_then(setting) != Some(*value);
-    let is_resolution = resolution.is_some_and(|of| of.setting == card.breaks.setting);
+    let is_resolution = resolution.is_some_and(|of| of.setting.name == card.breaks.setting);
     let other = finest.filter(is_other).filter(|_| !is_resolution);
     let [before, after] = card.breaks.words;
     let other = other.map_or(String::new(), |value| format!(", {before}{}{after}", exact(value)));

@@ -4,7 +4,7 @@ use touchstone_base::{
     gate::{Bound, Cause, Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
     record::Record,
-    spec::{RunKey, RunSpec, Task},
+    spec::{RunKey, RunSpec},
 };
 use touchstone_report::{Cell, code};
 
@@ -197,7 +197,7 @@ impl Study for Sensitivity {
     fn deepen(&mut self, full: &[Planned]) {
         let known: Vec<RunKey> = self.runs.iter().map(RunSpec::key).collect();
         for Planned { spec, gates, .. } in full {
-            let is_healthy = spec.task == Task::Simulate && spec.mutation.is_none();
+            let is_healthy = spec.is_simulation() && spec.mutation.is_none();
             if is_healthy && !gates.is_empty() && !known.contains(&spec.key()) {
                 self.runs.push(spec.clone());
             }

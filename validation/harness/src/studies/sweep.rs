@@ -1,9 +1,11 @@
 //! The runs of one case in a store: their errors and costs in a table, without judgement.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use serde_json::Value;
-use touchstone_base::record::{MetricName, Record};
+use touchstone_base::{
+    record::{MetricName, Record},
+    settings::{Field, Value},
+};
 use touchstone_report::{Cell, Column, Figure, Table, code, sig};
 
 use super::{
@@ -52,25 +54,23 @@ fn row<'a>(
     error: Option<&MetricName>,
     resolution: Option<&RefiningSetting>,
 ) -> Row<'a> {
-    let mut others = case::changed(case, &record.spec());
-    let settings = &record.run.settings;
-    let refines =
-        |text: &String| resolution.is_some_and(|of| text.split('=').next() == Some(of.setting));
-    others.retain(|text| !refines(text));
+    let mut others = case::changes(case, &record.spec());
+    others.retain(|(field, _)| resolution.is_none_or(|of| of.setting.name != field.name));
+    let value = resolution.and_then(|of| of.value(&record.run.settings));
     let mut seconds = record.cost.alone_s.clone();
     if seconds.is_empty() {
         seconds.push(record.cost.cpu_s);
     }
     seconds.sort_by(f64::total_cmp);
-    let value = resolution.and_then(|of| settings[of.setting].as_f64());
     let point = Point {
-        spacing: resolution.map_or(f64::NAN, |of| of.spacing(settings)),
+        spacing: resolution.zip(value).map_or(f64::NAN, |(of, value)| of.spacing(value)),
         label: value.map(touchstone_report::exact).unwrap_or_default(),
         error: error.and_then(|error| error_of(error, record)).unwrap_or(f64::NAN),
         seconds,
         pairs: record.cost.pair_interactions as f64,
     };
     let place = case.variants().iter().position(|variant| variant.name == record.run.variant);
+    let others = others.into_iter().map(case::assignment).collect();
     Row { record, place: place.unwrap_or(usize::MAX), others, point }
 }
 
@@ -96,13 +96,12 @@ fn figure(id: &str, error: &MetricName, rows: &[Row]) -> Figure {
 
 /// A row a run. A column for each setting that is changed in some run.
 fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
-    let changed = rows.iter().flat_map(|row| case::changed(case, &row.record.spec()));
-    let changed: Vec<String> =
-        changed.filter_map(|text| Some(text.split_once('=')?.0.to_string())).collect();
-    let names = case.fields().iter().map(|field| field.name);
-    let names: Vec<&str> = names.filter(|name| changed.iter().any(|of| of == name)).collect();
+    let changes = rows.iter().flat_map(|row| case::changes(case, &row.record.spec()));
+    let changed: BTreeSet<&str> = changes.map(|(field, _)| field.name).collect();
+    let mut fields: Vec<&Field> = case.fields().iter().collect();
+    fields.retain(|field| changed.contains(field.name));
     let mut columns = vec![Column::text("variant")];
-    columns.extend(names.iter().map(|name| Column::num(code(name), "")));
+    columns.extend(fields.iter().map(|field| Column::num(code(field.name), "")));
     columns.push(Column::text("error"));
     columns.extend([Column::num("run time", ""), Column::num("pairs", "")]);
     columns.extend([Column::num("particles", ""), Column::num("steps", ""), Column::text("ended")]);
@@ -110,7 +109,8 @@ fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
     let cells = |row: &Row| {
         let Row { record, point, .. } = row;
         let mut cells = vec![Cell::marked(code(&record.run.variant))];
-        cells.extend(names.iter().map(|name| value(&record.run.settings[*name])));
+        let values = fields.iter().map(|field| field.of_json(&record.run.settings));
+        cells.extend(values.map(|value| value.map_or_else(|| Cell::text("–"), setting)));
         cells.push(error_in_words(studies, point, record));
         cells.push(Cell::seconds(point.median()));
         cells.push(Cell::sci(point.pairs, 2));
@@ -144,10 +144,6 @@ fn error_in_words(studies: &Studies, point: &Point, record: &Record) -> Cell {
     }
 }
 
-fn value(value: &Value) -> Cell {
-    match (value.as_f64(), value.as_str()) {
-        (Some(number), _) => Cell::exact(number),
-        (None, Some(word)) => Cell::text(word),
-        (None, None) => Cell::text(value.to_string()),
-    }
+fn setting(value: Value) -> Cell {
+    value.number().map_or_else(|| Cell::text(value.to_string()), Cell::exact)
 }
