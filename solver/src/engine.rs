@@ -16,7 +16,7 @@ use crate::{
     numbers::{Numbers, Symmetric},
     parallel,
     particle_data::{BlockExtrema, Checkpoint, Counts, InvalidState, ParticleData, Phase, Stepped},
-    particles::{Column, Common, Constants, Rate, Role, State},
+    particles::{Common, Constants, Rate, Role, State, SweptParticle},
     physics::{Derived, Particles, Physics},
     sweep::{self, BlockUpdate, PairSweep, Sweep},
     terms::{Rates, Term, moments::InverseMoments},
@@ -199,7 +199,7 @@ pub(crate) struct TypedEquations<P: Physics> {
     wall_terms: <P::Walls as Walls<P::Extra>>::Terms,
     extrapolation: ExtrapolationOf<P>,
     /// Columns of the particles, then of their images, then the sentinel.
-    pub columns: Vec<Column<Derived<P>>>,
+    pub columns: Vec<SweptParticle<Derived<P>>>,
     /// Inverses of moments: empty where no force needs them.
     inverses: Vec<Symmetric>,
 }
@@ -257,8 +257,8 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
     }
 
     fn make_room(&mut self, count: usize) -> usize {
-        self.columns.resize(count, Column::sentinel());
-        self.columns[count - 1] = Column::sentinel();
+        self.columns.resize(count, SweptParticle::sentinel());
+        self.columns[count - 1] = SweptParticle::sentinel();
         size_of_val(&self.columns[..])
     }
 
@@ -401,12 +401,12 @@ impl<P: Physics> Engine<P> {
     /// of the last refresh. dx/dt excludes v.
     pub(crate) fn rates<T: Term<P::Extra>>(&self, terms: &T) -> Vec<Rate<P::Extra>> {
         let (kernel, neighbours) = (&self.equations.kernel, &self.data.neighbours);
-        let mut columns = vec![Column::sentinel(); self.equations.columns.len()];
+        let mut columns = vec![SweptParticle::sentinel(); self.equations.columns.len()];
         for (k, column) in columns.iter_mut().enumerate() {
-            let Column { position, velocity, common, .. } = self.equations.columns[k];
+            let SweptParticle { position, velocity, common, .. } = self.equations.columns[k];
             let (role, extra) = self.data.own(k);
             let derived = derived(terms, role, &common, &extra);
-            *column = Column { position, velocity, common, derived };
+            *column = SweptParticle { position, velocity, common, derived };
         }
         fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, &mut columns);
         if T::NORMALISES {
@@ -448,7 +448,7 @@ impl<P: Physics> Engine<P> {
     /// Memory held \[bytes\].
     pub(crate) fn bytes(&self) -> usize {
         self.data.bytes()
-            + self.equations.columns.capacity() * size_of::<Column<Derived<P>>>()
+            + self.equations.columns.capacity() * size_of::<SweptParticle<Derived<P>>>()
             + self.equations.inverses.capacity() * size_of::<Symmetric>()
     }
 
@@ -494,7 +494,7 @@ fn fill_images<D: Numbers>(
     first: usize,
     slips: bool,
     motion: f64,
-    columns: &mut [Column<D>],
+    columns: &mut [SweptParticle<D>],
 ) {
     let real = columns.len() - 1 - neighbours.images.len();
     for (k, image) in neighbours.images.iter().enumerate() {
@@ -510,7 +510,7 @@ fn fill_images<D: Numbers>(
 fn normalise<P: Physics, T: Term<P::Extra>>(
     kernel: &Smoothing<P::Kernel>,
     neighbours: &Neighbours,
-    columns: &mut [Column<T::Derived>],
+    columns: &mut [SweptParticle<T::Derived>],
     inverses: &mut Vec<Symmetric>,
 ) {
     let sweep = Sweep { kernel, columns, sum: InverseMoments };
@@ -526,11 +526,11 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
 }
 
 /// Derives columns of particles.
-type Derives<'a, X, D> = dyn Fn(&mut [Column<D>], &[State<X>], &[Constants]) + Sync + 'a;
+type Derives<'a, X, D> = dyn Fn(&mut [SweptParticle<D>], &[State<X>], &[Constants]) + Sync + 'a;
 
 /// [`Equations::derive`], block by block.
 fn derive_blocks<X: Numbers, D: Numbers>(
-    columns: &mut [Column<D>],
+    columns: &mut [SweptParticle<D>],
     of: &ParticleData<X>,
     state: &[State<X>],
     extents: &mut [BlockExtrema],
@@ -550,7 +550,7 @@ fn derive_all<X, T: Term<X>>(
     terms: &T,
     fixed: &[Constants],
     state: &[State<X>],
-    columns: &mut [Column<T::Derived>],
+    columns: &mut [SweptParticle<T::Derived>],
 ) {
     // A copy, so that no write can alias it: the compiler moves loop-invariant numbers out of the loop.
     let terms = &terms.clone();
@@ -567,7 +567,7 @@ fn derive<X, T: Term<X>>(
     terms: &T,
     fixed: &Constants,
     evolved: &State<X>,
-    column: &mut Column<T::Derived>,
+    column: &mut SweptParticle<T::Derived>,
 ) {
     let (mass, density) = (fixed.mass, evolved.density);
     column.common = Common { mass, density, volume: mass / density };

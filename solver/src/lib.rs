@@ -56,8 +56,8 @@ pub use kernel::{CubicSpline, Kernel, QuinticSpline, Smoothing, WendlandC2};
 pub use neighbours::GROUP;
 pub use numbers::{In, Numbers, Symmetric};
 pub use particle_data::{
-    Checkpoint, Interval, InvalidState, Limits, ParticleData, Phase, PhaseWatch, PreviousStep,
-    Progress, Work,
+    Checkpoint, DivergenceBounds, Interval, InvalidState, ParticleData, Phase, PhaseWatch,
+    PreviousStep, Progress, Work,
 };
 pub use particles::{Particle, Rate, Role, State};
 pub use physics::{Compose, Physics};

@@ -63,14 +63,14 @@ pub type Stepped = Result<(), InvalidState>;
 
 /// Bounds that a run must not leave; a run that does has diverged.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct DivergenceBounds {
     /// Least and largest density \[kg/m³\].
     pub density: [f64; 2],
     /// Largest speed \[m/s\].
     pub speed: f64,
 }
 
-impl Default for Limits {
+impl Default for DivergenceBounds {
     /// Any positive density, any finite speed.
     fn default() -> Self {
         Self { density: [0.0, f64::MAX], speed: f64::MAX }
@@ -249,7 +249,7 @@ pub struct ParticleData<X = ()> {
     /// Whether [`crate::Walls::Extrapolation`] is not `()`.
     pub(crate) extrapolates: bool,
     pub(crate) neighbours: Neighbours,
-    pub(crate) limits: Limits,
+    pub(crate) limits: DivergenceBounds,
     /// Half of the largest approach of two particles with exact neighbour lists \[m\].
     pub(crate) slack: f64,
     /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,

@@ -1,6 +1,6 @@
 //! Particle data in three kinds: fixed, evolved, and derived (the column that a pair sweep reads).
 //!
-//! The integrator advances [`State`] only. A [`Column`] is derived from it before each sweep, laid out for
+//! The integrator advances [`State`] only. A [`SweptParticle`] is derived from it before each sweep, laid out for
 //! the pair sweep.
 
 use nalgebra::Vector2;
@@ -154,7 +154,7 @@ impl Common {
 /// no more memory than their numbers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub struct Column<S = ()> {
+pub struct SweptParticle<S = ()> {
     /// Position \[m\].
     pub position: Vector2<f64>,
     /// Velocity \[m/s\].
@@ -165,9 +165,9 @@ pub struct Column<S = ()> {
     pub derived: S,
 }
 
-const _: () = assert!(size_of::<Column<f64>>() == 64, "a fluid shows 64 bytes");
+const _: () = assert!(size_of::<SweptParticle<f64>>() == 64, "a fluid shows 64 bytes");
 
-impl<S: Numbers> Column<S> {
+impl<S: Numbers> SweptParticle<S> {
     /// Fills the empty lanes of a group: so far away that every kernel is 0, without mass or volume.
     pub(crate) fn sentinel() -> Self {
         let common = Common { mass: 0.0, density: 1.0, volume: 0.0 };
@@ -176,10 +176,10 @@ impl<S: Numbers> Column<S> {
     }
 
     /// Columns without derived numbers.
-    pub(crate) fn plain(columns: &[Self]) -> Vec<Column> {
+    pub(crate) fn plain(columns: &[Self]) -> Vec<SweptParticle> {
         let mut plain = Vec::with_capacity(columns.len());
         for &Self { position, velocity, common, .. } in columns {
-            plain.push(Column { position, velocity, common, derived: () });
+            plain.push(SweptParticle { position, velocity, common, derived: () });
         }
         plain
     }

@@ -10,7 +10,7 @@ use crate::{
     kernel::Kernel,
     neighbours::{Neighbours, Reach},
     numbers::Numbers,
-    particle_data::{Limits, ParticleData},
+    particle_data::{DivergenceBounds, ParticleData},
     particles::{Particle, Role},
     simulation::Simulation,
     walls::{Extrapolation, PlaneWall, RIGHT_ANGLE, Walls},
@@ -75,7 +75,7 @@ pub struct Setting<X = ()> {
     /// so that tests can detect the error.
     pub skin_share: f64,
     /// Bounds beyond which the run counts as diverged.
-    pub limits: Limits,
+    pub limits: DivergenceBounds,
     /// Number of particles from which pair sweeps are distributed over threads.
     pub parallel_from: usize,
 }
@@ -113,7 +113,7 @@ impl<X: Numbers> Setting<X> {
             feet: Vec::new(),
             skin: 0.4 * h,
             skin_share: 0.5,
-            limits: Limits::default(),
+            limits: DivergenceBounds::default(),
             // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
             parallel_from: 10_000,
         }

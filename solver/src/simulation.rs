@@ -8,7 +8,7 @@ use crate::{
     integrator::{Integrator, Memory, PhysicsOf, Scheme, Stepped},
     numbers::Numbers,
     particle_data::{Checkpoint, Interval, InvalidState, ParticleData, Work},
-    particles::{Column, Particle, Rate},
+    particles::{Particle, Rate, SweptParticle},
     physics::Derived,
     terms::Term,
 };
@@ -110,7 +110,7 @@ pub trait Stepper<X: Numbers> {
     fn weight(&self, r2: f64) -> f64;
     /// The columns of particles and of their images without derived data, after [`Stepper::advance`] reached
     /// a time. Together with [`Stepper::weight`] they interpolate a field.
-    fn plain_columns(&self) -> Vec<Column>;
+    fn plain_columns(&self) -> Vec<SweptParticle>;
     /// Rates of each particle of [`ParticleData::fluid`] by all terms of the scene, after
     /// [`Stepper::advance`] reached a time: dv/dt by the forces, the other rates by the drift. dx/dt does
     /// not include v.
@@ -230,8 +230,8 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
     fn weight(&self, r2: f64) -> f64 {
         self.engine.equations.kernel.w(r2)
     }
-    fn plain_columns(&self) -> Vec<Column> {
-        Column::plain(self.columns())
+    fn plain_columns(&self) -> Vec<SweptParticle> {
+        SweptParticle::plain(self.columns())
     }
     fn total_rates(&self) -> Vec<Rate<S::Extra>> {
         S::Integrator::rates(&self.engine)
@@ -288,7 +288,7 @@ impl<S: Scheme> Simulation<S> {
 
     /// The derived data of particles and of their images, as pair sweeps read them, after
     /// [`Stepper::advance`].
-    pub fn columns(&self) -> &[Column<Derived<S>>] {
+    pub fn columns(&self) -> &[SweptParticle<Derived<S>>] {
         let columns = &self.engine.equations.columns;
         &columns[..columns.len() - 1]
     }

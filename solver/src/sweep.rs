@@ -17,7 +17,7 @@ use crate::{
     neighbours::{BLOCK, Block, GROUP, Lists},
     numbers::{Buffer, In, MANY, Numbers},
     parallel,
-    particles::{Column, Common, Rate, State},
+    particles::{Common, Rate, State, SweptParticle},
     terms::{Pair, PairSum},
 };
 
@@ -84,7 +84,7 @@ pub(crate) fn fill<O: Copy + Send>(sweep: &dyn PairSweep<O>, lists: &Lists, resu
 /// A sum over the neighbours of particles, which reads columns.
 pub(crate) struct Sweep<'a, K, T, S> {
     pub kernel: &'a Smoothing<K>,
-    pub columns: &'a [Column<S>],
+    pub columns: &'a [SweptParticle<S>],
     /// A [`PairSum`].
     pub sum: T,
 }
@@ -111,7 +111,8 @@ impl<K, T, S> Sweep<'_, K, T, S> {
                 // The last group may lack some.
                 for k in 0..(end - first).next_multiple_of(GROUP) {
                     let number = if first + k < end { first + k } else { columns.len() - 1 };
-                    let &Column { position, velocity, common, ref derived } = &columns[number];
+                    let &SweptParticle { position, velocity, common, ref derived } =
+                        &columns[number];
                     let numbers = (common.mass, common.density, common.volume);
                     (position, velocity, numbers, sum.read(number, derived)).put(&mut own.0, k);
                 }
@@ -199,7 +200,7 @@ mod tests {
     const DX: f64 = 0.1;
 
     /// Particles off a lattice, all with different velocities and densities.
-    fn columns<T: Term<()>>(term: &T, side: usize) -> Vec<Column<T::Derived>> {
+    fn columns<T: Term<()>>(term: &T, side: usize) -> Vec<SweptParticle<T::Derived>> {
         let number = |k: usize| (k as f64 * 0.618_033_988_749_895).fract() - 0.5;
         let column = |k: usize| {
             let place = Vector2::new((k % side) as f64, (k / side) as f64);
@@ -207,13 +208,13 @@ mod tests {
             let (density, mass) = (1.0 + 0.1 * number(k), DX * DX);
             let common = Common { mass, density, volume: mass / density };
             let velocity = Vector2::new(number(2 * k), number(5 * k));
-            Column { position, velocity, common, derived: term.derived(&common, &()) }
+            SweptParticle { position, velocity, common, derived: term.derived(&common, &()) }
         };
-        (0..side * side).map(column).chain([Column::sentinel()]).collect()
+        (0..side * side).map(column).chain([SweptParticle::sentinel()]).collect()
     }
 
     /// Lists of all columns but the last, the sentinel, as far as the quintic spline reaches.
-    fn listed<S: Numbers>(columns: &[Column<S>]) -> Neighbours {
+    fn listed<S: Numbers>(columns: &[SweptParticle<S>]) -> Neighbours {
         let count = columns.len() - 1;
         let mut neighbours = Neighbours::new(
             Reach { support: 3.0 * DX, skin: 0.0, spacing: DX },

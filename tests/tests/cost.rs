@@ -6,7 +6,8 @@ use touchstone_solver::{
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
     ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic, Integrator, Leapfrog, Linear,
     NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, Scene, ShiftAdvection, Shifting,
-    Simulation, State, Stepper, Tait, Term, Viscosity, Xsph, particles::Column, physics::Derived,
+    Simulation, State, Stepper, Tait, Term, Viscosity, Xsph, particles::SweptParticle,
+    physics::Derived,
 };
 use touchstone_tests::{assert_small, difference, patch};
 
@@ -26,7 +27,7 @@ fn wall_sum<E: Extrapolation>() -> usize {
 #[test]
 fn a_fluid_evolves_40_bytes_and_shows_64() {
     assert_eq!(size_of::<State<()>>(), 40);
-    assert_eq!(size_of::<Column<Derived<Fluid>>>(), 64);
+    assert_eq!(size_of::<SweptParticle<Derived<Fluid>>>(), 64);
 }
 
 #[test]

@@ -2,9 +2,9 @@
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    Compose, Continuity, CubicSpline, Domain, Euler, Ghosts, Integrator, Leapfrog, Limits, Open,
-    Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene, SceneError,
-    Simulation, Stepper, Tait, Viscosity, scene::Setting,
+    Compose, Continuity, CubicSpline, DivergenceBounds, Domain, Euler, Ghosts, Integrator,
+    Leapfrog, Open, Outcome, Particle, PlaneWall, PredictorCorrector, Pressure, Role, Scene,
+    SceneError, Simulation, Stepper, Tait, Viscosity, scene::Setting,
 };
 use touchstone_tests::{Random, assert_near, assert_small, difference, patch};
 
@@ -28,7 +28,7 @@ fn torus<I: Integrator<Scheme<()>>>() -> Scene<Scheme<I>> {
 
 /// The limits of sound (1.87 h/c with leapfrog) and of viscosity (0.35 h²/ν) are 0.015 and 0.22 s.
 fn check_divergence<I: Integrator<Scheme<()>>>(dt: f64) {
-    let limits = Limits { density: [0.5, 2.0], speed: 5.0 * C };
+    let limits = DivergenceBounds { density: [0.5, 2.0], speed: 5.0 * C };
     let mut scene = torus::<I>();
     scene.setting.limits = limits;
     let mut simulation = scene.build().unwrap();
@@ -257,12 +257,14 @@ fn a_thousand_times_the_speed_of_sound_conserves_momentum_or_is_reported() {
         (scene.forces.1.mu, scene.setting.limits) = (0.0, limits);
         scene.build().unwrap()
     };
-    let mut simulation = scene(Limits { density: [-f64::MAX, f64::MAX], speed: f64::MAX });
+    let mut simulation =
+        scene(DivergenceBounds { density: [-f64::MAX, f64::MAX], speed: f64::MAX });
     let outcome = simulation.advance(200.0 * dt, dt, &mut ());
     assert_eq!(outcome, Outcome::Reached);
     let lost = (momentum(&simulation.particles()) - momentum(&particles)).norm();
     assert!(lost < 1e-12 * size, "momentum changed by {:e}", lost / size);
-    let mut simulation = scene(Limits { speed: 500.0 * C, ..Limits::default() });
+    let mut simulation =
+        scene(DivergenceBounds { speed: 500.0 * C, ..DivergenceBounds::default() });
     let Outcome::Diverged(divergence) = simulation.advance(200.0 * dt, dt, &mut ()) else {
         panic!("faster than allowed, and not reported");
     };
@@ -284,7 +286,7 @@ fn half_a_period_in_a_step_is_a_divergence_and_in_two_steps_is_not() {
 
 #[test]
 fn each_limit_is_kept_from_the_first_step_on() {
-    let limits = Limits { density: [0.5, 2.0], speed: 3.0 };
+    let limits = DivergenceBounds { density: [0.5, 2.0], speed: 3.0 };
     let start = |change: fn(&mut Particle)| {
         let mut scene = torus::<Leapfrog>();
         scene.setting.limits = limits;

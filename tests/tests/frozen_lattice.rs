@@ -8,7 +8,7 @@
 
 use nalgebra::DVector;
 use touchstone_base::record::{Record, Status};
-use touchstone_cases::fluids::channel::{ChannelSettings, Flow, Setup, TIMES};
+use touchstone_cases::fluids::channel::{ChannelSettings, ChannelSetup, Flow, TIMES};
 use touchstone_harness::{
     case::{self, Case},
     context::Context,
@@ -44,19 +44,19 @@ fn smoothing(kernel: &str) -> [f64; 2] {
 }
 
 /// The setup of a flow by this method.
-fn setup(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) -> Setup {
+fn setup(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) -> ChannelSetup {
     let [h_over_dx, eta2_over_h2] = smoothing(method.properties.kernel);
     let s = ChannelSettings { re: 1e-9, rows, h_over_dx, eta2_over_h2, ..Default::default() };
     let s = ChannelSettings { wall_curvature, ..s };
-    Setup::new(flow, &s, method).expect("settings")
+    ChannelSetup::new(flow, &s, method).expect("settings")
 }
 
-fn simulation(method: &Method, setup: &Setup) -> Box<dyn Stepper<()>> {
+fn simulation(method: &Method, setup: &ChannelSetup) -> Box<dyn Stepper<()>> {
     (method.build)(setup.parts()).expect("a scene")
 }
 
 /// The wall rule of the matrix for a setup.
-fn rule(setup: &Setup, walls: &str) -> WallRule {
+fn rule(setup: &ChannelSetup, walls: &str) -> WallRule {
     match (walls, setup.settings.wall_curvature) {
         ("interface-wall", _) => WallRule::InterfaceWall,
         ("ghosts", true) => WallRule::CurvedGhosts,
@@ -66,7 +66,7 @@ fn rule(setup: &Setup, walls: &str) -> WallRule {
     }
 }
 
-fn reduced(kernel: &str, setup: &Setup, wall_rule: WallRule) -> RowModel {
+fn reduced(kernel: &str, setup: &ChannelSetup, wall_rule: WallRule) -> RowModel {
     let (s, wall_velocity) = (&setup.settings, [0.0, setup.plate_speed()]);
     let (rows, width, nu, force) = (s.rows, s.width, s.nu, setup.force);
     let alignment = Alignment::Aligned;
@@ -148,7 +148,7 @@ fn fluid(simulation: &dyn Stepper<()>) -> Vec<(f64, f64)> {
 }
 
 /// Largest difference \[V\] of any particle from its row.
-fn apart(setup: &Setup, fluid: &[(f64, f64)], model: &RowModel, u: &DVector<f64>) -> f64 {
+fn apart(setup: &ChannelSetup, fluid: &[(f64, f64)], model: &RowModel, u: &DVector<f64>) -> f64 {
     assert!(fluid.len() >= u.len() && fluid.len().is_multiple_of(u.len()));
     let first = model.y[0] / setup.medium.dx;
     let mut largest = 0.0_f64;
@@ -234,7 +234,7 @@ fn extrapolating_walls_are_the_matrix_to_round_off() {
 
 /// u of every particle at νt/L² = `tau`, from runs with dt, dt/2, dt/4 and dt/8: their errors of the
 /// order of the integrator and of the next two are taken out.
-fn extrapolated(method: &Method, setup: &Setup, tau: f64) -> Vec<(f64, f64)> {
+fn extrapolated(method: &Method, setup: &ChannelSetup, tau: f64) -> Vec<(f64, f64)> {
     // A whole number of steps at the coarsest level: the next ones halve it exactly.
     let (_, dt) = division(setup.time(tau), setup.rules.dt());
     let run = |finer: f64| {
@@ -286,7 +286,7 @@ fn with_dt_extrapolated_away_runs_are_the_exponential_of_the_matrix() {
 }
 
 /// The matrix of a record, which knows its kernel and its walls by name.
-fn matrix_of(record: &Record, setup: &Setup) -> RowModel {
+fn matrix_of(record: &Record, setup: &ChannelSetup) -> RowModel {
     let word = |key: &str| record.numerics[key].as_str().expect("a word");
     reduced(word(KERNEL), setup, rule(setup, word(WALLS)))
 }
@@ -310,7 +310,7 @@ fn check_variant(case: &dyn Case, variant: &str, flow: Flow) {
         Some("super-leapfrog") => (Integrator::SuperLeapfrog, stiff),
         _ => (Integrator::PredictorCorrector, plain),
     };
-    let setup = Setup::new(flow, &settings, &method).expect(&name);
+    let setup = ChannelSetup::new(flow, &settings, &method).expect(&name);
     let model = matrix_of(&record, &setup);
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
     for tau in TIMES.into_iter().filter(|tau| *tau <= settings.end) {

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use touchstone_base::{
     gate::{Bound, Evidence, Gate},
-    record::{Column, Profile, Record, Status},
+    record::{Profile, ProfileColumn, Record, Status},
     settings::Field,
     spec::RunSpec,
 };
@@ -274,7 +274,7 @@ fn results(variant: &str, of: &[(&Run, &Record)]) -> String {
 }
 
 fn columns(profile: &Profile) -> String {
-    let name = |c: &Column| format!("{} [{}]", c.name, c.unit);
+    let name = |c: &ProfileColumn| format!("{} [{}]", c.name, c.unit);
     profile.columns.iter().map(name).collect::<Vec<_>>().join(", ")
 }
 

@@ -22,7 +22,7 @@ use touchstone_solver::{
     Xsph,
     lane::Lane,
     lattice,
-    particles::{Column, Common},
+    particles::{Common, SweptParticle},
     physics::Derived,
     terms::{Pair, Tensile},
 };
@@ -501,12 +501,12 @@ fn a_turned_collision_is_the_collision_turned_with_principal_axes_only() {
 #[test]
 fn a_solid_takes_24_bytes_more_and_a_fluid_none() {
     assert_eq!((size_of::<Symmetric>(), size_of::<State<Symmetric>>()), (24, 64));
-    assert_eq!(size_of::<Column<Derived<Rings<PrincipalStress>>>>(), 128);
-    assert_eq!(size_of::<Column<Derived<Rings<()>>>>(), 104);
+    assert_eq!(size_of::<SweptParticle<Derived<Rings<PrincipalStress>>>>(), 128);
+    assert_eq!(size_of::<SweptParticle<Derived<Rings<()>>>>(), 104);
     assert_eq!(size_of::<<CauchyStress<Linear> as Term<Symmetric>>::Derived>(), 24);
     assert_eq!(size_of::<<JaumannRate as Term<Symmetric>>::Derived>(), 24);
     type Fluid = Compose<CubicSpline, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfrog>;
-    assert_eq!((size_of::<State<()>>(), size_of::<Column<Derived<Fluid>>>()), (40, 64));
+    assert_eq!((size_of::<State<()>>(), size_of::<SweptParticle<Derived<Fluid>>>()), (40, 64));
 }
 
 // Waves and growth --------------------------------------------------------------------------------

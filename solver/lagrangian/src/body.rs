@@ -9,7 +9,7 @@ use touchstone_solver::{Potential, State, Symmetric, parallel};
 
 use crate::{
     law::{Energies, Law, Moduli, Strain},
-    reference::{Four, Reference},
+    reference::{Four, ReferenceConfiguration},
 };
 
 /// Particles that are worth a unit of parallel work.
@@ -19,7 +19,7 @@ const BLOCK: usize = 512;
 #[derive(Clone, Debug)]
 pub struct Body<L> {
     /// The reference configuration.
-    pub reference: Reference,
+    pub reference: ReferenceConfiguration,
     moduli: Moduli,
     /// c \[Pa\].
     hourglass: f64,
@@ -33,7 +33,12 @@ pub struct Body<L> {
 
 impl<L: Law> Body<L> {
     /// A body without displacement. `strength` is χ, see [`hourglass`].
-    pub fn new(reference: Reference, moduli: Moduli, strength: f64, parallel: bool) -> Self {
+    pub fn new(
+        reference: ReferenceConfiguration,
+        moduli: Moduli,
+        strength: f64,
+        parallel: bool,
+    ) -> Self {
         let displacements = vec![Vector2::zeros(); reference.places.len()];
         let hourglass = hourglass(moduli.shear, strength, reference.gradient_factor());
         let tensors = vec![Matrix2::zeros(); displacements.len()];

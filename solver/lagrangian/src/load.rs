@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use touchstone_solver::{Smoothing, State, Symmetric, WendlandC2};
 
-use crate::{law::Moduli, reference::Reference};
+use crate::{law::Moduli, reference::ReferenceConfiguration};
 
 /// Particles as input of loads.
 #[derive(Clone, Copy, Debug)]
@@ -12,7 +12,7 @@ pub struct Loaded<'a> {
     /// Present state.
     pub state: &'a [State<Symmetric>],
     /// Reference configuration.
-    pub reference: &'a Reference,
+    pub reference: &'a ReferenceConfiguration,
 }
 
 impl Loaded<'_> {
@@ -29,7 +29,7 @@ impl Loaded<'_> {
 
     /// Whether two particles are of different bodies, or farther apart than this in the reference \[m\].
     fn are_apart(&self, i: usize, j: usize, distance: f64) -> bool {
-        let Reference { bodies, places, .. } = self.reference;
+        let ReferenceConfiguration { bodies, places, .. } = self.reference;
         bodies[i] != bodies[j]
             || self.between(i, j, |k| places[k]).norm_squared() >= distance * distance
     }
@@ -189,7 +189,7 @@ impl BetweenFaces {
 
     /// All pairs in contact reach, in an order that depends on the state alone.
     fn contacts(&self, on: &Loaded) -> Vec<Contact> {
-        let Reference { domain, sizes, faces, .. } = on.reference;
+        let ReferenceConfiguration { domain, sizes, faces, .. } = on.reference;
         let axis = usize::from(domain.period[0].is_some());
         let reach = REACH * sizes.iter().fold(0.0_f64, |a, b| a.max(*b));
         // Where the other axis is periodic, a copy may be near even if the particle is not.
@@ -237,7 +237,7 @@ impl BetweenFaces {
 
 impl Load for BetweenFaces {
     fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64 {
-        let Reference { sizes, masses, .. } = on.reference;
+        let ReferenceConfiguration { sizes, masses, .. } = on.reference;
         let contacts = self.contacts(on);
         // Each of two is a neighbour of the other, in the sweep over ψ and in that over the forces.
         let neighbours = 4 * contacts.len() as u64;

@@ -54,7 +54,7 @@ pub struct Four {
 
 /// Particles, then their images, in the reference configuration.
 #[derive(Clone, Debug, Default)]
-pub struct Reference {
+pub struct ReferenceConfiguration {
     /// X of particles and images \[m\].
     pub places: Vec<Vector2<f64>>,
     /// V of the particles \[m²\].
@@ -80,7 +80,7 @@ pub struct Reference {
     pairs: u64,
 }
 
-impl Reference {
+impl ReferenceConfiguration {
     /// The reference of these particles, whose lists reach at least the support of the kernel. Particles of
     /// different bodies are no neighbours.
     pub fn new<K: Kernel>(

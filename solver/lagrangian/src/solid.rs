@@ -3,10 +3,10 @@
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    Checkpoint, Domain, Kernel, Leapfrog, Limits, Particle, ParticleData, Phase, Potential, Rate,
-    Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
+    Checkpoint, DivergenceBounds, Domain, Kernel, Leapfrog, Particle, ParticleData, Phase,
+    Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
-    particles::{Column, Common},
+    particles::{Common, SweptParticle},
     scene::{Component, require},
     walls::Walls,
 };
@@ -15,7 +15,7 @@ use crate::{
     body::Body,
     law::{Law, Moduli},
     load::{Load, Loaded},
-    reference::Reference,
+    reference::ReferenceConfiguration,
 };
 
 /// The scheme for the neighbour search in the reference: without terms, so that nothing else is compiled.
@@ -41,7 +41,7 @@ pub struct SolidScene<W, C> {
     /// Weight and contact.
     pub loads: C,
     /// Bounds beyond which the run counts as diverged.
-    pub limits: Limits,
+    pub limits: DivergenceBounds,
     /// Number of particles from which work is distributed over threads.
     pub parallel_from: usize,
 }
@@ -60,7 +60,7 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
         let bodies: Vec<u32> = data.without_memory().particles.iter().map(of).collect();
         let kernel = Smoothing::<K>::new(h);
         let accelerations = vec![Vector2::zeros(); bodies.len()];
-        let reference = Reference::new(&data, &kernel, bodies, domain, W::SLIPS)?;
+        let reference = ReferenceConfiguration::new(&data, &kernel, bodies, domain, W::SLIPS)?;
         let body = Body::new(reference, moduli, self.hourglass, parallel);
         let mut solid = Solid { data, body, kernel, loads, accelerations };
         solid.evaluate();
@@ -152,18 +152,18 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
     fn weight(&self, r2: f64) -> f64 {
         self.kernel.w(r2)
     }
-    fn plain_columns(&self) -> Vec<Column> {
-        let mut columns: Vec<Column> = Vec::new();
+    fn plain_columns(&self) -> Vec<SweptParticle> {
+        let mut columns: Vec<SweptParticle> = Vec::new();
         for ((mass, evolved), position) in self.data.fluid().zip(self.body.positions()) {
             let (velocity, density) = (evolved.velocity, evolved.density);
             let common = Common { mass, density, volume: mass / density };
-            columns.push(Column { position, velocity, common, derived: () });
+            columns.push(SweptParticle { position, velocity, common, derived: () });
         }
         let images = self.body.positions().skip(columns.len());
         for (image, position) in self.body.reference.images.iter().zip(images) {
             let source = columns[image.source];
             let velocity = image.displaced * source.velocity;
-            columns.push(Column { position, velocity, ..source });
+            columns.push(SweptParticle { position, velocity, ..source });
         }
         columns
     }

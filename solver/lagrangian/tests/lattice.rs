@@ -9,7 +9,7 @@ use touchstone_lagrangian::{
     BetweenFaces, Hencky, Law, SaintVenantKirchhoff, SolidScene, contact_stiffness,
 };
 use touchstone_solver::{
-    Domain, Limits, Open, Outcome, PlaneWall, SlipGhosts, Smoothing, Stepper, WendlandC2,
+    DivergenceBounds, Domain, Open, Outcome, PlaneWall, SlipGhosts, Smoothing, Stepper, WendlandC2,
 };
 
 const SIDE: usize = 12;
@@ -283,7 +283,7 @@ fn bits_are_equal_for_threads_and_after_a_restart() {
     let run = |parallel_from: usize, stop: bool| {
         let mut solid = build::<Hencky, _, _>(SolidScene {
             parallel_from,
-            limits: Limits::default(),
+            limits: DivergenceBounds::default(),
             ..scene(block(40, 30, 0.1), Open, ())
         });
         put(&mut solid, |_, x| x, |k| Vector2::new(number(3 * k), number(5 * k)) * 0.1);

@@ -51,7 +51,7 @@ use crate::{
     eos::EquationOfState,
     kernel::{Kernel, Smoothing},
     numbers::{In, Numbers, Symmetric},
-    particles::{Column, Common, Rate},
+    particles::{Common, Rate, SweptParticle},
 };
 
 /// Particles i, one a lane, and a neighbour j of each (one neighbour for all lanes in a pair sweep), with the
@@ -150,7 +150,7 @@ pub(crate) trait PairSum<S, O>: Sync {
     /// Adds the contributions of the neighbours j of `pair`.
     fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, Self::Derived>, sum: &mut In<Self::Sum, V>);
     /// The result for a particle.
-    fn result(&self, own: &Column<S>, sum: Self::Sum) -> O;
+    fn result(&self, own: &SweptParticle<S>, sum: Self::Sum) -> O;
 }
 
 /// The sum of terms of which each column has the derived data `read(S)`, in rates.
@@ -179,7 +179,7 @@ impl<S, X: Numbers, T: Term<X>, R: Fn(&S) -> T::Derived + Sync> PairSum<S, Rate<
     }
 
     #[inline(always)]
-    fn result(&self, own: &Column<S>, sum: T::Sum) -> Rate<X> {
+    fn result(&self, own: &SweptParticle<S>, sum: T::Sum) -> Rate<X> {
         let mut rate = Rate::default();
         if self.moving {
             rate.position = own.velocity;

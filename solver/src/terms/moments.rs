@@ -5,7 +5,7 @@
 use super::{Kernel, Lane, Numbers, Pair, PairSum, Symmetric, Vector2};
 use crate::{
     inverse::{LEAST_DETERMINANT, of_symmetric},
-    particles::Column,
+    particles::SweptParticle,
 };
 
 /// Vⱼ F rᵢⱼ \[1/m\], and its share of the moments.
@@ -39,7 +39,7 @@ impl<S> PairSum<S, Symmetric> for InverseMoments {
     }
 
     #[inline(always)]
-    fn result(&self, _: &Column<S>, sum: Symmetric) -> Symmetric {
+    fn result(&self, _: &SweptParticle<S>, sum: Symmetric) -> Symmetric {
         inverse(sum).unwrap_or_default()
     }
 }

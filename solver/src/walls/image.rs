@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 
 use super::PlaneWall;
-use crate::{numbers::Numbers, particles::Column};
+use crate::{numbers::Numbers, particles::SweptParticle};
 
 /// The map from a particle, or from an image of it, to an image.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +50,12 @@ impl Map {
     /// volume, and acts on nothing. `motion` is 1, or 0 where velocities are differences of two states: U and
     /// ∂²v/∂n² are then 0.
     #[inline(always)]
-    pub fn apply<S: Numbers>(&self, source: &Column<S>, slip: bool, motion: f64) -> Column<S> {
+    pub fn apply<S: Numbers>(
+        &self,
+        source: &SweptParticle<S>,
+        slip: bool,
+        motion: f64,
+    ) -> SweptParticle<S> {
         let v = source.velocity;
         let velocity = match self {
             Self::Mirror(wall) if slip => v - wall.normal * v.dot(&wall.normal) * 2.0,
@@ -61,7 +66,8 @@ impl Map {
             Self::Corner(..) if slip => -v,
             Self::Corner(..) | Self::Shift(_) => v,
         };
-        let mut image = Column { position: self.place(source.position), velocity, ..*source };
+        let mut image =
+            SweptParticle { position: self.place(source.position), velocity, ..*source };
         if self.walls().iter().any(|wall| wall.depth(source.position) < 0.0) {
             (image.common.mass, image.common.volume) = (0.0, 0.0);
         }
@@ -84,7 +90,8 @@ mod tests {
         let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
         let along = Vector2::new(0.8, 0.6);
         let position = point + along * 5.0 + normal * 0.25;
-        let source = Column { position, velocity: Vector2::new(1.0, 7.0), common, derived: 9.0 };
+        let source =
+            SweptParticle { position, velocity: Vector2::new(1.0, 7.0), common, derived: 9.0 };
         let ghost = map.apply(&source, false, 1.0);
         assert!((ghost.position - (point + along * 5.0 - normal * 0.25)).norm() < 1e-14);
         let expected = velocity * 2.0 - source.velocity + Vector2::new(0.0, 3.0) * 0.0625;
@@ -104,11 +111,13 @@ mod tests {
         let [a, b] = walls.map(Map::Mirror);
         let common = Common { mass: 1.0, density: 2.0, volume: 0.5 };
         let velocity = Vector2::new(1.0, 7.0);
-        let source = Column { position: Vector2::new(1.3, 2.9), velocity, common, derived: 9.0 };
+        let source =
+            SweptParticle { position: Vector2::new(1.3, 2.9), velocity, common, derived: 9.0 };
         let corner_map = Map::corner([&walls[0], &walls[1]]);
         for slip in [false, true] {
             let ghost = corner_map.apply(&source, slip, 1.0);
-            let [a, b] = [a, b].map(|map| move |column: &Column<f64>| map.apply(column, slip, 1.0));
+            let [a, b] =
+                [a, b].map(|map| move |column: &SweptParticle<f64>| map.apply(column, slip, 1.0));
             for twice in [a(&b(&source)), b(&a(&source))] {
                 assert!((ghost.position - twice.position).norm() < 1e-14);
                 assert!((ghost.velocity - twice.velocity).norm() < 1e-14);
@@ -133,7 +142,8 @@ mod tests {
             (Vector2::new(-0.3, 0.1), [true, false, false]),
             (Vector2::new(-0.3, -0.1), [false, false, false]),
         ] {
-            let source = Column { position: place, velocity: Vector2::y(), common, derived: 9.0 };
+            let source =
+                SweptParticle { position: place, velocity: Vector2::y(), common, derived: 9.0 };
             for (map, seen) in maps.iter().zip(seen) {
                 let Common { mass, volume, density } = map.apply(&source, true, 1.0).common;
                 let expected = if seen { (1.0, 0.5, 2.0) } else { (0.0, 0.0, 2.0) };

@@ -17,7 +17,7 @@ use touchstone_lanes::Lane;
 use crate::{
     kernel::Kernel,
     numbers::{In, Numbers},
-    particles::{Column, Common},
+    particles::{Common, SweptParticle},
     terms::{Continuity, Pair, PairSum, Term},
 };
 
@@ -106,7 +106,7 @@ impl<S, E: Extrapolation> PairSum<S, WallState> for Extrapolated<'_, E> {
     }
 
     #[inline(always)]
-    fn result(&self, own: &Column<S>, sum: E::Sum) -> WallState {
+    fn result(&self, own: &SweptParticle<S>, sum: E::Sum) -> WallState {
         self.by.finish(&own.common, sum)
     }
 }

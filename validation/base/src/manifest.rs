@@ -17,7 +17,7 @@ pub struct Manifest {
     /// git commit of the sources, or `unknown`
     pub commit: String,
     /// did tracked files differ from the commit?
-    pub dirty: Known,
+    pub dirty: Answer,
     /// digest of the sources of solver, harness and case that the result depends on, or `unknown`
     pub sources: String,
     /// the compiler's own version line
@@ -51,14 +51,14 @@ pub struct Source {
     /// git commit
     pub commit: &'static str,
     /// did tracked files differ from it?
-    pub dirty: Known,
+    pub dirty: Answer,
 }
 
 /// Text for unknown values.
 pub const UNKNOWN: &str = "unknown";
 
 impl Source {
-    const UNKNOWN: Self = Self { commit: UNKNOWN, dirty: Known::Unknown };
+    const UNKNOWN: Self = Self { commit: UNKNOWN, dirty: Answer::Unknown };
 }
 
 static SOURCE: OnceLock<Source> = OnceLock::new();
@@ -71,7 +71,7 @@ pub fn tell_source(source: Source) {
 /// An answer that may be missing.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Known {
+pub enum Answer {
     /// yes
     Yes,
     /// no
@@ -107,9 +107,9 @@ impl Manifest {
     /// The commit, and whether there were changes.
     pub fn state(&self) -> String {
         let changes = match self.dirty {
-            Known::Yes => " with uncommitted changes",
-            Known::No => "",
-            Known::Unknown => " (state of the sources unknown)",
+            Answer::Yes => " with uncommitted changes",
+            Answer::No => "",
+            Answer::Unknown => " (state of the sources unknown)",
         };
         format!("commit {:.12}{changes}", self.commit)
     }

@@ -387,13 +387,13 @@ pub fn median(values: &[f64]) -> Option<f64> {
 #[serde(deny_unknown_fields)]
 pub struct Profile {
     /// the columns in order
-    pub columns: Vec<Column>,
+    pub columns: Vec<ProfileColumn>,
 }
 
 /// One column of a profile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Column {
+pub struct ProfileColumn {
     /// name
     pub name: String,
     /// SI unit, `-` for none
@@ -420,7 +420,7 @@ impl Profile {
 
     /// Adds a column.
     pub fn with(mut self, name: &str, unit: &str, values: Vec<f64>) -> Self {
-        self.columns.push(Column { name: name.into(), unit: unit.into(), values });
+        self.columns.push(ProfileColumn { name: name.into(), unit: unit.into(), values });
         self
     }
 
@@ -434,7 +434,7 @@ impl Profile {
     /// # Errors
     /// Returns the column, the row from 1 on, and the value of the first number that is not finite.
     pub fn check_finite(&self) -> Result<(), String> {
-        for Column { name, unit, values } in &self.columns {
+        for ProfileColumn { name, unit, values } in &self.columns {
             if let Some(row) = values.iter().position(|value| !value.is_finite()) {
                 let value = values[row];
                 return Err(format!(
@@ -450,7 +450,7 @@ impl Profile {
     /// to the same bits; a number that is not finite, or beyond the end of a shorter column, is an empty
     /// cell.
     pub fn to_csv(&self) -> String {
-        let head = |column: &Column| format!("{}[{}]", column.name, column.unit);
+        let head = |column: &ProfileColumn| format!("{}[{}]", column.name, column.unit);
         let heads: Vec<String> = self.columns.iter().map(head).collect();
         let cell = |number: Option<&f64>| match number {
             Some(number) if number.is_finite() => {

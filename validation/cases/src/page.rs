@@ -10,7 +10,7 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     case::{self, Case},
-    columns::Columns,
+    columns::TableColumns,
     notes::Notes,
     runs::{Judged, JudgedRun, counts},
     section,
@@ -18,8 +18,8 @@ use touchstone_harness::{
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use touchstone_report::{
-    Block, Cell, Column, Counts, Explorer, Figure, Overview, Page, Section, Table, VERDICTS, code,
-    counted, percent, plain,
+    Block, Cell, Counts, Explorer, Figure, Overview, Page, Section, Table, TableColumn, VERDICTS,
+    code, counted, percent, plain,
 };
 
 use crate::{limitations, stiffness, time};
@@ -235,8 +235,8 @@ fn verdicts(suite: &Suite) -> Section {
     rows.sort_by_key(|row| std::cmp::Reverse(row.of.judged.judgement.verdict));
     let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
     let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
-    let gates = Columns::<Row>::default()
-        .with(Column::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
+    let gates = TableColumns::<Row>::default()
+        .with(TableColumn::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
         .text("gate", |row| row.of.judged.gate.id.clone())
         .marked("run or study", judged_on)
         .num(["value", ""], move |row| value(row.of.judged.judgement.value))
@@ -332,7 +332,7 @@ fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
                    only rough. The state is a digest of the bits at the end: the same for any number of \
                    threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
-    Columns::<Record>::default()
+    TableColumns::<Record>::default()
         .code("variant", |record| record.run.variant.clone())
         .text("set", |record| what(case, &record.spec()))
         .text("ended", |record| record.status.to_string())
@@ -380,7 +380,7 @@ fn references_section() -> Section {
         vec![cell, Cell::marked(title), Cell::text(grade), Cell::text(licence)]
     };
     let caption = "Reference data, embedded with its provenance and checked by hash.";
-    let columns = ["reference", "what", "grade", "licence"].map(Column::text);
+    let columns = ["reference", "what", "grade", "licence"].map(TableColumn::text);
     let table = Table::new(caption, columns.into());
     let table = Reference::names().into_iter().fold(table, |table, name| table.row(row(name)));
     Section::new("references", "References").block(table)

@@ -2,7 +2,7 @@
 
 use touchstone_harness::{
     case::{self, Case, Rules, RunError},
-    columns::Columns,
+    columns::TableColumns,
     limits::Mechanism,
     suite::{CaseResults, Suite},
 };
@@ -65,7 +65,7 @@ pub const READING: &str = "\
 
 /// The table of these rows.
 pub fn table(rows: &[Row]) -> Table {
-    let columns = Columns::<Row>::default()
+    let columns = TableColumns::<Row>::default()
         .code("variant", |row| format!("{} {}", row.case, row.variant))
         .num(["step", "s"], |row| Cell::sci(row.rules.dt(), 3))
         .text("set by", |row| {

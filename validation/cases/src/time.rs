@@ -2,7 +2,7 @@
 
 use touchstone_base::{breakdown::Breakdown, record::Record};
 use touchstone_harness::{
-    columns::Columns,
+    columns::TableColumns,
     profile::{BOTH, DRIFT, FORCES, REFRESH, REST, SEARCH, SORTING, WALLS},
     suite::{CaseResults, Suite},
 };
@@ -28,7 +28,7 @@ pub fn section(suite: &Suite) -> Section {
         let Record { cost, .. } = record;
         Cell::num(1e9 * seconds / (cost.particles as f64 * cost.steps as f64), 3)
     };
-    let table = Columns::<Profiled>::default()
+    let table = TableColumns::<Profiled>::default()
         .code("run", |(record, _)| format!("{} {}", record.run.case, record.run.variant))
         .num(["particles", "1"], |(record, _)| Cell::count(record.cost.particles as u64))
         .num(["stepping", "ns"], move |(record, b)| each(record, b.totals()[0]))

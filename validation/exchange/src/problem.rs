@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use touchstone_base::{
     gate::Gate,
-    record::{self, Column, MetricName, Profile},
+    record::{self, MetricName, Profile, ProfileColumn},
     settings::{self, Field},
     spec::RunSpec,
     text::short,
 };
 use touchstone_harness::{
     case::{self, Case, RunError},
-    facts::{Curve, Facts, Parameter},
+    facts::{Facts, Parameter, SubmittedCurve},
     gates::GateIndex,
     method::{Medium, MediumSetting, Properties},
     outline::Outline,
@@ -55,7 +55,7 @@ pub struct Problem {
     /// Every metric that is measured of results.
     pub metrics: Vec<MetricName>,
     /// Profile or series that may be submitted in place of particles.
-    pub curve: Option<Curve>,
+    pub curve: Option<SubmittedCurve>,
     /// Origin of a sealed problem.
     pub sealed: Option<Sealed>,
     /// Relation of the observer, if observers are compared.
@@ -87,7 +87,7 @@ const HAND_IN: &str = "A folder with these files:\n\n\
 
 /// The requested run, as read from the document.
 #[derive(Debug, Clone, Deserialize)]
-pub struct Asked {
+pub struct ProblemDocument {
     /// version of the document
     pub schema: u32,
     /// the run
@@ -103,7 +103,7 @@ pub struct Asked {
     rest: Map<String, Value>,
 }
 
-impl Asked {
+impl ProblemDocument {
     /// Checks that the numbers of the document are the numbers of its spec. Its prose may belong to another
     /// version, and it may have more keys than ours.
     ///
@@ -293,7 +293,7 @@ impl Problem {
         let gate =
             |gate: &Gate| json!({ "id": gate.id, "metric": gate.metric, "bound": gate.bound });
         let equation = |(name, text): &(&str, &str)| json!({ "name": name, "text": text });
-        let column = |column: &Column| json!({ "name": column.name, "unit": column.unit });
+        let column = |column: &ProfileColumn| json!({ "name": column.name, "unit": column.unit });
         let mut document = json!({
             "schema": SCHEMA,
             "spec": self.spec.to_value(),

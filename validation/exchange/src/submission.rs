@@ -30,7 +30,7 @@ use touchstone_solver::{Domain, Role};
 use crate::{
     digits::{self, ROUND_OFF},
     flaw::Flaw,
-    problem::{Asked, CURVE, PROBLEM, Problem, SCHEMA},
+    problem::{CURVE, PROBLEM, Problem, ProblemDocument, SCHEMA},
     read::{self, RESULTS, Renamed, Results, SAME_MASS, curve},
 };
 
@@ -113,7 +113,7 @@ pub struct Entry {
     /// The machine.
     pub system: System,
     /// The stated problem, if the folder has one.
-    pub asked: Option<Asked>,
+    pub asked: Option<ProblemDocument>,
     /// The particles.
     pub results: Results,
     /// The table of a profile or series, of a code that hands in no particles, and its columns' names.
@@ -261,7 +261,7 @@ fn reach(problem: &Problem) -> f64 {
 /// Bounds beyond which a run of the problem has diverged: 30 % of the density for a fluid, a half for a
 /// solid, and twice the sum of the sound speed, the largest initial speed and the speed of a fall until the
 /// end.
-fn limits(problem: &Problem) -> touchstone_solver::Limits {
+fn limits(problem: &Problem) -> touchstone_solver::DivergenceBounds {
     let Outline { particles, medium, times, .. } = &problem.outline;
     let share = if problem.is_solid() { 0.5 } else { 0.7 };
     let start = particles.column("density").iter().copied();
@@ -271,7 +271,7 @@ fn limits(problem: &Problem) -> touchstone_solver::Limits {
     let fall = medium.acceleration.norm() * times.last().copied().unwrap_or_default();
     let speed = 2.0 * (medium.eos.sound_speed + fastest + fall);
     let most = if problem.is_solid() { 2.0 * high } else { 1.3 * high };
-    touchstone_solver::Limits { density: [share * low, most], speed }
+    touchstone_solver::DivergenceBounds { density: [share * low, most], speed }
 }
 
 /// Error for a frame with so many particles in one support that pairs exceed the memory.
@@ -303,11 +303,12 @@ fn unnamed(file: &str, field: &str, text: &str) -> Option<Flaw> {
 }
 
 /// The problem that the folder has, if it has one.
-fn asked(folder: &Path) -> Result<Option<Asked>, Flaw> {
+fn asked(folder: &Path) -> Result<Option<ProblemDocument>, Flaw> {
     if let Ok(false) = folder.join(PROBLEM).try_exists() {
         return Ok(None);
     }
-    let (asked, _) = document::<Asked>(folder, PROBLEM, "the document as it was exported")?;
+    let (asked, _) =
+        document::<ProblemDocument>(folder, PROBLEM, "the document as it was exported")?;
     match asked.schema {
         SCHEMA => Ok(Some(asked)),
         other => {

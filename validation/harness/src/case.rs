@@ -11,8 +11,8 @@ use touchstone_base::{
 use crate::{context::Context, problem::Posed, study::Studies};
 pub use crate::{
     error::RunError,
-    facts::{Curve, Drawn, Draws, Facts, Parameter, Statement},
-    limits::Limits,
+    facts::{Drawn, Draws, Facts, Parameter, Statement, SubmittedCurve},
+    limits::TimeStepLimits,
     rules::{PLANNED_DT, Rules, Step},
     runs::{Planned, Tier},
 };

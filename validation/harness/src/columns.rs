@@ -2,27 +2,27 @@
 
 use std::borrow::Borrow;
 
-use touchstone_report::{Cell, Column, Table, code};
+use touchstone_report::{Cell, Table, TableColumn, code};
 
 /// The content of a column for an item.
 type Shown<'a, T> = dyn Fn(&T) -> Cell + 'a;
 
 /// Columns of a table with a row an item.
-pub struct Columns<'a, T> {
-    heads: Vec<Column>,
+pub struct TableColumns<'a, T> {
+    heads: Vec<TableColumn>,
     cells: Vec<Box<Shown<'a, T>>>,
 }
 
-impl<T> Default for Columns<'_, T> {
+impl<T> Default for TableColumns<'_, T> {
     fn default() -> Self {
         Self { heads: Vec::new(), cells: Vec::new() }
     }
 }
 
-impl<'a, T> Columns<'a, T> {
+impl<'a, T> TableColumns<'a, T> {
     /// One more column.
     #[must_use]
-    pub fn with(mut self, head: Column, cell: impl Fn(&T) -> Cell + 'a) -> Self {
+    pub fn with(mut self, head: TableColumn, cell: impl Fn(&T) -> Cell + 'a) -> Self {
         self.heads.push(head);
         self.cells.push(Box::new(cell));
         self
@@ -31,13 +31,13 @@ impl<'a, T> Columns<'a, T> {
     /// One more column, of plain text.
     #[must_use]
     pub fn text<S: Into<String>>(self, head: &str, text: impl Fn(&T) -> S + 'a) -> Self {
-        self.with(Column::text(head), move |item| Cell::text(text(item)))
+        self.with(TableColumn::text(head), move |item| Cell::text(text(item)))
     }
 
     /// One more column, of text of ours with inline markup.
     #[must_use]
     pub fn marked(self, head: &str, text: impl Fn(&T) -> String + 'a) -> Self {
-        self.with(Column::text(head), move |item| Cell::marked(text(item)))
+        self.with(TableColumn::text(head), move |item| Cell::marked(text(item)))
     }
 
     /// One more column, of names as they are written in a command.
@@ -49,7 +49,7 @@ impl<'a, T> Columns<'a, T> {
     /// One more column, of numbers in a unit.
     #[must_use]
     pub fn num(self, [head, unit]: [&str; 2], cell: impl Fn(&T) -> Cell + 'a) -> Self {
-        self.with(Column::num(head, unit), cell)
+        self.with(TableColumn::num(head, unit), cell)
     }
 
     /// One more column, of numbers in a unit; a dash where one is not finite.

@@ -21,7 +21,7 @@ use crate::{
 };
 
 /// A method with settings, without their types.
-trait Setup {
+trait ConfiguredMethod {
     fn settings(&mut self) -> &mut dyn Values;
     fn pose(&self) -> Result<Box<dyn Posed>, RunError>;
 }
@@ -29,7 +29,7 @@ trait Setup {
 /// A variant: its name, its method, and its settings before `--set`.
 pub struct Composition {
     variant: Variant,
-    setup: Box<dyn Setup>,
+    setup: Box<dyn ConfiguredMethod>,
     /// Settings that none of its terms and walls reads: the variant refuses them.
     lacks: Vec<&'static str>,
     /// Settings of a run that differ from the variant's, as `key=value`.
@@ -59,7 +59,7 @@ struct Alike<T, M> {
     pose: Rc<PoseBy<M, T>>,
 }
 
-impl<T: Settings, M> Setup for Alike<T, M> {
+impl<T: Settings, M> ConfiguredMethod for Alike<T, M> {
     fn settings(&mut self) -> &mut dyn Values {
         &mut self.settings
     }

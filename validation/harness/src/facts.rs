@@ -26,7 +26,7 @@ pub struct Facts {
     /// Facts for another code in addition to the scene.
     pub statement: Statement,
     /// Metrics of a profile or a series from another code without particles.
-    pub curve: Option<Curve>,
+    pub curve: Option<SubmittedCurve>,
     /// Drawn settings of sealed problems, and their judgement; `None` if no reference holds at drawn
     /// settings.
     pub sealed: Option<Draws>,
@@ -77,7 +77,7 @@ pub struct Parameter {
 type Place = fn(&Value, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
 
 /// A profile or a series from which some of the metrics follow.
-pub struct Curve {
+pub struct SubmittedCurve {
     /// Names and units of its columns after the time.
     pub columns: &'static [(&'static str, &'static str)],
     /// The columns in words.

@@ -6,13 +6,13 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use touchstone_base::absent::Absent;
 use touchstone_solver::{
-    Checkpoint, Divergence, Domain, InvalidState, Limits, Numbers, Outcome, Particle, Progress,
-    Role, Stepper,
+    Checkpoint, Divergence, DivergenceBounds, Domain, InvalidState, Numbers, Outcome, Particle,
+    Progress, Role, Stepper,
 };
 
 use crate::{
     error::RunError,
-    snapshot::{Columns, Sums},
+    snapshot::{ParticleArrays, Sums},
 };
 
 /// A particle of a frame.
@@ -68,7 +68,7 @@ pub struct Foreign<'a> {
     /// A coordinate beyond this is of a particle that the code has lost \[m\].
     pub reach: f64,
     /// Densities and speeds beyond these are of a run that diverged.
-    pub limits: Limits,
+    pub limits: DivergenceBounds,
     /// Density at rest \[kg/m³\].
     pub density: f64,
 }
@@ -84,12 +84,13 @@ const MOST_CROWDED: f64 = 2.0;
 impl Foreign<'_> {
     /// The particles at the start that the code chose itself; `None` of a code that took the particles of the
     /// problem.
-    pub(crate) fn own_start<X: Numbers>(&self) -> Option<Columns<X>> {
+    pub(crate) fn own_start<X: Numbers>(&self) -> Option<ParticleArrays<X>> {
         let of =
             |own: &OwnParticle| (own.role, own.mass, [self.inside(&own.start), own.start.velocity]);
         let densities = self.own.iter().map(|own| own.start.density).collect();
         let extras = extras(self.own.len());
-        let start = Columns { densities, extras, ..Columns::of(self.own.iter().map(of)) };
+        let start =
+            ParticleArrays { densities, extras, ..ParticleArrays::of(self.own.iter().map(of)) };
         (!self.own.is_empty()).then_some(start)
     }
 
@@ -121,8 +122,8 @@ impl Foreign<'_> {
     pub(crate) fn columns<X: Numbers>(
         &self,
         frame: &Frame,
-        start: &Columns<X>,
-    ) -> Result<Columns<X>, RunError> {
+        start: &ParticleArrays<X>,
+    ) -> Result<ParticleArrays<X>, RunError> {
         let mut points = start.points.clone();
         let mut densities = start.densities.clone();
         let most = points.len();
@@ -137,11 +138,11 @@ impl Foreign<'_> {
                 densities[*id as usize] = *density;
             }
         }
-        Ok(Columns { points, densities, extras: extras(most) })
+        Ok(ParticleArrays { points, densities, extras: extras(most) })
     }
 
     /// The first particle of a frame that is beyond the limits of the run and of its scene.
-    pub(crate) fn lost(&self, frame: &Frame, of_scene: &Limits) -> Option<InvalidState> {
+    pub(crate) fn lost(&self, frame: &Frame, of_scene: &DivergenceBounds) -> Option<InvalidState> {
         let least = self.limits.density[0].max(of_scene.density[0]);
         let most = self.limits.density[1].min(of_scene.density[1]);
         let fastest = self.limits.speed.min(of_scene.speed);
@@ -159,7 +160,11 @@ impl Foreign<'_> {
 
     /// The median particle of a frame by the mass in its square, if the density there exceeds any allowed
     /// one: particles crowded on a line or in a corner, whatever densities they state.
-    pub(crate) fn crowded<X>(&self, frame: &Frame, all: &Columns<X>) -> Option<InvalidState> {
+    pub(crate) fn crowded<X>(
+        &self,
+        frame: &Frame,
+        all: &ParticleArrays<X>,
+    ) -> Option<InvalidState> {
         let moving: Vec<_> =
             frame.particles.iter().map(|of| (of.id, all.points[of.id as usize])).collect();
         let mass = moving.iter().fold(0.0, |sum, (_, p)| sum + p.mass) / moving.len() as f64;
@@ -215,7 +220,7 @@ pub(crate) struct OurSums<D: ?Sized> {
 
 impl<D: ?Sized> OurSums<D> {
     /// Puts particles into the simulation, and derives everything that pair sweeps read.
-    fn put<X: Numbers>(&self, time: f64, particles: &Columns<X>) -> Result<Outcome, Absent>
+    fn put<X: Numbers>(&self, time: f64, particles: &ParticleArrays<X>) -> Result<Outcome, Absent>
     where
         D: Stepper<X>,
     {
@@ -240,7 +245,11 @@ impl<D: ?Sized> OurSums<D> {
     }
 
     /// How particles of a body that derives density and stress from its deformation diverge, if so.
-    pub fn divergence<X: Numbers>(&self, time: f64, particles: &Columns<X>) -> Option<Divergence>
+    pub fn divergence<X: Numbers>(
+        &self,
+        time: f64,
+        particles: &ParticleArrays<X>,
+    ) -> Option<Divergence>
     where
         D: Stepper<X>,
     {
@@ -258,7 +267,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
     fn read(
         &self,
         time: f64,
-        particles: &Columns<X>,
+        particles: &ParticleArrays<X>,
         read: &mut dyn FnMut(&dyn Stepper<X>),
     ) -> Result<(), Absent> {
         match self.put(time, particles)? {

@@ -23,15 +23,15 @@ pub struct Horizon {
 }
 
 /// A history: points in ascending order of the time.
-pub type Curve = Vec<(f64, f64)>;
+pub type TimeSeries = Vec<(f64, f64)>;
 
 impl Horizon {
     /// From histories at common times, one for each member.
     ///
     /// # Errors
     /// The reason for a missing result.
-    pub fn of(members: &[Curve], tolerance: f64) -> Result<Self, String> {
-        let times = |curve: &Curve| curve.iter().map(|(t, _)| t.to_bits()).collect::<Vec<_>>();
+    pub fn of(members: &[TimeSeries], tolerance: f64) -> Result<Self, String> {
+        let times = |curve: &TimeSeries| curve.iter().map(|(t, _)| t.to_bits()).collect::<Vec<_>>();
         let count = members.len();
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err("the tolerance is not known".into());
@@ -70,7 +70,7 @@ fn interval(mut of: Vec<f64>) -> [f64; 2] {
 }
 
 /// When two histories first differ by more than a tolerance; infinite if they never do.
-fn parting(one: &Curve, other: &Curve, tolerance: f64) -> f64 {
+fn parting(one: &TimeSeries, other: &TimeSeries, tolerance: f64) -> f64 {
     let mut pairs = one.iter().zip(other);
     pairs.find(|((_, a), (_, b))| (a - b).abs() > tolerance).map_or(f64::INFINITY, |((t, _), _)| *t)
 }
@@ -94,9 +94,9 @@ mod tests {
     const RATE: f64 = 2.0;
 
     /// Members that part by 1e-6 exp(2t) times a number of theirs.
-    fn diverging(count: usize, seed: u64) -> Vec<Curve> {
+    fn diverging(count: usize, seed: u64) -> Vec<TimeSeries> {
         let mut random = Random::new(seed);
-        let mut one = || -> Curve {
+        let mut one = || -> TimeSeries {
             let own = 1e-6 * (2.0 * random.uniform() - 1.0);
             let time = |k: u32| 0.01 * f64::from(k);
             (0..1000).map(time).map(|t| (t, t + own * exp(RATE * t))).collect()
@@ -153,11 +153,11 @@ mod tests {
             let share = medians.iter().filter(|time| **time == early).count() as f64 / 46_650.0;
             assert!((0.25..0.30).contains(&share), "{share}");
             // Members k leave by k after the late time, and the odd one is far from all after the early one.
-            let curve = |k: usize| -> Curve {
+            let curve = |k: usize| -> TimeSeries {
                 let at = |late: f64| if k == odd { 100.0 } else { late * k as f64 };
                 vec![(0.0, 0.0), (early, at(0.0)), (late, at(2.0)), (3.0, at(2.0))]
             };
-            let members: Vec<Curve> = (0..6).map(curve).collect();
+            let members: Vec<TimeSeries> = (0..6).map(curve).collect();
             let found = Horizon::of(&members, 1.0).expect("a horizon");
             assert_eq!(found, Horizon { time: late, within: [early, late], first: early }, "{odd}");
         }
@@ -202,7 +202,7 @@ mod tests {
         let members = diverging(20, 1);
         let never = Horizon::of(&members, 1e9).expect("a horizon");
         assert_eq!((never.time, never.first), (f64::INFINITY, f64::INFINITY));
-        let refused = |members: &[Curve], tolerance| {
+        let refused = |members: &[TimeSeries], tolerance| {
             Horizon::of(members, tolerance).expect_err("no horizon can be told")
         };
         assert_eq!(refused(&members[..1], 1.0), "1 members; 6 are needed");
@@ -219,7 +219,7 @@ mod tests {
         let mut damaged = members.clone();
         damaged[3][7].1 = f64::NAN;
         assert_eq!(refused(&damaged, 1.0), "a member has a value that is no number");
-        let empty = vec![Curve::new(); 20];
+        let empty = vec![TimeSeries::new(); 20];
         assert_eq!(refused(&empty, 1.0), "members are not sampled at the same times");
     }
 }

@@ -66,7 +66,7 @@ impl Mechanism {
 /// on the lattice at rest, from the waves of the combined limit. The limits of motion, force and contact are
 /// times to which the rules of cases apply factors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Limits {
+pub struct TimeStepLimits {
     /// The limit of all waves of the lattice at rest together: a longer step is refused, and at most
     /// [`ADVISED_SHARE`] of the limit is advised.
     pub together: f64,
@@ -75,7 +75,7 @@ pub struct Limits {
     integrator: Integrator,
 }
 
-impl Limits {
+impl TimeStepLimits {
     /// The limits of a refused run.
     pub const REFUSED: Self = Self {
         together: 1.0,
@@ -158,7 +158,7 @@ mod tests {
     #[test]
     fn viscosity_binds_unless_it_is_super_stepped() {
         let of = |integrator| {
-            Limits { integrator, ..Limits::REFUSED }
+            TimeStepLimits { integrator, ..TimeStepLimits::REFUSED }
                 .with(Mechanism::Waves, 3.0)
                 .with(Mechanism::Viscosity, 1.0)
                 .with(Mechanism::Diffusion, 500.0)

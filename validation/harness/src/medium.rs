@@ -5,8 +5,9 @@ use touchstone_base::settings::{Field, Value, Values};
 use touchstone_maths::theory::time_step;
 use touchstone_solver::Tait;
 
-/// The parameters of a material at a particle spacing. Parameters that a case does not use are 0. A parameter
-/// with a unit has it in [`crate::relation::View::medium`] too.
+/// The parameters of a material at a particle spacing. Parameters that a case does not use are 0. A new one
+/// has its unit in [`crate::relation::View::medium`], and is no constant of a mutation or one of
+/// [`mutate`](crate::method::mutate): both name every parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
     /// Equation of state, with density at rest and sound speed; a solid takes these two of it.
@@ -54,8 +55,8 @@ impl Medium {
     #[must_use]
     pub fn set_by(mut self, settings: &dyn Values) -> Self {
         for (field, value) in settings.fields().iter().zip(settings.values()) {
-            let knob = MediumSetting::ALL.into_iter().find(|(_, name, _)| *name == field.name);
-            match (knob, value) {
+            let setting = MediumSetting::ALL.iter().find(|(_, name, _)| *name == field.name);
+            match (setting, value) {
                 (Some((.., set)), Value::Real(value)) => set(&mut self, value),
                 (Some((.., set)), Value::Count(value)) => set(&mut self, value as f64),
                 _ => {}
@@ -75,13 +76,13 @@ impl Medium {
     }
 
     /// The parameters on which waves in the medium depend, for terms that read these settings.
-    pub fn waves(&self, uses: &[MediumSetting]) -> time_step::Medium {
-        let used = |knob, value| if uses.contains(&knob) { value } else { 0.0 };
+    pub fn waves(&self, uses: &[MediumSetting]) -> time_step::WaveMedium {
+        let used = |setting, value| if uses.contains(&setting) { value } else { 0.0 };
         let (alpha, delta) = (
             used(MediumSetting::Alpha, self.alpha),
             used(MediumSetting::Diffusion, self.diffusion),
         );
-        time_step::Medium { c0: self.sound_speed, h: self.h, nu: self.nu, alpha, delta }
+        time_step::WaveMedium { c0: self.sound_speed, h: self.h, nu: self.nu, alpha, delta }
     }
 }
 
@@ -115,7 +116,7 @@ type Set = fn(&mut Medium, f64);
 
 impl MediumSetting {
     /// All settings with their names, and the setters of a medium.
-    const ALL: [(Self, &'static str, Set); 10] = [
+    const ALL: &[(Self, &'static str, Set)] = &[
         (Self::Eta2, "eta2_over_h2", |medium, value| medium.eta2_over_h2 = value),
         (Self::Alpha, "alpha", |medium, value| medium.alpha = value),
         (Self::Beta, "beta", |medium, value| medium.beta = value),
@@ -130,8 +131,8 @@ impl MediumSetting {
 
     /// The names of the settings of this kind in a case, except the used ones.
     pub fn others(uses: &[Self], fields: &[Field]) -> Vec<&'static str> {
-        let others = Self::ALL.into_iter().filter(|(knob, ..)| !uses.contains(knob));
-        let names = others.map(|(_, name, _)| name);
+        let others = Self::ALL.iter().filter(|(setting, ..)| !uses.contains(setting));
+        let names = others.map(|(_, name, _)| *name);
         names.filter(|name| fields.iter().any(|field| field.name == *name)).collect()
     }
 }

@@ -7,7 +7,7 @@ use touchstone_base::{functions::powf, gate::Gate};
 use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 
 use crate::{
-    columns::Columns,
+    columns::TableColumns,
     convergence::{Convergence, Level, convergence},
     section::Section,
 };
@@ -61,7 +61,7 @@ pub fn add(
         .flat_map(|of| of.lines.iter().map(|line| (of.title, line, found(line))))
         .collect();
     let errors = |(_, line, _): &Row| listed(line.levels.iter().map(|level| level.value), 3);
-    let table = Columns::<Row>::default()
+    let table = TableColumns::<Row>::default()
         .text("refined", |(title, ..)| *title)
         .code("variant", |(_, line, _)| line.name)
         .text("errors, coarse to fine", errors)
@@ -110,7 +110,7 @@ fn listed(numbers: impl Iterator<Item = f64>, digits: usize) -> String {
     numbers.map(text).collect::<Vec<_>>().join(", ")
 }
 
-impl<'a, T> Columns<'a, T> {
+impl<'a, T> TableColumns<'a, T> {
     /// More columns: the order of an item, how sure it is, and whether to believe it.
     #[must_use]
     pub fn order(self, found: impl Fn(&T) -> &FittedOrder + Copy + 'a) -> Self {

@@ -12,6 +12,6 @@ pub use crate::{
     composed::{Composed, Compositions, Variants},
     facts::Facts,
     method::{Medium, Method, Parts},
-    problem::{Asked, Brief, Calls, Problem},
+    problem::{Brief, Calls, OptionalOutput, Problem},
     study::Studies,
 };

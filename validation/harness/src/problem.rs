@@ -26,7 +26,7 @@ use crate::{
     rules::Rules,
     runner::{self, Drive, check_size},
     size::Size,
-    snapshot::{Columns, DENSITY, Snapshot},
+    snapshot::{DENSITY, ParticleArrays, Snapshot},
 };
 
 /// Name of the kernel in the numerics of a record.
@@ -38,14 +38,14 @@ pub const WALLS: &str = "walls";
 
 /// Optional output of a run.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Asked {
+pub struct OptionalOutput {
     /// Every metric, at any cost.
     pub all: bool,
     /// Particles for pictures.
     pub particles: bool,
 }
 
-impl Asked {
+impl OptionalOutput {
     /// Optional output that the spec of a run asks for.
     pub fn of(spec: &RunSpec) -> Self {
         let Keep { particles, .. } = spec.keep;
@@ -146,7 +146,7 @@ pub trait Problem: Sized {
     fn watch(&self, scene: &Snapshot<Self::Extra>, start: &Snapshot<Self::Extra>) -> Self::Watch;
 
     /// Adds the functions that measure on the way.
-    fn calls(&self, calls: Calls<Self>, _asked: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _output: OptionalOutput) -> Calls<Self> {
         calls
     }
 
@@ -498,11 +498,11 @@ trait Parted: Problem {
         let scene = Snapshot::of(0.0, scene);
         let mut simulation = self.built(parts, &View::default())?;
         let record = self.begun(spec, threads, &brief);
-        let (times, asked) = (self.times(), Asked::of(spec));
+        let (times, output) = (self.times(), OptionalOutput::of(spec));
         let watch = self.watch(&scene, &Snapshot::ours(simulation.stepper()));
         drop(scene);
         let Calls { after_step, every_step, at, of_ours, resumed } =
-            self.calls(Calls::default(), asked);
+            self.calls(Calls::default(), output);
         let mut seen = Watched { watch, record };
         let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
         let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
@@ -551,16 +551,17 @@ trait Parted: Problem {
             return Err(RunError::Foreign(format!("there is no frame at t = {time} s")));
         }
         let (own, limits) = (foreign.own_start(), parts.limits);
-        let scene = own.clone().unwrap_or_else(|| Columns::all(&parts.particles));
+        let scene = own.clone().unwrap_or_else(|| ParticleArrays::all(&parts.particles));
         let sums = self.sums(parts, foreign)?;
-        let of_problem = || Columns::all(&sums.simulation.borrow_mut().stepper().particles());
+        let of_problem =
+            || ParticleArrays::all(&sums.simulation.borrow_mut().stepper().particles());
         let mut start = own.unwrap_or_else(of_problem);
         let mut record = self.begun(spec, 1, &brief);
         record.cost.particles = start.points.iter().filter(|point| point.is_fluid()).count();
         let mut last = Snapshot::given(0.0, start.clone(), &sums);
         let mut watch = self.watch(&Snapshot::given(0.0, scene, &sums), &last);
         start.densities = start.densities.filter(|_| foreign.has_densities());
-        let Calls { after_step, at, .. } = self.calls(Calls::default(), Asked::of(spec));
+        let Calls { after_step, at, .. } = self.calls(Calls::default(), OptionalOutput::of(spec));
         let mut reached = 0;
         for frame in foreign.frames {
             let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));

@@ -7,7 +7,7 @@ use touchstone_base::{
     random::Random,
     text::short,
 };
-use touchstone_solver::{Domain, Numbers, Particle, PlaneWall, Symmetric};
+use touchstone_solver::{Domain, Numbers, Particle, PlaneWall, Symmetric, Tait};
 
 use crate::medium::Medium;
 
@@ -178,25 +178,35 @@ impl View {
     }
 
     /// The material and its forces.
-    pub fn medium(&self, mut m: Medium) -> Medium {
-        for (number, unit) in [
-            (&mut m.eos.density, DENSITY),
-            (&mut m.eos.sound_speed, SPEED),
-            (&mut m.eos.background, PRESSURE),
-            (&mut m.density, DENSITY),
-            (&mut m.sound_speed, SPEED),
-            (&mut m.dx, LENGTH),
-            (&mut m.h, LENGTH),
-            (&mut m.w_at_spacing, [-2, 0, 0]),
-            (&mut m.nu, [2, -1, 0]),
-            (&mut m.shear_modulus, PRESSURE),
-        ] {
-            *number *= self.scale(unit);
+    pub fn medium(&self, m: Medium) -> Medium {
+        let in_unit = |number: f64, unit| number * self.scale(unit);
+        let turned = |acceleration| self.turn * acceleration * self.scale([1, -2, 0]);
+        Medium {
+            eos: Tait {
+                density: in_unit(m.eos.density, DENSITY),
+                sound_speed: in_unit(m.eos.sound_speed, SPEED),
+                background: in_unit(m.eos.background, PRESSURE),
+                gamma: m.eos.gamma,
+            },
+            density: in_unit(m.density, DENSITY),
+            sound_speed: in_unit(m.sound_speed, SPEED),
+            dx: in_unit(m.dx, LENGTH),
+            h: in_unit(m.h, LENGTH),
+            w_at_spacing: in_unit(m.w_at_spacing, [-2, 0, 0]),
+            nu: in_unit(m.nu, [2, -1, 0]),
+            shear_modulus: in_unit(m.shear_modulus, PRESSURE),
+            acceleration: turned(m.acceleration),
+            wall_acceleration: turned(m.wall_acceleration),
+            stiffest: m.stiffest,
+            eta2_over_h2: m.eta2_over_h2,
+            alpha: m.alpha,
+            beta: m.beta,
+            xsph: m.xsph,
+            xi: m.xi,
+            exponent: m.exponent,
+            diffusion: m.diffusion,
+            shift: m.shift,
         }
-        for acceleration in [&mut m.acceleration, &mut m.wall_acceleration] {
-            *acceleration = self.turn * *acceleration * self.scale([1, -2, 0]);
-        }
-        m
     }
 
     /// The periodic box, which is not shifted.

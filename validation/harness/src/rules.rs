@@ -2,7 +2,7 @@
 
 use touchstone_base::{number, record::Record};
 
-use crate::limits::Limits;
+use crate::limits::TimeStepLimits;
 
 /// The quantities that the rules of a case determine before the first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,7 +10,7 @@ pub struct Rules {
     /// The time step and the rule that sets it.
     pub step: Step,
     /// Theoretical limits.
-    pub limits: Limits,
+    pub limits: TimeStepLimits,
     /// Sound speed \[m/s\].
     pub sound_speed: f64,
     /// End of the run \[s\].
@@ -49,7 +49,7 @@ impl Step {
     }
 
     /// A share of the theoretical limit.
-    pub fn share(number: f64, limits: &Limits) -> Self {
+    pub fn share(number: f64, limits: &TimeStepLimits) -> Self {
         Self { dt: number * limits.together, by: "limit", number }
     }
 
@@ -74,7 +74,7 @@ impl Rules {
     /// exist, fail.
     pub const REFUSED: Self = Self {
         step: Step { dt: 1.0, by: "", number: 1.0 },
-        limits: Limits::REFUSED,
+        limits: TimeStepLimits::REFUSED,
         sound_speed: 1.0,
         end: 1.0,
     };
@@ -154,7 +154,7 @@ mod tests {
     /// A run of one step of 1e-4 s stated the 275 s that were planned, and 451,608 times the limit.
     #[test]
     fn a_record_states_the_step_that_was_taken_beside_the_one_that_was_planned() {
-        let mut limits = Limits::REFUSED;
+        let mut limits = TimeStepLimits::REFUSED;
         limits.together = 4e-4;
         let rules = Rules { step: Step::given(2e-4), limits, ..Rules::REFUSED };
         let mut record = Record::new("c", "v", json!({}), 1);

@@ -44,14 +44,14 @@ pub fn momentum(points: &[Point]) -> Vector2<f64> {
 
 /// An optional column of a snapshot.
 #[derive(Clone, Copy)]
-pub enum Column<'a, X, T> {
+pub enum SnapshotColumn<'a, X, T> {
     /// A quantity of the particles of our simulation, as they are stored.
     Ours(&'a [State<X>], fn(&State<X>) -> T),
     /// A column that was handed in.
     Given(&'a [T]),
 }
 
-impl<X, T: Copy> Column<'_, X, T> {
+impl<X, T: Copy> SnapshotColumn<'_, X, T> {
     /// The value of a point of the same snapshot.
     pub fn of(&self, point: &Point) -> T {
         match self {
@@ -63,7 +63,7 @@ impl<X, T: Copy> Column<'_, X, T> {
 
 /// Particles as arrays in the order of the scene. Optional columns are absent if they were not handed in.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Columns<X = ()> {
+pub struct ParticleArrays<X = ()> {
     /// The particles.
     pub points: Vec<Point>,
     /// Densities \[kg/m³\].
@@ -72,7 +72,7 @@ pub struct Columns<X = ()> {
     pub extras: Option<Vec<X>>,
 }
 
-impl<X: Numbers> Columns<X> {
+impl<X: Numbers> ParticleArrays<X> {
     /// Particles with masses \[kg/m\], positions \[m\] and velocities \[m/s\], without optional columns.
     pub fn of(particles: impl Iterator<Item = (Role, f64, [Vector2<f64>; 2])>) -> Self {
         let mut points = Vec::new();
@@ -119,7 +119,7 @@ pub trait Sums<X: Numbers> {
     fn read(
         &self,
         time: f64,
-        particles: &Columns<X>,
+        particles: &ParticleArrays<X>,
         read: &mut dyn FnMut(&dyn Stepper<X>),
     ) -> Result<(), Absent>;
 }
@@ -132,7 +132,7 @@ pub struct Snapshot<'a, X: Numbers = ()> {
 
 enum Source<'a, X: Numbers> {
     Ours(&'a dyn Stepper<X>),
-    Given(Columns<X>, Option<&'a dyn Sums<X>>),
+    Given(ParticleArrays<X>, Option<&'a dyn Sums<X>>),
 }
 
 impl<'a, X: Numbers> Snapshot<'a, X> {
@@ -143,11 +143,11 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
 
     /// Particles with every column at a time \[s\], without a method: the kernel is not a number.
     pub fn of(time: f64, particles: &[Particle<X>]) -> Self {
-        Self { time, source: Source::Given(Columns::all(particles), None) }
+        Self { time, source: Source::Given(ParticleArrays::all(particles), None) }
     }
 
     /// Particles that were handed in for a time \[s\], and our method, which sums over their neighbours.
-    pub fn given(time: f64, columns: Columns<X>, sums: &'a dyn Sums<X>) -> Self {
+    pub fn given(time: f64, columns: ParticleArrays<X>, sums: &'a dyn Sums<X>) -> Self {
         Self { time, source: Source::Given(columns, Some(sums)) }
     }
 
@@ -203,15 +203,17 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
     ///
     /// # Errors
     /// [`Absent::NotGiven`] without the column.
-    pub fn density(&self) -> Result<Column<'_, X, f64>, Absent> {
+    pub fn density(&self) -> Result<SnapshotColumn<'_, X, f64>, Absent> {
         Ok(match &self.source {
-            Source::Ours(simulation) => Column::Ours(simulation.data().state(), |p| p.density),
-            Source::Given(columns, _) => Column::Given(columns.densities()?),
+            Source::Ours(simulation) => {
+                SnapshotColumn::Ours(simulation.data().state(), |p| p.density)
+            }
+            Source::Given(columns, _) => SnapshotColumn::Given(columns.densities()?),
         })
     }
 
     /// The arrays of particles that are none of our simulation.
-    pub fn columns(&self) -> Option<&Columns<X>> {
+    pub fn columns(&self) -> Option<&ParticleArrays<X>> {
         match &self.source {
             Source::Ours(_) => None,
             Source::Given(columns, _) => Some(columns),
@@ -259,10 +261,12 @@ impl Snapshot<'_, Symmetric> {
     ///
     /// # Errors
     /// [`Absent::NotGiven`] without the column.
-    pub fn stress(&self) -> Result<Column<'_, Symmetric, Symmetric>, Absent> {
+    pub fn stress(&self) -> Result<SnapshotColumn<'_, Symmetric, Symmetric>, Absent> {
         Ok(match &self.source {
-            Source::Ours(simulation) => Column::Ours(simulation.data().state(), |p| p.extra),
-            Source::Given(columns, _) => Column::Given(columns.extras()?),
+            Source::Ours(simulation) => {
+                SnapshotColumn::Ours(simulation.data().state(), |p| p.extra)
+            }
+            Source::Given(columns, _) => SnapshotColumn::Given(columns.extras()?),
         })
     }
 }

@@ -120,8 +120,8 @@ fn loads(style: &str) -> bool {
 mod tests {
     use super::*;
     use crate::{
-        Axis, Block, Cell, Column, Counts, Explorer, Figure, Overview, Page, Plot, Section, Series,
-        Subject, Table, VERDICTS,
+        Axis, Block, Cell, Counts, Explorer, Figure, Overview, Page, Plot, Section, Series,
+        Subject, Table, TableColumn, VERDICTS,
     };
     use touchstone_base::gate::Verdict;
 
@@ -132,8 +132,9 @@ mod tests {
     fn real_page() -> Page {
         let plot = Plot::new("p < q & r", Axis::linear("x [m]"), Axis::log("y [\"1\"]"))
             .layer(Series::line("<&>", vec![(0.0, 1.0), (1.0, 2.0)]).cycle(2));
-        let table = Table::new("Errors", vec![Column::text("a"), Column::num("b", "m/s")])
-            .row(vec![Cell::marked("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
+        let table =
+            Table::new("Errors", vec![TableColumn::text("a"), TableColumn::num("b", "m/s")])
+                .row(vec![Cell::marked("`<code>`"), Cell::sci(f64::NAN, 2).with(Verdict::Fail)]);
         let details = vec![table.clone().into()];
         let section = Section::new("one", "One & *two*")
             .prose("See [the figure](#fig) & more.")
@@ -147,9 +148,9 @@ mod tests {
             picture: Some(Figure::new("small", "").panel(Plot::new("", x(), x()))),
             cells: vec![Cell::marked("**1 %**")],
         };
-        let error = vec![Column::num("error", "")];
+        let error = vec![TableColumn::num("error", "")];
         let overview = Overview { caption: "All".into(), columns: error, rows: vec![row] };
-        let columns = ["verdict", "gate", "bound", "reasons"].map(Column::text);
+        let columns = ["verdict", "gate", "bound", "reasons"].map(TableColumn::text);
         let cells = ["one.a&b", "at most 0.4", "1"].map(Cell::text);
         let gate = [vec![Cell::status(Verdict::Limitation)], cells.into()].concat();
         let gates = Table::new("", columns.into()).row(gate);

@@ -47,12 +47,12 @@ impl Explorer {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Cell, Column};
+    use crate::{Cell, TableColumn};
     use touchstone_base::gate::Verdict;
 
     #[test]
     fn a_gate_can_be_linked_and_names_its_reasons() {
-        let columns = ["verdict", "gate", "reasons"].map(Column::text);
+        let columns = ["verdict", "gate", "reasons"].map(TableColumn::text);
         let cells = ["couette.a<b", "1 2"].map(Cell::text);
         let row = [vec![Cell::status(Verdict::Limitation)], cells.into()].concat();
         let gates = Table::new("", columns.into()).row(row);

@@ -44,5 +44,5 @@ pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use overview::{Overview, Subject};
 pub use page::{Block, Page, Section, made_from};
 pub use render::{png, svg};
-pub use table::{Cell, Column, Table, first_sentence};
+pub use table::{Cell, Table, TableColumn, first_sentence};
 pub use ticks::Scale;

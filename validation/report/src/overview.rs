@@ -3,7 +3,7 @@
 use super::figure::Figure;
 use super::inline::{aloud, inline};
 use super::render;
-use super::table::{Cell, Column};
+use super::table::{Cell, TableColumn};
 use maud::{Markup, PreEscaped, html};
 
 /// A row of the table.
@@ -27,7 +27,7 @@ pub struct Overview {
     /// Description of the table for screen readers.
     pub caption: String,
     /// Columns behind picture and name.
-    pub columns: Vec<Column>,
+    pub columns: Vec<TableColumn>,
     /// A row each.
     pub rows: Vec<Subject>,
 }
@@ -86,7 +86,7 @@ mod tests {
             picture: None,
             cells,
         };
-        let columns = vec![Column::num("error", ""), Column::num("order", "")];
+        let columns = vec![TableColumn::num("error", ""), TableColumn::num("order", "")];
         let html = Overview { caption: "All".into(), columns, rows: vec![row] }.markup();
         let html = html.into_string();
         assert!(html.contains("<a href=\"#case\">Case</a><small>at Re 1</small>"), "{html}");

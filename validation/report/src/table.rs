@@ -116,7 +116,7 @@ impl Cell {
     }
 
     /// The cell with the head of its column as a label, for screens that are too narrow for columns.
-    pub(super) fn labelled(&self, column: &Column) -> Markup {
+    pub(super) fn labelled(&self, column: &TableColumn) -> Markup {
         self.markup(column.numeric, Some(&column.head))
     }
 
@@ -154,7 +154,7 @@ pub fn first_sentence(text: &str) -> (&str, &str) {
 
 /// Head of a column.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Column {
+pub struct TableColumn {
     /// Name; inline markup.
     pub head: String,
     /// Unit, shown in brackets; empty for none.
@@ -163,7 +163,7 @@ pub struct Column {
     pub numeric: bool,
 }
 
-impl Column {
+impl TableColumn {
     /// A column of text.
     pub fn text(head: impl Into<String>) -> Self {
         Self { head: head.into(), unit: String::new(), numeric: false }
@@ -190,14 +190,14 @@ pub struct Table {
     /// Inline markup.
     pub caption: String,
     /// Heads.
-    pub columns: Vec<Column>,
+    pub columns: Vec<TableColumn>,
     /// Cells, row by row; missing ones stay empty.
     pub rows: Vec<Vec<Cell>>,
 }
 
 impl Table {
     /// A table without rows.
-    pub fn new(caption: impl Into<String>, columns: Vec<Column>) -> Self {
+    pub fn new(caption: impl Into<String>, columns: Vec<TableColumn>) -> Self {
         Self { caption: caption.into(), columns, rows: Vec::new() }
     }
 
@@ -269,7 +269,7 @@ mod tests {
 
     #[test]
     fn a_long_table_opens_by_a_click() {
-        let columns = || vec![Column::text("a"); 8];
+        let columns = || vec![TableColumn::text("a"); 8];
         let row = || vec![Cell::text("1"); 8];
         let with = |rows: usize| Table {
             rows: vec![row(); rows],
@@ -282,10 +282,11 @@ mod tests {
 
     #[test]
     fn cells_carry_value_and_verdict() {
-        let table = Table::new("Errors", vec![Column::text("case"), Column::num("L2", "1")])
-            .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Verdict::Fail)])
-            .row(vec![Cell::text("short"), Cell::sci(0.123456789, 2)])
-            .row(vec![Cell::text("none"), Cell::text("–")]);
+        let table =
+            Table::new("Errors", vec![TableColumn::text("case"), TableColumn::num("L2", "1")])
+                .row(vec![Cell::text("a < b"), Cell::sci(1.2e-4, 2).with(Verdict::Fail)])
+                .row(vec![Cell::text("short"), Cell::sci(0.123456789, 2)])
+                .row(vec![Cell::text("none"), Cell::text("–")]);
         let html = table.markup("Table").into_string();
         assert!(html.contains("<td data-v=\"0.123457\">1.2·10⁻¹</td>"), "{html}");
         assert!(html.contains("<td class=\"number\">–</td>"));

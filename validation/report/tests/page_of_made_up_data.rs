@@ -7,8 +7,8 @@ use std::io;
 use std::path::PathBuf;
 use touchstone_base::gate::Verdict;
 use touchstone_report::{
-    Axis, Block, Cell, ColourMap, Column, Counts, Dots, Explorer, Figure, Overview, Page, Plot,
-    Section, Series, Subject, Table, VERDICTS, check_page,
+    Axis, Block, Cell, ColourMap, Counts, Dots, Explorer, Figure, Overview, Page, Plot, Section,
+    Series, Subject, Table, TableColumn, VERDICTS, check_page,
 };
 
 #[test]
@@ -38,7 +38,11 @@ fn figure() -> Figure {
 }
 
 fn table() -> Table {
-    let columns = vec![Column::text("gate"), Column::num("measured", "1"), Column::text("verdict")];
+    let columns = vec![
+        TableColumn::text("gate"),
+        TableColumn::num("measured", "1"),
+        TableColumn::text("verdict"),
+    ];
     let row = |k: usize, status| {
         vec![
             Cell::marked(format!("`gate{k}`")),
@@ -58,8 +62,8 @@ fn explorer() -> Explorer {
         ["verdict", "gate", "run or study", "value", "bound", "margin", "evidence", "reasons"];
     let numbers = ["value", "margin"];
     let column = |head| match numbers.contains(&head) {
-        true => Column::num(head, ""),
-        false => Column::text(head),
+        true => TableColumn::num(head, ""),
+        false => TableColumn::text(head),
     };
     let gate = |k: usize| {
         let case = ["curves", "maps"][k % 2];
@@ -91,7 +95,7 @@ fn page() -> io::Result<Page> {
             Cell::text("–").because("no order"),
         ],
     };
-    let columns = vec![Column::num("error", ""), Column::num("order", "")];
+    let columns = vec![TableColumn::num("error", ""), TableColumn::num("order", "")];
     let overview = Overview { caption: "Results".into(), columns, rows: vec![row] };
     let curves = Section::new("curves", "Curves")
         .counts(Counts::of([Verdict::Pass]))

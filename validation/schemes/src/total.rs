@@ -12,7 +12,8 @@ use touchstone_lagrangian::{
 use touchstone_maths::theory::bending;
 use touchstone_maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use touchstone_solver::{
-    Compose, Ghosts, Leapfrog, Limits, Particle, Role, SceneError, Stepper, Symmetric, WendlandC2,
+    Compose, DivergenceBounds, Ghosts, Leapfrog, Particle, Role, SceneError, Stepper, Symmetric,
+    WendlandC2,
 };
 
 use crate::methods;
@@ -94,7 +95,10 @@ fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
         moduli: moduli(&medium),
         hourglass: HOURGLASS,
         loads,
-        limits: Limits { density: DENSITIES.map(|ratio| ratio * medium.density), ..limits },
+        limits: DivergenceBounds {
+            density: DENSITIES.map(|ratio| ratio * medium.density),
+            ..limits
+        },
         parallel_from: if threads > 1 { 10_000 } else { usize::MAX },
     }
 }

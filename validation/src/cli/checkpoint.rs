@@ -23,7 +23,7 @@ const FORMAT: u32 = 2;
 /// The requested run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Asked {
+pub struct ResumableRun {
     /// The run.
     pub spec: RunSpec,
     /// Digest of the sources of the program.
@@ -37,11 +37,11 @@ pub struct Asked {
 }
 
 /// Writes a checkpoint of these simulations, in place of an earlier one.
-pub fn write(folder: &OutputFolder, asked: &Asked, of: &[Vec<u8>]) -> Result<(), FileError> {
+pub fn write(folder: &OutputFolder, asked: &ResumableRun, of: &[Vec<u8>]) -> Result<(), FileError> {
     folder.write(CHECKPOINT, &bytes(asked, of)).map(|_| ())
 }
 
-fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
+fn bytes(asked: &ResumableRun, simulations: &[Vec<u8>]) -> Vec<u8> {
     let lengths: Vec<usize> = simulations.iter().map(Vec::len).collect();
     let head = serde_json::to_value((asked, lengths)).unwrap_or_default();
     let rest = [format!("{head}\n").into_bytes(), simulations.concat()].concat();
@@ -53,7 +53,10 @@ fn bytes(asked: &Asked, simulations: &[Vec<u8>]) -> Vec<u8> {
 ///
 /// # Errors
 /// If there is none, or it is damaged or of another build.
-pub fn read(folder: &Path, sources: fn(&str) -> String) -> Result<(Asked, Vec<Vec<u8>>), Failure> {
+pub fn read(
+    folder: &Path,
+    sources: fn(&str) -> String,
+) -> Result<(ResumableRun, Vec<Vec<u8>>), Failure> {
     let path = folder.join(CHECKPOINT);
     let bytes = files::read(&path).map_err(|reason| {
         let words = "has no checkpoint that can be read";
@@ -69,7 +72,7 @@ fn parse(
     bytes: &[u8],
     path: &Path,
     sources: fn(&str) -> String,
-) -> Result<(Asked, Vec<Vec<u8>>), String> {
+) -> Result<(ResumableRun, Vec<Vec<u8>>), String> {
     let (first, rest) = split_line(bytes);
     let line = String::from_utf8_lossy(first);
     let Some(digest) = line.strip_prefix(&format!("{MAGIC} {FORMAT} ")) else {
@@ -86,7 +89,8 @@ fn parse(
         return Err(damaged());
     }
     let (head, mut rest) = split_line(rest);
-    let head: Result<(Asked, Vec<usize>), _> = serde_json::from_str(&String::from_utf8_lossy(head));
+    let head: Result<(ResumableRun, Vec<usize>), _> =
+        serde_json::from_str(&String::from_utf8_lossy(head));
     let (asked, lengths) = head.map_err(|reason| {
         format!("what was asked for cannot be read from the checkpoint {path:?}: {reason}")
     })?;
@@ -115,13 +119,19 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn asked() -> Asked {
+    fn asked() -> ResumableRun {
         let settings = serde_json::json!({"rows": 20, "text": "two\nlines"});
         let spec = RunSpec::new("couette", "seed", settings);
-        Asked { spec, sources: "abc".into(), every: Some(60), vtk: Some(4), allow_long: false }
+        ResumableRun {
+            spec,
+            sources: "abc".into(),
+            every: Some(60),
+            vtk: Some(4),
+            allow_long: false,
+        }
     }
 
-    fn parsed(bytes: &[u8]) -> Result<(Asked, Vec<Vec<u8>>), String> {
+    fn parsed(bytes: &[u8]) -> Result<(ResumableRun, Vec<Vec<u8>>), String> {
         parse(bytes, "f".as_ref(), |_| "abc".into())
     }
 

@@ -16,7 +16,7 @@ use touchstone_base::{
 use touchstone_exchange::{
     challenge,
     flaw::{Flaw, lines},
-    problem::{Asked, CURVE, PROBLEM, Problem, Sealed},
+    problem::{CURVE, PROBLEM, Problem, ProblemDocument, Sealed},
     read::{COLUMNS, Head, RESULTS, Renamed},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
@@ -325,7 +325,7 @@ fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
 }
 
 /// The run that a document asks for.
-fn spec_of(case: &dyn Case, asked: &Asked) -> Result<RunSpec, Failure> {
+fn spec_of(case: &dyn Case, asked: &ProblemDocument) -> Result<RunSpec, Failure> {
     let RunSpec { case: name, variant, settings, measure, .. } = asked.spec.clone();
     let plain = RunSpec { measure, ..RunSpec::new(&name, &variant, settings) };
     if name != case.name() {

@@ -21,7 +21,7 @@ use super::{
 };
 
 /// A gate, its runs, and its last verdict.
-struct Known {
+struct ExplainedGate {
     gate: Gate,
     tiers: Vec<String>,
     on: String,
@@ -31,7 +31,7 @@ struct Known {
     others: Vec<String>,
 }
 
-impl Known {
+impl ExplainedGate {
     /// Not judged yet.
     fn new(gate: Gate, on: String) -> Self {
         Self { gate, tiers: Vec::new(), on, last: None, status: None, others: Vec::new() }
@@ -57,7 +57,8 @@ pub fn explain(arguments: &arguments::Explain, session: &Session) -> Result<(), 
         return output::print(&listed(of_name, status));
     }
     let gates = all(session, verdicts.as_ref());
-    let mut chosen: Vec<&Known> = gates.iter().filter(|known| known.gate.id == asked).collect();
+    let mut chosen: Vec<&ExplainedGate> =
+        gates.iter().filter(|known| known.gate.id == asked).collect();
     if chosen.is_empty() {
         chosen.extend(gates.iter().filter(|known| known.gate.id.starts_with(asked)));
     }
@@ -100,7 +101,7 @@ pub fn in_full(JudgedOf { case, of, judged }: &JudgedOf) -> String {
         Of::Section(section) => (of_study(&section.title, case.name()), None),
     };
     let last = Some(Judged::clone(judged));
-    words(&Known { last, status, ..Known::new(judged.gate.clone(), on) })
+    words(&ExplainedGate { last, status, ..ExplainedGate::new(judged.gate.clone(), on) })
 }
 
 fn of_study(title: &str, case: &str) -> String {
@@ -108,8 +109,8 @@ fn of_study(title: &str, case: &str) -> String {
 }
 
 /// Gates of the plans, then gates on several runs, whose names only a report has.
-fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<Known> {
-    let mut gates: Vec<Known> = Vec::new();
+fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<ExplainedGate> {
+    let mut gates: Vec<ExplainedGate> = Vec::new();
     for case in session.cases {
         for tier in [Tier::Quick, Tier::Full] {
             for planned in plan::of_case(*case, tier) {
@@ -119,7 +120,10 @@ fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<Known> {
                         Some(known) => known.tiers.push(tier_name(tier)),
                         None => {
                             let tiers = vec![tier_name(tier)];
-                            gates.push(Known { tiers, ..Known::new(gate, on.clone()) });
+                            gates.push(ExplainedGate {
+                                tiers,
+                                ..ExplainedGate::new(gate, on.clone())
+                            });
                         }
                     }
                 }
@@ -143,9 +147,9 @@ fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<Known> {
     }
     for study in verdicts.iter().flat_map(|verdicts| &verdicts.studies) {
         let on = of_study(&study.title, &study.case);
-        gates.extend(study.judged.iter().map(|judged| Known {
+        gates.extend(study.judged.iter().map(|judged| ExplainedGate {
             last: Some(judged.clone()),
-            ..Known::new(judged.gate.clone(), on.clone())
+            ..ExplainedGate::new(judged.gate.clone(), on.clone())
         }));
     }
     gates
@@ -184,7 +188,7 @@ fn by_cause(gates: &[&Judged]) -> String {
 /// Names that an error suggests, at most.
 const SUGGESTED: usize = 5;
 
-fn unknown(asked: &str, gates: &[Known]) -> Failure {
+fn unknown(asked: &str, gates: &[ExplainedGate]) -> Failure {
     let ids: BTreeSet<&str> = gates.iter().map(|known| known.gate.id.as_str()).collect();
     let mut near = by_similarity(&ids.iter().copied().collect::<Vec<_>>(), asked);
     near.truncate(SUGGESTED);
@@ -199,8 +203,8 @@ fn unknown(asked: &str, gates: &[Known]) -> Failure {
     ))
 }
 
-fn words(known: &Known) -> String {
-    let Known { gate, on, last, others, .. } = known;
+fn words(known: &ExplainedGate) -> String {
+    let ExplainedGate { gate, on, last, others, .. } = known;
     let judged_as = |judged: &Judged| {
         let words = output::painted(judged.judgement.verdict, &judged.words());
         format!("{}: {words}", judged::value(&judged.judgement))

@@ -44,7 +44,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{CommandFactory, Parser};
 use touchstone_base::files::FileError;
-use touchstone_base::manifest::{Known, Source, UNKNOWN, tell_source};
+use touchstone_base::manifest::{Answer, Source, UNKNOWN, tell_source};
 use touchstone_base::reference::{Reference, ReferenceError};
 use touchstone_base::spec::RunKey;
 use touchstone_harness::case::{Case, RunError, Tier};
@@ -246,9 +246,9 @@ fn trouble(made: &BatchResult) -> Option<Exit> {
 const SOURCE: Source = Source {
     commit: env!("TOUCHSTONE_COMMIT"),
     dirty: match env!("TOUCHSTONE_DIRTY").as_bytes() {
-        b"yes" => Known::Yes,
-        b"no" => Known::No,
-        _ => Known::Unknown,
+        b"yes" => Answer::Yes,
+        b"no" => Answer::No,
+        _ => Answer::Unknown,
     },
 };
 

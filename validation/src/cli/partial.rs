@@ -18,11 +18,16 @@ use touchstone_report::counted;
 type MissingRun = (Job, Pending);
 
 /// Message about missing runs: their number and their cases; `None` if all records exist.
-type Told = Option<[String; 2]>;
+type MissingNote = Option<[String; 2]>;
 
 /// The suite of the complete cases, and a message about the others, which are not drawn because this would
 /// take seconds each time.
-pub fn of_made(mut plans: Plans, tier: Tier, path: &Path, made: BatchResult) -> (Suite, Told) {
+pub fn of_made(
+    mut plans: Plans,
+    tier: Tier,
+    path: &Path,
+    made: BatchResult,
+) -> (Suite, MissingNote) {
     let mut missing = make::jobs(plans.clone());
     missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
     let lacking = lacking(missing, path, &made);
@@ -38,7 +43,7 @@ pub fn partial(
     tier: Tier,
     store: &Path,
     stored: StoredRuns,
-) -> (Suite, String, Told) {
+) -> (Suite, String, MissingNote) {
     let StoredRuns { made, missing, .. } = stored;
     let lacking = lacking(missing, store, &made);
     let told = tell(&plans, &lacking);
@@ -86,7 +91,7 @@ fn judge(
     suite
 }
 
-fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, MissingRun>) -> Told {
+fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, MissingRun>) -> MissingNote {
     let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
     let names: Vec<&str> =
         plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();

@@ -29,7 +29,7 @@ use touchstone_harness::{
 
 use super::{
     Exit, Failure, Outcome, Session, arguments,
-    checkpoint::{self, Asked, CHECKPOINT},
+    checkpoint::{self, CHECKPOINT, ResumableRun},
     interrupt::Hold,
     judged, on_threads, output, profile,
     progress::Bar,
@@ -45,7 +45,7 @@ pub fn run(arguments: &arguments::Run, session: &Session) -> Outcome {
         let case = touchstone_cases::find_in(session.cases, &asked.spec.case)?;
         session.check_references(&[case])?;
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
-        let asked = Asked { every: arguments.checkpoint_every.or(asked.every), ..asked };
+        let asked = ResumableRun { every: arguments.checkpoint_every.or(asked.every), ..asked };
         output::GOES_ON.store(true, Ordering::Relaxed);
         return carry_out(case, asked, earlier, Some(folder), arguments, session);
     }
@@ -66,14 +66,14 @@ pub fn run(arguments: &arguments::Run, session: &Session) -> Outcome {
     let folder = Folder::of(arguments, case.name(), variant)?;
     let sources = (session.sources)(case.name());
     let &arguments::Run { vtk, allow_long, checkpoint_every: every, .. } = arguments;
-    let asked = Asked { spec, sources, every, vtk, allow_long };
+    let asked = ResumableRun { spec, sources, every, vtk, allow_long };
     carry_out(case, asked, Vec::new(), folder, arguments, session)
 }
 
 /// Runs, writes and judges; may continue from the simulations of a checkpoint.
 fn carry_out(
     case: &dyn Case,
-    asked: Asked,
+    asked: ResumableRun,
     earlier: Vec<Vec<u8>>,
     folder: Option<Folder>,
     arguments: &arguments::Run,
@@ -188,7 +188,7 @@ impl Lost {
 /// The record, and all fields of the particles at the end if there is a folder for them.
 fn compute(
     case: &dyn Case,
-    asked: &Asked,
+    asked: &ResumableRun,
     earlier: Vec<Vec<u8>>,
     arguments: &arguments::Run,
     (folder, lost): (Option<&Folder>, &Lost),

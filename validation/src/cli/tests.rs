@@ -31,8 +31,8 @@ use touchstone_harness::{
 use touchstone_report::{Page, check_page};
 
 use super::{
-    Exit, Session, WrongReference, arguments::Arguments, checkpoint::Asked, conclude, dispatch,
-    judged::Verdicts, partial,
+    Exit, Session, WrongReference, arguments::Arguments, checkpoint::ResumableRun, conclude,
+    dispatch, judged::Verdicts, partial,
 };
 
 /// A case whose variants are the ways in which a run can end.
@@ -347,7 +347,8 @@ fn a_changed_table_fails_every_case_that_uses_it_by_name() {
         })
     };
     let output = OutputFolder::create(folder.path()).expect("a folder");
-    let asked = Asked { spec, sources: sources(""), every: Some(60), vtk: None, allow_long: false };
+    let asked =
+        ResumableRun { spec, sources: sources(""), every: Some(60), vtk: None, allow_long: false };
     super::checkpoint::write(&output, &asked, &[]).expect("a checkpoint");
     for line in [
         format!("run --resume {out}"),

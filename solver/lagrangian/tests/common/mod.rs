@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use touchstone_lagrangian::{Hencky, Law, Load, Moduli, Solid, SolidScene};
 use touchstone_solver::{
-    Domain, Limits, Open, Particle, Stepper, Symmetric, WendlandC2, walls::Walls,
+    DivergenceBounds, Domain, Open, Particle, Stepper, Symmetric, WendlandC2, walls::Walls,
 };
 
 pub const MODULI: Moduli = Moduli { bulk: 2.0, shear: 0.7 };
@@ -39,7 +39,7 @@ pub fn scene<W, C>(particles: Vec<Particle<Symmetric>>, walls: W, loads: C) -> S
         moduli: MODULI,
         hourglass: 1.0,
         loads,
-        limits: Limits::default(),
+        limits: DivergenceBounds::default(),
         parallel_from: usize::MAX,
     }
 }

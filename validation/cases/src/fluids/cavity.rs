@@ -244,7 +244,7 @@ impl Problem for Closed {
         Means { means: vec![0.0; self.places.len()], volume }
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.at("mid-lines", |cavity, Means { means, .. }, now, _, _| {
             let (Ok(fluid), dx) = (volumes(now), cavity.flow.medium.dx) else { return };
             for (mean, place) in means.iter_mut().zip(&cavity.places) {
@@ -268,7 +268,7 @@ impl Problem for Closed {
             let beyond = all.iter().map(|p| p.position.add_scalar(-0.5).amax() - 0.5);
             record.put(OUTSIDE, beyond.filter(|beyond| *beyond > 0.0).count() as f64);
         }
-        if Asked::of(&record.run).particles {
+        if OptionalOutput::of(&record.run).particles {
             let speeds = all.iter().map(|p| (p.position, p.velocity.norm()));
             pictures::keep(record, pictures::END, "L", ("speed", "U"), speeds);
         }

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{case::Step, method::Properties};
-use touchstone_solver::{Limits, Tait};
+use touchstone_solver::{DivergenceBounds, Tait};
 
 touchstone_base::settings! {
     /// The numerical settings that all these flows have.
@@ -104,7 +104,7 @@ impl UnitFlow {
     pub fn parts(&self, domain: Domain, particles: Vec<Particle>) -> Parts {
         // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
         let speed = 2.0 * (self.speed + self.rules.sound_speed);
-        let limits = Limits { density: [0.7, 1.3], speed };
+        let limits = DivergenceBounds { density: [0.7, 1.3], speed };
         let parts = Parts::new(self.medium, domain, particles);
         Parts { skin: Some(self.skin), limits, ..parts }
     }

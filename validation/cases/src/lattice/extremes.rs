@@ -179,7 +179,7 @@ impl Problem for Extreme {
         Watch { momentum: momentum(&start), scale, late: 0.0 }
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.at("samples", |extreme, Watch { late, .. }, now, look, _| {
             let Ok(simulation) = now.simulation() else { return };
             let done = extreme.done(look);

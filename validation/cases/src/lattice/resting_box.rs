@@ -24,7 +24,7 @@ use touchstone_harness::{
     table::{Row, Table},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
-use touchstone_solver::{Limits, Tait};
+use touchstone_solver::{DivergenceBounds, Tait};
 
 use crate::lattice::torus;
 
@@ -138,7 +138,7 @@ fn stiffness(s: &BoxSettings) -> f64 {
 /// The waves of the box in the lattice of a method, in units of c₀ and h.
 fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
-    let medium = time_step::Medium { c0: 1.0, h: 1.0, nu, alpha, delta };
+    let medium = time_step::WaveMedium { c0: 1.0, h: 1.0, nu, alpha, delta };
     time_step::modes(&method.properties.square([s.h_over_dx, ETA2]), s.n, &medium)
 }
 
@@ -156,7 +156,8 @@ impl Resting {
             let variant = "without density diffusion".into();
             return Err(RunError::Unused { key: "delta".into(), variant });
         }
-        let limits = limits::Limits::of(&modes(method, s), method.properties.theory).times(h(s));
+        let limits =
+            limits::TimeStepLimits::of(&modes(method, s), method.properties.theory).times(h(s));
         let step = Step::courant(s.courant, h(s), [1.0, 0.0]);
         let rules = Rules { step, limits, sound_speed: 1.0, end: s.steps as f64 * step.dt };
         Ok(Self { method: method.clone(), settings: s.clone(), rules })
@@ -177,7 +178,7 @@ fn parts(method: &Method, s: &BoxSettings) -> Parts {
     let medium = medium(method, s);
     let mut random = Random::new(7);
     let mut noise = || NOISE * random.normal();
-    let limits = Limits { density: [0.7, 1.3], speed: 2.0 };
+    let limits = DivergenceBounds { density: [0.7, 1.3], speed: 2.0 };
     let velocity = |_, place| (place, Vector2::new(noise(), noise()));
     Parts { limits, ..torus((1.0, s.n), medium, velocity) }
 }
@@ -236,7 +237,7 @@ impl Problem for Resting {
         Growth::new(energy(start).unwrap_or(f64::NAN), self.settings.steps as u64)
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.after_step("energy", |_, growth, now| watch(growth, now))
     }
 

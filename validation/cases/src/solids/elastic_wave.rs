@@ -160,7 +160,7 @@ impl Problem for Wave {
         Watch { direction: self.settings.direction(), amplitudes: Vec::new() }
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.every_step_of_ours("projection", |_, watch, simulation| watch.after_step(simulation))
     }
 

@@ -249,9 +249,9 @@ impl Problem for Drop {
         Watch { history, ledger, kinetic }
     }
 
-    fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, output: OptionalOutput) -> Calls<Self> {
         calls.at("shape", |drop, watch, now, _, _| watch.history.sample(drop, now)).when(
-            asked.all,
+            output.all,
             |calls| {
                 calls.of_ours("energy ledger by term", |drop, watch, s| {
                     watch.ledger.sample(&drop.medium, s)
@@ -268,7 +268,7 @@ impl Problem for Drop {
     ) {
         history.measure(record);
         ledger.measure(end, kinetic, "initial kinetic energy", record);
-        if let (true, Ok(density)) = (Asked::of(&record.run).particles, end.density()) {
+        if let (true, Ok(density)) = (OptionalOutput::of(&record.run).particles, end.density()) {
             let (s, particles) = (&self.settings, end.all());
             let centre = shape(&particles).centre;
             let scale = s.water.rho * Exact::circle(s.radius, s.strain).central_pressure();

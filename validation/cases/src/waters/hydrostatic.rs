@@ -95,7 +95,7 @@ fn variants() -> Compositions<HydrostaticSettings> {
                 a hydrostatic column, leapfrog";
     let plain = "modern with the diffusion of Molteni and Colagrossi: does plain diffusion level out the \
                  column?";
-    Variants::of(|m, s| Ok(Column::new(m, s)))
+    Variants::of(|m, s| Ok(WaterColumn::new(m, s)))
         .with("seed", seed, touchstone_schemes::water::seed(), |_| {})
         .with("ghosts", "seed with ghosts for walls", touchstone_schemes::water::ghosts(), |_| {})
         .with("modern", modern_is, touchstone_schemes::water::modern(), modern)
@@ -129,7 +129,7 @@ const FREEBOARD: usize = 4;
 const LIMIT_BOX: usize = 32;
 
 /// The numbers of one run, SI units.
-struct Column {
+struct WaterColumn {
     settings: HydrostaticSettings,
     method: WaterMethod,
     exact: exact::Hydrostatic,
@@ -144,7 +144,7 @@ struct Column {
     period: f64,
 }
 
-impl Column {
+impl WaterColumn {
     /// The numbers for a method, or why they are refused.
     fn new(m: &WaterMethod, s: &HydrostaticSettings) -> Self {
         let c0 = (s.g * s.depth / s.compressibility).sqrt();
@@ -215,7 +215,7 @@ impl Column {
     }
 }
 
-impl Problem for Column {
+impl Problem for WaterColumn {
     type Extra = ();
     type Simulation = dyn Metered<()>;
     type Watch = History;
@@ -247,7 +247,7 @@ impl Problem for Column {
         history
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.at("history", |column, history, now, _, _| history.sample(column, now))
     }
 
@@ -275,12 +275,12 @@ struct History {
 
 impl History {
     /// No sample yet of water that starts like this.
-    fn new(column: &Column, start: &Snapshot) -> Self {
+    fn new(column: &WaterColumn, start: &Snapshot) -> Self {
         let start = ends(column, &start.moving());
         Self { start, rows: Series::default(), outside: 0.0, spread: 0.0 }
     }
 
-    fn sample(&mut self, column: &Column, now: &Snapshot) {
+    fn sample(&mut self, column: &WaterColumn, now: &Snapshot) {
         let water = now.moving();
         let (s, medium, tank) = (&column.settings, &column.medium, &column.tank);
         let error = now.density().map(|density| {
@@ -344,7 +344,7 @@ fn spread(water: &[Point], width: f64) -> f64 {
 }
 
 /// Mean heights of the lowest and of the highest particles in strips of width dx \[m\].
-fn ends(column: &Column, water: &[Point]) -> [f64; 2] {
+fn ends(column: &WaterColumn, water: &[Point]) -> [f64; 2] {
     let mut strips = vec![[f64::INFINITY, f64::NEG_INFINITY]; column.settings.columns];
     let last = strips.len() - 1;
     for Point { position, .. } in water {
@@ -497,7 +497,7 @@ mod tests {
         let settings: HydrostaticSettings =
             touchstone_base::settings::of_json(&spec.settings).expect("settings");
         let method = touchstone_schemes::water::modern();
-        let column = Column::new(&method, &settings);
+        let column = WaterColumn::new(&method, &settings);
         let (dx, g) = (column.medium.dx, settings.g);
         let water = || -> Vec<Particle> { column.water(method.properties.first_row).collect() };
         let start = ends(&column, &Snapshot::of(0.0, &water()).all());

@@ -229,7 +229,7 @@ impl Moments {
         let water = water.iter().map(|p| p.position);
         let is_outside = |x: &Vector2<f64>| (x.x - HALF).abs() > HALF || x.y < floor(s, x.x);
         record.put(OUTSIDE, water.clone().filter(is_outside).count() as f64);
-        if Asked::of(&record.run).particles {
+        if OptionalOutput::of(&record.run).particles {
             let errors = water.zip(errors);
             pictures::keep(record, pictures::END, "H", ("error", "rho g H"), errors);
         }
@@ -267,7 +267,7 @@ impl Problem for Still {
         Moments::default()
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.at("moments", |still, moments, now, _, _| moments.sample(still, now))
     }
 

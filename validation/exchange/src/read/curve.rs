@@ -7,7 +7,7 @@ use std::iter::once;
 use nalgebra::Vector2;
 use touchstone_base::text::number;
 use touchstone_harness::{
-    facts::Curve,
+    facts::SubmittedCurve,
     foreign::{self, ForeignParticle, Frame},
 };
 
@@ -22,7 +22,7 @@ use crate::{
 /// # Errors
 /// Everything that is wrong with it.
 pub fn frames(
-    curve: &Curve,
+    curve: &SubmittedCurve,
     text: &str,
     renamed: &Renamed,
     problem: &Problem,
@@ -87,7 +87,7 @@ pub fn frames(
 }
 
 /// The table: finite numbers, and at least one row.
-fn finite(curve: &Curve, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
+fn finite(curve: &SubmittedCurve, text: &str, renamed: &Renamed) -> Result<Rows, Vec<Flaw>> {
     let columns = curve.columns.iter().map(|(name, unit)| (*name, *unit, false));
     let columns: Vec<Head> = once(("t", "s", false)).chain(columns).collect();
     let rows = table::rows(CURVE, text, renamed, &columns)?;

@@ -41,7 +41,7 @@ pub struct Parts<X = ()> {
     /// Verlet skin \[m\], if not the usual one.
     pub skin: Option<f64>,
     /// Bounds beyond which the run counts as diverged.
-    pub limits: touchstone_solver::Limits,
+    pub limits: touchstone_solver::DivergenceBounds,
     /// Threads inside the run, 1 for serial; 0 counts as 1.
     pub threads: usize,
     /// A deliberate error.
@@ -61,7 +61,7 @@ impl<X: Numbers> Parts<X> {
             surface: Vec::new(),
             bodies: Vec::new(),
             skin: None,
-            limits: touchstone_solver::Limits::default(),
+            limits: touchstone_solver::DivergenceBounds::default(),
             threads: 1,
             mutation: None,
             disorder: None,

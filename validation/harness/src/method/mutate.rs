@@ -5,9 +5,9 @@ use touchstone_base::{
     mutation::{Constant, Disorder},
     random::Random,
 };
-use touchstone_solver::{Numbers, Particle, Role};
+use touchstone_solver::{Numbers, Particle, Role, Tait};
 
-use super::Parts;
+use super::{Medium, Parts};
 use crate::relation::{DENSITY, LENGTH, NoSymmetry, Relation, View};
 
 /// Disorders the start, then multiplies the constant that is wrong by its factor. The time step is no part of
@@ -19,21 +19,33 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     let Some(mutation) = parts.mutation else { return };
     let of = |constant| mutation.factor_of(constant);
     let Parts { medium, particles, mirrors, surface, .. } = parts;
-    medium.nu *= of(Constant::Viscosity);
-    medium.acceleration *= of(Constant::BodyForce);
-    medium.wall_acceleration *= of(Constant::BodyForce);
-    medium.sound_speed *= of(Constant::SoundSpeed);
-    medium.eos.sound_speed *= of(Constant::SoundSpeed);
-    medium.density *= of(Constant::Density);
-    medium.eos.density *= of(Constant::Density);
-    medium.shear_modulus *= of(Constant::ShearModulus);
-    medium.h *= of(Constant::SmoothingLength);
-    medium.alpha *= of(Constant::ArtificialViscosity);
-    medium.beta *= of(Constant::ArtificialViscosity);
-    medium.xi *= of(Constant::ArtificialStress);
-    medium.xsph *= of(Constant::Xsph);
-    medium.diffusion *= of(Constant::DensityDiffusion);
-    medium.shift *= of(Constant::Shifting);
+    let m = *medium;
+    *medium = Medium {
+        eos: Tait {
+            density: m.eos.density * of(Constant::Density),
+            sound_speed: m.eos.sound_speed * of(Constant::SoundSpeed),
+            gamma: m.eos.gamma,
+            background: m.eos.background,
+        },
+        density: m.density * of(Constant::Density),
+        sound_speed: m.sound_speed * of(Constant::SoundSpeed),
+        dx: m.dx,
+        h: m.h * of(Constant::SmoothingLength),
+        w_at_spacing: m.w_at_spacing,
+        stiffest: m.stiffest,
+        nu: m.nu * of(Constant::Viscosity),
+        shear_modulus: m.shear_modulus * of(Constant::ShearModulus),
+        acceleration: m.acceleration * of(Constant::BodyForce),
+        wall_acceleration: m.wall_acceleration * of(Constant::BodyForce),
+        eta2_over_h2: m.eta2_over_h2,
+        alpha: m.alpha * of(Constant::ArtificialViscosity),
+        beta: m.beta * of(Constant::ArtificialViscosity),
+        xsph: m.xsph * of(Constant::Xsph),
+        xi: m.xi * of(Constant::ArtificialStress),
+        exponent: m.exponent,
+        diffusion: m.diffusion * of(Constant::DensityDiffusion),
+        shift: m.shift * of(Constant::Shifting),
+    };
     let stretch = Vector2::new(1.0, of(Constant::Height));
     for particle in particles {
         let own = if particle.role == Role::Fluid { Constant::Speed } else { Constant::WallSpeed };
@@ -82,10 +94,10 @@ pub(crate) fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View
 #[cfg(test)]
 mod tests {
     use touchstone_base::mutation::Mutation;
-    use touchstone_solver::{Domain, PlaneWall, Tait};
+    use touchstone_solver::{Domain, PlaneWall};
 
     use super::*;
-    use crate::method::{Medium, Method};
+    use crate::method::Method;
 
     type Plain = touchstone_solver::Compose<
         touchstone_solver::CubicSpline,

@@ -9,7 +9,7 @@ use touchstone_solver::{
 
 use super::terms::{Boundary, FirstRow, FromMedium};
 use crate::{
-    limits::Limits,
+    limits::TimeStepLimits,
     medium::{Medium, MediumSetting},
 };
 
@@ -118,7 +118,12 @@ impl Properties {
 
     /// The limits of a step by the waves of a periodic square lattice of n × n particles with these h/dx and
     /// η²/h².
-    pub fn limits(&self, lattice: [f64; 2], n: usize, medium: &time_step::Medium) -> Limits {
-        Limits::of(&time_step::modes(&self.square(lattice), n, medium), self.theory)
+    pub fn limits(
+        &self,
+        lattice: [f64; 2],
+        n: usize,
+        medium: &time_step::WaveMedium,
+    ) -> TimeStepLimits {
+        TimeStepLimits::of(&time_step::modes(&self.square(lattice), n, medium), self.theory)
     }
 }

@@ -24,16 +24,16 @@ pub trait FromMedium: Sized {
 
 /// `Type [generics] (settings that it reads; the terms inside it) = |medium| value, equation`.
 macro_rules! from_medium {
-    ($($type:ty [$($generics:tt)*] ($($knob:ident),* $(; $($inner:ident),+)?) =
+    ($($type:ty [$($generics:tt)*] ($($setting:ident),* $(; $($inner:ident),+)?) =
         $new:expr, $text:expr;)+) => {$(
         impl<$($generics)*> FromMedium for $type {
             fn new(medium: &Medium) -> Self {
                 let new: fn(&Medium) -> Self = $new;
                 new(medium)
             }
-            fn uses(knobs: &mut Vec<MediumSetting>) {
-                knobs.extend_from_slice(&[$(MediumSetting::$knob),*]);
-                $($($inner::uses(knobs);)+)?
+            fn uses(settings: &mut Vec<MediumSetting>) {
+                settings.extend_from_slice(&[$(MediumSetting::$setting),*]);
+                $($($inner::uses(settings);)+)?
             }
             fn state(terms: &mut Vec<&'static str>) {
                 let text: &'static str = $text;

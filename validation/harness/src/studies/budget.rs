@@ -5,7 +5,7 @@ use touchstone_report::Cell;
 
 use super::{Accuracy, cost::error_of};
 use crate::{
-    columns::Columns,
+    columns::TableColumns,
     runs::{Planned, Runs},
     section::Section,
     study::Study,
@@ -77,7 +77,7 @@ impl Study for Budgets {
                 rows.push((variant, change, *error, error - errors[change.against]));
             }
         }
-        let table = Columns::<(&str, &Change, f64, f64)>::default()
+        let table = TableColumns::<(&str, &Change, f64, f64)>::default()
             .code("variant", |(variant, ..)| *variant)
             .text("change", |(_, change, ..)| &change.what)
             .text("part of the error", |(_, change, ..)| change.part)

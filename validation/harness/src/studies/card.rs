@@ -8,7 +8,7 @@ use touchstone_base::{
     spec::RunSpec,
 };
 use touchstone_report::{
-    Block, Cell, Column, Figure, Subject, code, exact, plain, sci, seconds, sig,
+    Block, Cell, Figure, Subject, TableColumn, code, exact, plain, sci, seconds, sig,
 };
 
 use super::{
@@ -172,7 +172,7 @@ pub struct Breaks {
 }
 
 /// The columns of the table on the first screen.
-pub fn columns() -> Vec<Column> {
+pub fn columns() -> Vec<TableColumn> {
     let numbers = [
         "its error",
         "order",
@@ -182,8 +182,8 @@ pub fn columns() -> Vec<Column> {
         "breaks at",
         "paper's breaks at",
     ];
-    let numbers = numbers.map(|head| Column::num(head, ""));
-    [vec![Column::text("recommended")], numbers.into()].concat()
+    let numbers = numbers.map(|head| TableColumn::num(head, ""));
+    [vec![TableColumn::text("recommended")], numbers.into()].concat()
 }
 
 /// Content of a row.

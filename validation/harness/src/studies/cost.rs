@@ -15,7 +15,7 @@ use touchstone_report::{
 use super::{Card, Ladder, ladder};
 use crate::{
     case::Case,
-    columns::Columns,
+    columns::TableColumns,
     convergence::{Level, convergence},
     orders::{self, FittedOrder},
     runs::{Planned, Runs},
@@ -366,7 +366,7 @@ const TIMES: &str = "Times are the least median run time on one core of a level 
 fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
     let about = format!("Observed orders of accuracy. {} {LABELS} {TIMES}", accuracy.about);
     let finest = |row: &Row| row.points.last().map_or(f64::NAN, |p| p.error);
-    let columns = Columns::default()
+    let columns = TableColumns::default()
         .code("variant", |row: &Row| row.of.variant)
         .order(|row: &Row| &row.found)
         .of(["finest error", "-"], finest, |error| Cell::percent(error, 2));

@@ -9,8 +9,8 @@ use touchstone_report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, T
 
 use super::{PointsOf, anchor};
 use crate::{
-    columns::Columns,
-    horizon::{Curve, Horizon},
+    columns::TableColumns,
+    horizon::{Horizon, TimeSeries},
     quantiles::{CONFIDENCE, Quantile},
     runs::{Judged, Planned, Runs},
     section::Section,
@@ -91,14 +91,14 @@ struct CompletedEnsemble<'a> {
 struct Followed<'a> {
     of: &'a History,
     /// One a member.
-    curves: Vec<Curve>,
+    curves: Vec<TimeSeries>,
     /// When they do, or why that is not known.
     horizon: Result<Horizon, String>,
 }
 
 impl<'a> Followed<'a> {
     fn of(of: &'a History, records: &[&Record]) -> Self {
-        let curves: Vec<Curve> = records.iter().map(|record| (of.points)(record)).collect();
+        let curves: Vec<TimeSeries> = records.iter().map(|record| (of.points)(record)).collect();
         let horizon = Horizon::of(&curves, of.tolerance);
         Self { of, curves, horizon }
     }
@@ -196,7 +196,7 @@ fn horizons(unit: &str, all: &[(&CompletedEnsemble, Followed)]) -> Table {
         move |(_, followed): &Row| followed.horizon.as_ref().map_or(f64::NAN, of)
     };
     let show = |value| Cell::num(value, 3);
-    Columns::<Row>::default()
+    TableColumns::<Row>::default()
         .code("variant", |(made, _)| made.of.variant)
         .text("resolution", |(made, _)| made.of.label.clone())
         .text("members", |(made, _)| format!("{} of {}", made.records.len(), made.of.members.len()))
@@ -233,7 +233,7 @@ fn distributions(all: &[Numbered]) -> Table {
         let all: Vec<String> = number.measured.iter().map(|value| sig(*value, 3)).collect();
         if all.is_empty() { "–".to_string() } else { all.join("; ") }
     };
-    Columns::<Numbered>::default()
+    TableColumns::<Numbered>::default()
         .code("variant", |(made, ..)| made.of.variant)
         .text("resolution", |(made, ..)| made.of.label.clone())
         .text("number", |(_, number, _)| number.name[0])
@@ -268,7 +268,7 @@ fn panel([time, unit]: &[&str; 2], made: &CompletedEnsemble, followed: &Followed
     let median = quantiles.iter().map(|(t, all)| (*t, all[2])).collect();
     let end = followed.end();
     let measured = followed.of.measured.iter().map(|curve| {
-        let until: Curve = curve.iter().filter(|(t, _)| *t <= end).copied().collect();
+        let until: TimeSeries = curve.iter().filter(|(t, _)| *t <= end).copied().collect();
         Series::line("", until).colour(Colour::BLACK).width(0.8)
     });
     let least = quantiles.iter().map(|(_, all)| all[0]).fold(f64::NAN, f64::min);
@@ -290,7 +290,7 @@ fn panel([time, unit]: &[&str; 2], made: &CompletedEnsemble, followed: &Followed
 
 /// Least, quartiles, median and largest of the members at each drawn time; none for members sampled at
 /// different times.
-fn quantiles(members: &[Curve]) -> Vec<(f64, [f64; 5])> {
+fn quantiles(members: &[TimeSeries]) -> Vec<(f64, [f64; 5])> {
     let Some(first) = members.first().filter(|f| members.iter().all(|m| m.len() == f.len())) else {
         return Vec::new();
     };

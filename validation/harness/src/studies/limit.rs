@@ -9,7 +9,7 @@ use touchstone_report::Cell;
 use super::anchor;
 use crate::{
     bisect::STABLE,
-    columns::Columns,
+    columns::TableColumns,
     rules::Rules,
     runs::{Judged, Planned, Runs},
     section::Section,
@@ -77,7 +77,7 @@ impl Study for StepLimits {
         let measured =
             |limit: &StepLimit| of_theory(limit, runs).unwrap_or(f64::NAN) * limit.theory;
         let of_default = |limit: &StepLimit| stable(limit, runs).map(|x| x / limit.default_at);
-        let table = Columns::<StepLimit>::default()
+        let table = TableColumns::<StepLimit>::default()
             .code("variant", |limit| limit.spec.variant.clone())
             .text("scene", |limit| limit.scene.clone())
             .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))

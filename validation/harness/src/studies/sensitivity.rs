@@ -10,7 +10,7 @@ use touchstone_report::{Cell, code};
 
 use super::anchor;
 use crate::{
-    columns::Columns,
+    columns::TableColumns,
     detect::{DETECTED, GATES, UNDETECTED},
     runs::{Planned, Runs, Tier, entry},
     section::Section,
@@ -181,7 +181,7 @@ impl Study for Sensitivity {
             NONE => Cell::text("none"),
             error => percent(error),
         };
-        let table = Columns::<Row>::default()
+        let table = TableColumns::<Row>::default()
             .text("constant", |row| row.watched.constant.words())
             .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
             .num(["detected from", "-"], error)

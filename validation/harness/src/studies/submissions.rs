@@ -9,7 +9,7 @@ use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, Shape, percent
 
 use super::{Accuracy, Card, Comparisons, anchor, cost::error_of};
 use crate::{
-    columns::Columns,
+    columns::TableColumns,
     runs::{Judged, JudgedRun, Runs},
     section::Section,
     study::Studies,
@@ -267,7 +267,7 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
     rows.sort_by(|a, b| a.0.division.cmp(&b.0.division).then(a.2.total_cmp(&b.2)));
     let accuracy = accuracy_metrics(studies);
     let others = accuracy.clone();
-    let mut columns = Columns::<Row>::default();
+    let mut columns = TableColumns::<Row>::default();
     if rows.iter().any(|row| row.3 != rows[0].3) {
         columns = columns.text("what the error is", |(.., of)| of.to_string());
     }

@@ -6,7 +6,7 @@ use touchstone_base::{
     record::{MetricName, Record},
     settings::{Field, Value},
 };
-use touchstone_report::{Cell, Column, Figure, Table, code, sig};
+use touchstone_report::{Cell, Figure, Table, TableColumn, code, sig};
 
 use super::{
     Card, Studies, anchor,
@@ -100,11 +100,15 @@ fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
     let changed: BTreeSet<&str> = changes.map(|(field, _)| field.name).collect();
     let mut fields: Vec<&Field> = case.fields().iter().collect();
     fields.retain(|field| changed.contains(field.name));
-    let mut columns = vec![Column::text("variant")];
-    columns.extend(fields.iter().map(|field| Column::num(code(field.name), "")));
-    columns.push(Column::text("error"));
-    columns.extend([Column::num("run time", ""), Column::num("pairs", "")]);
-    columns.extend([Column::num("particles", ""), Column::num("steps", ""), Column::text("ended")]);
+    let mut columns = vec![TableColumn::text("variant")];
+    columns.extend(fields.iter().map(|field| TableColumn::num(code(field.name), "")));
+    columns.push(TableColumn::text("error"));
+    columns.extend([TableColumn::num("run time", ""), TableColumn::num("pairs", "")]);
+    columns.extend([
+        TableColumn::num("particles", ""),
+        TableColumn::num("steps", ""),
+        TableColumn::text("ended"),
+    ]);
     let mut formulas = BTreeMap::new();
     let cells = |row: &Row| {
         let Row { record, point, .. } = row;

@@ -11,7 +11,7 @@ use touchstone_report::{Cell, Table, percent, sig};
 
 use super::{Ladder, Level as LadderLevel, anchor};
 use crate::{
-    columns::Columns,
+    columns::TableColumns,
     convergence::{Convergence, Label, Level, SLOWEST, convergence},
     orders::FittedOrder,
     runs::{Planned, Runs},
@@ -338,8 +338,8 @@ impl Study for Comparisons {
 
 type Row<'a> = (&'a Comparison, ComparisonResult);
 
-fn columns<'a>() -> Columns<'a, Row<'a>> {
-    Columns::default()
+fn columns<'a>() -> TableColumns<'a, Row<'a>> {
+    TableColumns::default()
         .marked("comparison", |(of, _): &Row| of.what.clone())
         .text("with", |(of, _)| of.against)
         .of(["E", "-"], |(_, found)| found.error, show)

@@ -25,7 +25,7 @@ use touchstone_solver::{
 /// The fluid that the limits are for. All numbers must be finite and not negative, `h` and `c0`
 /// positive.
 #[derive(Clone, Copy, Debug)]
-pub struct Medium {
+pub struct WaveMedium {
     /// Sound speed c₀ \[m/s\].
     pub c0: f64,
     /// Smoothing length \[m\].
@@ -135,7 +135,7 @@ pub fn explicit_limit(stiffest: f64, h: f64, nu: f64) -> f64 {
 }
 
 /// The waves of a periodic box of `n` × `n` particles, one of each symmetry class.
-pub fn modes(lattice: &SquareLattice, n: usize, medium: &Medium) -> Vec<Mode> {
+pub fn modes(lattice: &SquareLattice, n: usize, medium: &WaveMedium) -> Vec<Mode> {
     wave_vectors(n).map(|theta| Mode::new(lattice, theta, medium)).collect()
 }
 
@@ -163,8 +163,8 @@ const SEARCHED_SINGLY: u16 = 20;
 
 impl Mode {
     /// The wave with phase `theta` = k dx \[rad\].
-    pub fn new(lattice: &SquareLattice, theta: Vector2<f64>, medium: &Medium) -> Self {
-        let Medium { c0, h, nu, alpha, delta } = *medium;
+    pub fn new(lattice: &SquareLattice, theta: Vector2<f64>, medium: &WaveMedium) -> Self {
+        let WaveMedium { c0, h, nu, alpha, delta } = *medium;
         let g = lattice.gradient(theta);
         // At the corners of the zone g is round-off; P is diagonal there.
         let along = if g.norm() > 1e-12 { g.normalize() } else { Vector2::x() };
@@ -388,7 +388,7 @@ mod tests {
     use approx::assert_relative_eq;
     use touchstone_solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
-    const WATER: Medium = Medium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
+    const WATER: WaveMedium = WaveMedium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
     use Integrator::{Euler, Leapfrog, PredictorCorrector, SingleSweep};
 
     type Rate = fn(&Mode) -> f64;
@@ -419,7 +419,7 @@ mod tests {
         assert!((expected * nu / (h * h) - 0.3264).abs() < 1e-4, "{expected} s by hand");
         let found = explicit_limit(lattice.stiffest(), h, nu);
         assert!((found / expected - 1.0).abs() < 1e-12, "{found} s, expected {expected} s");
-        let medium = Medium { c0: 1.0, h, nu, alpha: 0.0, delta: 0.0 };
+        let medium = WaveMedium { c0: 1.0, h, nu, alpha: 0.0, delta: 0.0 };
         for mode in modes(&lattice, 8, &medium) {
             let apart = (mode.explicit / expected - 1.0).abs();
             assert!(apart < 1e-12, "{} s of a wave, expected {expected} s", mode.explicit);
@@ -431,7 +431,7 @@ mod tests {
     fn separate_limits_match_the_design_table() {
         fn check<K: Kernel>(ratio: f64, printed: [&str; 2]) {
             let lattice = SquareLattice::of::<K>(ratio, 0.01);
-            let modes = modes(&lattice, 120, &Medium { nu: 1.0, ..WATER });
+            let modes = modes(&lattice, 120, &WaveMedium { nu: 1.0, ..WATER });
             let row = format!("{} {ratio}", K::NAME);
             let limits: [Rate; 2] = [|mode| mode.omega, |mode| mode.viscous];
             assert_rounds_to(&row, &printed, &limits.map(|rate| limit_alone(&modes, rate)));
@@ -452,7 +452,7 @@ mod tests {
     fn measured_box_matches_the_design_table() {
         let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
         let limit = |n: usize, nu: f64, integrator| {
-            time_step_limit(&modes(&lattice, n, &Medium { nu, ..WATER }), integrator)
+            time_step_limit(&modes(&lattice, n, &WaveMedium { nu, ..WATER }), integrator)
         };
         let leapfrog = [0.0, 0.1, 1.0].map(|nu| limit(20, nu, Leapfrog));
         assert_rounds_to("leapfrog", &["1.868", "1.6649", "0.3529"], &leapfrog);
@@ -469,7 +469,7 @@ mod tests {
     #[test]
     fn dissipation_limits_match_the_design_text() {
         let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
-        let medium = Medium { alpha: 1.0, delta: 1.0, ..WATER };
+        let medium = WaveMedium { alpha: 1.0, delta: 1.0, ..WATER };
         let modes = modes(&lattice, 120, &medium);
         let limits: [Rate; 2] = [Mode::artificial, |mode| mode.density];
         let computed = limits.map(|rate| limit_alone(&modes, rate));
@@ -482,7 +482,7 @@ mod tests {
     fn measured_threshold_of_the_predictor_corrector() {
         let lattice = SquareLattice::of::<CubicSpline>(1.3, 0.01);
         let growth = [40.0, 80.0].map(|x| {
-            let modes = modes(&lattice, 20, &Medium { nu: 1.0 / x, ..WATER });
+            let modes = modes(&lattice, 20, &WaveMedium { nu: 1.0 / x, ..WATER });
             growth_per_step(&modes, PredictorCorrector, 0.5)
         });
         assert_eq!(growth[0], 0.0);
@@ -492,10 +492,11 @@ mod tests {
     #[test]
     fn mixed_limits_match_the_design_text() {
         let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
-        let limit = |medium: Medium| time_step_limit(&modes(&lattice, 80, &medium), Leapfrog);
-        let mixed = [10.0, 30.0, 100.0].map(|x: f64| limit(Medium { nu: 1.0 / x, ..WATER }));
+        let limit = |medium: WaveMedium| time_step_limit(&modes(&lattice, 80, &medium), Leapfrog);
+        let mixed = [10.0, 30.0, 100.0].map(|x: f64| limit(WaveMedium { nu: 1.0 / x, ..WATER }));
         assert_rounds_to("c h/nu = 10, 30, 100", &["1.655", "1.797", "1.846"], &mixed);
-        let alphas = [0.0, 0.01, 0.1, 0.5, 1.0, 2.0].map(|alpha| limit(Medium { alpha, ..WATER }));
+        let alphas =
+            [0.0, 0.01, 0.1, 0.5, 1.0, 2.0].map(|alpha| limit(WaveMedium { alpha, ..WATER }));
         let printed = ["1.867", "1.860", "1.796", "1.469", "1.028", "0.515"];
         assert_rounds_to("alpha", &printed, &alphas);
     }
@@ -506,7 +507,7 @@ mod tests {
     fn separate_limits_are_optimistic() {
         let lattice = SquareLattice::of::<CubicSpline>(1.2, 0.01);
         let excess = [3.0, 5.3, 10.0, 30.0, 100.0].map(|x: f64| {
-            let medium = Medium { nu: 1.0 / x, ..WATER };
+            let medium = WaveMedium { nu: 1.0 / x, ..WATER };
             let modes = modes(&lattice, 80, &medium);
             let alone = |rate: Rate| limit_alone(&modes, rate);
             let together = time_step_limit(&modes, Leapfrog);
@@ -539,7 +540,7 @@ mod tests {
         for (nu, alpha, delta) in
             [(0.1, 0.0, 0.0), (0.0, 0.5, 0.0), (0.02, 1.0, 0.1), (1.0, 0.1, 0.1)]
         {
-            let modes = modes(&lattice, 12, &Medium { nu, alpha, delta, ..WATER });
+            let modes = modes(&lattice, 12, &WaveMedium { nu, alpha, delta, ..WATER });
             for integrator in [PredictorCorrector, Leapfrog, SingleSweep, Euler] {
                 for mode in &modes {
                     let limit = mode.limit(integrator);

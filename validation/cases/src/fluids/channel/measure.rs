@@ -9,7 +9,7 @@ use touchstone_harness::snapshot::{Point, Snapshot};
 use touchstone_maths::metrics::norms::{l2, linf};
 use touchstone_solver::EquationOfState;
 
-use super::Setup;
+use super::ChannelSetup;
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
 /// than a few spacings.
@@ -39,7 +39,7 @@ touchstone_base::metrics! {
 
 /// Compares the particles of the fluid with the exact flow at νt/L² = `tau` and adds metrics `name@tau` and a
 /// profile.
-pub fn compare(setup: &Setup, fluid: &[Point], tau: f64, record: &mut Record) {
+pub fn compare(setup: &ChannelSetup, fluid: &[Point], tau: f64, record: &mut Record) {
     let t = setup.time(tau);
     let u: Vec<f64> = fluid.iter().map(|p| p.velocity.x).collect();
     let exact: Vec<f64> = fluid.iter().map(|p| setup.exact(p.position.y, t)).collect();
@@ -63,7 +63,7 @@ pub fn profile_at(tau: f64) -> String {
 }
 
 /// Measures that need the end of the run only.
-pub fn at_the_end(setup: &Setup, end: &Snapshot, record: &mut Record) {
+pub fn at_the_end(setup: &ChannelSetup, end: &Snapshot, record: &mut Record) {
     let fluid = end.moving();
     let count = fluid.len() as f64;
     let mean = |f: &dyn Fn(&Point) -> f64| fluid.iter().map(f).sum::<f64>() / count;
@@ -89,7 +89,7 @@ pub fn at_the_end(setup: &Setup, end: &Snapshot, record: &mut Record) {
 }
 
 /// Means over the rows of the initial lattice: y, u and the exact u there.
-fn row_profile(setup: &Setup, fluid: &[Point], t: f64) -> Profile {
+fn row_profile(setup: &ChannelSetup, fluid: &[Point], t: f64) -> Profile {
     let row = |row: &[Point]| {
         let mean = |f: &dyn Fn(&Point) -> f64| row.iter().map(f).sum::<f64>() / row.len() as f64;
         let exact = mean(&|p| setup.exact(p.position.y, t));
@@ -101,7 +101,7 @@ fn row_profile(setup: &Setup, fluid: &[Point], t: f64) -> Profile {
 
 /// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within 3 dx of
 /// the wall, and to the exact flow at the same points, so that the error of the fit cancels.
-fn shear_error(setup: &Setup, fluid: &[Point], wall: usize, t: f64) -> f64 {
+fn shear_error(setup: &ChannelSetup, fluid: &[Point], wall: usize, t: f64) -> f64 {
     let s = &setup.settings;
     let speed = if wall == 1 { setup.plate_speed() } else { 0.0 };
     let depth = |p: &Point| if wall == 1 { s.width - p.position.y } else { p.position.y };
@@ -132,8 +132,8 @@ pub const MODE: &str = "mode";
 ///
 /// # Errors
 /// Without densities.
-pub fn pressure_mode(setup: &Setup, now: &Snapshot) -> Result<f64, Absent> {
-    let Setup { settings: s, medium, v, .. } = setup;
+pub fn pressure_mode(setup: &ChannelSetup, now: &Snapshot) -> Result<f64, Absent> {
+    let ChannelSetup { settings: s, medium, v, .. } = setup;
     let (mut mode, mut count) = (0.0, 0.0);
     let density = now.density()?;
     for p in now.stored() {
@@ -146,7 +146,7 @@ pub fn pressure_mode(setup: &Setup, now: &Snapshot) -> Result<f64, Absent> {
 
 /// The last [`WINDOW`] of the times \[s\] and amplitudes after every step, of a run that ended at `end`
 /// \[s\].
-pub fn last_of_mode(setup: &Setup, series: &[[f64; 2]], end: f64) -> Option<Profile> {
+pub fn last_of_mode(setup: &ChannelSetup, series: &[[f64; 2]], end: f64) -> Option<Profile> {
     let crossing = setup.settings.width / setup.medium.eos.sound_speed;
     let since_end = |t: f64| (t - end) / crossing;
     if since_end(0.0) > -WINDOW {
@@ -172,13 +172,13 @@ mod tests {
         touchstone_schemes::flow::couette().seed
     }
 
-    fn setup(flow: Flow) -> Setup {
+    fn setup(flow: Flow) -> ChannelSetup {
         let settings = ChannelSettings { watch_mode: true, ..ChannelSettings::default() };
-        Setup::new(flow, &settings, &method()).expect("the defaults are valid")
+        ChannelSetup::new(flow, &settings, &method()).expect("the defaults are valid")
     }
 
     /// The record of 20 rows whose velocity is this function of y \[m\] and t \[s\], compared at `tau`.
-    fn compared(setup: &Setup, tau: f64, velocity: &dyn Fn(f64, f64) -> f64) -> Record {
+    fn compared(setup: &ChannelSetup, tau: f64, velocity: &dyn Fn(f64, f64) -> f64) -> Record {
         let mut fluid = setup.rows(0.5 * setup.medium.dx, 20);
         let t = setup.time(tau);
         fluid.iter_mut().for_each(|p| p.velocity.x = velocity(p.position.y, t));

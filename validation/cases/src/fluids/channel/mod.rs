@@ -19,7 +19,7 @@ use touchstone_harness::{
 use studies::{facts, studies};
 
 pub use plan::{GHOSTS, ladder};
-pub use setup::{ChannelSettings, Flow, Setup};
+pub use setup::{ChannelSettings, ChannelSetup, Flow};
 
 /// νt/L² at which profiles are compared.
 pub const TIMES: [f64; 7] = [0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 1.5];

@@ -7,12 +7,12 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::snapshot::Snapshot;
 
 use super::{
-    Setup,
+    ChannelSetup,
     measure::{self, MODE},
     setup::DECISIVE,
 };
 
-impl Problem for Setup {
+impl Problem for ChannelSetup {
     type Extra = ();
     type Simulation = dyn Stepper<()>;
     /// Time and amplitude of the pressure mode after every step, if requested.
@@ -46,7 +46,7 @@ impl Problem for Setup {
         Vec::new()
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls
             .when(self.settings.watch_mode, |calls| {
                 calls.after_step("pressure mode", |setup, mode, now| {

@@ -6,7 +6,7 @@ use touchstone_base::random::Random;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{case::Step, method::FirstRow};
 use touchstone_maths::exact::StartUp;
-use touchstone_solver::{Limits, PlaneWall, Role, Tait};
+use touchstone_solver::{DivergenceBounds, PlaneWall, Role, Tait};
 
 use super::{COUETTE, ChannelCase, POISEUILLE, TIMES};
 use crate::fluids::unit_flow::LIMIT_BOX;
@@ -130,7 +130,7 @@ impl Flow {
 
 /// The numbers of one run, SI units.
 #[derive(Clone)]
-pub struct Setup {
+pub struct ChannelSetup {
     /// The settings they follow from.
     pub settings: ChannelSettings,
     /// The method that they are for.
@@ -154,7 +154,7 @@ pub const DECISIVE: &str = "end, dt, c0, rows or columns";
 /// Largest sound speed \[m/s\], in whatever way it follows from the settings.
 const MOST_SOUND: f64 = 1e6;
 
-impl Setup {
+impl ChannelSetup {
     /// Follows the rules for a method.
     pub fn new(flow: Flow, s: &ChannelSettings, method: &Method) -> Result<Self, RunError> {
         let v = s.speed();
@@ -217,7 +217,7 @@ impl Setup {
         Parts {
             mirrors: self.mirrors(),
             skin: Some(skin),
-            limits: Limits { density: [0.7 * s.rho, 1.3 * s.rho], speed },
+            limits: DivergenceBounds { density: [0.7 * s.rho, 1.3 * s.rho], speed },
             ..Parts::new(self.medium, Domain::channel(length), particles)
         }
     }

@@ -11,7 +11,7 @@ use touchstone_base::{
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Curve, Drawn, Draws, Statement},
+    case::{Drawn, Draws, Statement, SubmittedCurve},
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
         Curves, Ladder, Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
@@ -74,8 +74,8 @@ const SEALED: Draws = Draws {
 };
 
 /// The velocities of rows across the channel: each row of particles represents one.
-fn profile() -> Curve {
-    Curve {
+fn profile() -> SubmittedCurve {
+    SubmittedCurve {
         columns: &[("y", "m"), ("u", "m/s")],
         about: "y is the distance from the lower plate, u the velocity along the plates; a line for each row \
                 of the problem, y ascending",

@@ -6,7 +6,7 @@ use touchstone_harness::{
 };
 use touchstone_schemes::flow::{self, OfChannels};
 
-use super::{ChannelSettings, Flow, Setup};
+use super::{ChannelSettings, ChannelSetup, Flow};
 
 /// Quintic spline, h = dx, η² a mere guard, long steps, c0 up to where sound costs no step.
 fn modern(s: &mut ChannelSettings) {
@@ -83,7 +83,7 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
     let single = "modern with one pair sweep a step in place of two: is its error cheaper?";
     let steps =
         "modern with super-time-stepping: what does a step save that viscosity does not limit?";
-    Variants::of(move |m, s| Setup::new(flow, s, m))
+    Variants::of(move |m, s| ChannelSetup::new(flow, s, m))
         .with("seed", seed, methods.seed, |_| {})
         .with("interface-wall", interface, methods.interface_wall, |_| {})
         .with("wendland-leapfrog", kernel, methods.wendland, wendland)

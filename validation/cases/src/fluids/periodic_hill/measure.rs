@@ -18,7 +18,7 @@ use touchstone_solver::{
     inverse::{Inverse, of_three},
 };
 
-use super::{Setup, reference::KNOWN_SETTINGS};
+use super::{HillSetup, reference::KNOWN_SETTINGS};
 
 /// Points across a section.
 pub const POINTS: usize = 200;
@@ -187,7 +187,7 @@ pub struct Window {
 }
 
 /// The places of the stations: x, y, weight of the section's height.
-fn places(setup: &Setup) -> Vec<[f64; 2]> {
+fn places(setup: &HillSetup) -> Vec<[f64; 2]> {
     let lid = setup.hill.lid();
     let at = |x: f64| {
         let floor = setup.floor(x);
@@ -213,9 +213,9 @@ fn add<const N: usize>(sums: &mut Vec<[f64; N]>, values: impl Iterator<Item = [f
 
 impl Window {
     /// Adds a sample.
-    pub fn sample(&mut self, setup: &Setup, now: &Snapshot) {
+    pub fn sample(&mut self, setup: &HillSetup, now: &Snapshot) {
         let eos = setup.flow.medium.eos;
-        let point = |c: &touchstone_solver::particles::Column| {
+        let point = |c: &touchstone_solver::particles::SweptParticle| {
             let p = eos.pressure(c.common.density) - eos.background;
             [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
         };
@@ -227,7 +227,7 @@ impl Window {
     }
 
     /// Adds a sample of these particles, x, y, V, u, v, p each, with the weight of a squared distance.
-    fn add(&mut self, setup: &Setup, points: Vec<[f64; 6]>, weight: &dyn Fn(f64) -> f64) {
+    fn add(&mut self, setup: &HillSetup, points: Vec<[f64; 6]>, weight: &dyn Fn(f64) -> f64) {
         let field = Field::new((weight, setup.flow.support), points, setup.hill.lid());
         let sections = places(setup).into_iter().map(|[x, y]| field.at(x, y));
         add(&mut self.sections, sections.map(|[u, v, _]| [u, v]));
@@ -241,7 +241,7 @@ impl Window {
 }
 
 /// Shear stress on the hill (along its tangent) and on the lid, pressure on the hill, at x.
-fn wall(setup: &Setup, field: &Field, x: f64) -> [f64; 3] {
+fn wall(setup: &HillSetup, field: &Field, x: f64) -> [f64; 3] {
     let (x, nu, lid) = (x.rem_euclid(setup.hill.period()), setup.flow.medium.nu, setup.hill.lid());
     let (floor, slope) = (setup.floor(x), setup.slope(x));
     let length = hypot(1.0, slope);
@@ -263,7 +263,7 @@ pub fn mean_velocity(now: &Snapshot, area: f64) -> Result<f64, Absent> {
 }
 
 /// Metrics and profiles.
-pub fn measure(setup: &Setup, window: &Window, area: f64, record: &mut Record) {
+pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Record) {
     let (sections, wall) = (window.mean(&window.sections), window.mean(&window.wall));
     let mean = |k: usize| {
         let column = window.forces.column(k)?;
@@ -305,7 +305,7 @@ pub fn measure(setup: &Setup, window: &Window, area: f64, record: &mut Record) {
 
 /// The largest error of the flux through a station, relative to the flux wanted; sections are the means of u
 /// and v at the points of the stations.
-fn section_flux(setup: &Setup, sections: &[[f64; 2]]) -> f64 {
+fn section_flux(setup: &HillSetup, sections: &[[f64; 2]]) -> f64 {
     let through = |k: usize| {
         let u = &sections[k * POINTS..(k + 1) * POINTS];
         let gap = setup.hill.lid() - setup.floor(STATIONS[k]);
@@ -315,7 +315,7 @@ fn section_flux(setup: &Setup, sections: &[[f64; 2]]) -> f64 {
 }
 
 /// [`DRAGS`], by the trapezoidal rule over the period, whose ends are one point.
-fn drags(setup: &Setup, wall: &[[f64; 3]]) -> [f64; 3] {
+fn drags(setup: &HillSetup, wall: &[[f64; 3]]) -> [f64; 3] {
     let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * along(1);
     [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
 }
@@ -341,7 +341,7 @@ fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
 }
 
 /// Distances from the reference.
-fn compare(setup: &Setup, sections: &[[f64; 2]], record: &mut Record) {
+fn compare(setup: &HillSetup, sections: &[[f64; 2]], record: &mut Record) {
     let Some(reference) = setup.reference else {
         let reason = format!("no reference exists for these settings, only for {KNOWN_SETTINGS}");
         for metric in COMPARED {
@@ -363,7 +363,7 @@ fn compare(setup: &Setup, sections: &[[f64; 2]], record: &mut Record) {
 
 /// Displacement of wall particles from their places \[dx\]: over the points along floor and lid, the largest
 /// difference between the depth of the nearest particle and the depth of the first row.
-fn wall_offset(setup: &Setup, all: &[Point]) -> f64 {
+fn wall_offset(setup: &HillSetup, all: &[Point]) -> f64 {
     let (dx, lid, period) = (setup.flow.medium.dx, setup.hill.lid(), setup.hill.period());
     let walls = || all.iter().filter(|p| !p.is_fluid()).map(|p| p.position);
     let distance = |from: Vector2<f64>, to: &Vector2<f64>| {
@@ -383,7 +383,7 @@ fn wall_offset(setup: &Setup, all: &[Point]) -> f64 {
 }
 
 /// Distance from the floor \[m\], positive behind it, by Gauss and Newton's iteration for its foot.
-fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
+fn behind_floor(setup: &HillSetup, place: Vector2<f64>) -> f64 {
     let mut x = place.x;
     for _ in 0..20 {
         let slope = setup.slope(x);
@@ -394,7 +394,7 @@ fn behind_floor(setup: &Setup, place: Vector2<f64>) -> f64 {
 }
 
 /// Where the particles are at the end, walls and fluid.
-pub fn particles(setup: &Setup, end: &Snapshot, is_kept: bool, record: &mut Record) {
+pub fn particles(setup: &HillSetup, end: &Snapshot, is_kept: bool, record: &mut Record) {
     let all = end.all();
     record.put(WALL_OFFSET, wall_offset(setup, &all));
     let period = setup.hill.period();
@@ -420,11 +420,13 @@ mod tests {
     use touchstone_base::functions::{cos, sin};
 
     /// The scene of some settings, its kernel, and the viscosity 1/50.
-    fn scene(set: fn(&mut HillSettings)) -> (Setup, Box<dyn touchstone_schemes::hill::Driving>) {
+    fn scene(
+        set: fn(&mut HillSettings),
+    ) -> (HillSetup, Box<dyn touchstone_schemes::hill::Driving>) {
         let mut settings = HillSettings::default();
         set(&mut settings);
         let method = touchstone_schemes::hill::carried();
-        let setup = Setup::new(&method, &settings).expect("sound settings");
+        let setup = HillSetup::new(&method, &settings).expect("sound settings");
         let simulation = (method.build)(setup.parts()).expect("a scene");
         (setup, simulation)
     }
@@ -444,7 +446,7 @@ mod tests {
     }
 
     /// u, v and p: v so that the flow follows the floor.
-    fn made_up(setup: &Setup, x: f64, y: f64) -> [f64; 3] {
+    fn made_up(setup: &HillSetup, x: f64, y: f64) -> [f64; 3] {
         let gap = setup.hill.lid() - setup.floor(x);
         let s = (y - setup.floor(x)) / gap;
         let u = setup.flux() / gap * s * (1.0 - s) * (6.0 - shape(x) * (1.0 - 2.0 * s));
@@ -452,14 +454,14 @@ mod tests {
     }
 
     /// Shear stress on hill and lid of that flow.
-    fn shear(setup: &Setup, x: f64) -> [f64; 2] {
+    fn shear(setup: &HillSetup, x: f64) -> [f64; 2] {
         let gap = setup.hill.lid() - setup.floor(x);
         let scale = setup.flow.medium.nu * setup.flux() / gap.powi(2);
         [scale * (6.0 - shape(x)) * (1.0 + setup.slope(x).powi(2)), scale * (6.0 + shape(x))]
     }
 
     /// The record of windows that hold the made-up flow, with this force and this flux.
-    fn measured(force: f64, flux: f64) -> (Setup, f64, Record) {
+    fn measured(force: f64, flux: f64) -> (HillSetup, f64, Record) {
         let (setup, simulation) = scene(|s| s.n = 40);
         let mut points: Vec<[f64; 6]> = Vec::new();
         for particle in simulation.particles() {
@@ -599,7 +601,7 @@ mod tests {
 
     #[test]
     fn a_hill_that_is_too_high_and_a_particle_behind_a_wall_are_seen() {
-        let seen = |setup: &Setup, particles: &[touchstone_solver::Particle]| {
+        let seen = |setup: &HillSetup, particles: &[touchstone_solver::Particle]| {
             let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);
             super::particles(setup, &Snapshot::of(0.0, particles), false, &mut record);
             [WALL_OFFSET, OUTSIDE].map(|metric| record.value(metric).expect("measured"))

@@ -17,7 +17,7 @@ use touchstone_schemes::hill;
 
 use crate::fluids::unit_flow::Numerics;
 
-pub use setup::Setup;
+pub use setup::HillSetup;
 
 touchstone_base::settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.
@@ -65,7 +65,7 @@ fn variants() -> Compositions<HillSettings> {
                    know how the velocity bends";
     let consistent = "carried with sums that are exact for linear fields: are they worth more work for each \
                       pair?";
-    Variants::of(Setup::new)
+    Variants::of(HillSetup::new)
         .with("plain", plain, hill::plain(), |_| {})
         .with("interface-wall", interface, hill::interface_wall(), |_| {})
         .with("modern", modern, hill::modern(), |_| {})

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use nalgebra::Vector2;
 use touchstone_base::{
     record::MetricKey,
-    reference::{Reference as Package, ReferenceError},
+    reference::{Reference, ReferenceError},
 };
 use touchstone_maths::{geometry::Hill, metrics::norms::rms};
 
@@ -17,8 +17,8 @@ pub const REYNOLDS: [f64; 3] = [10.0, 50.0, 100.0];
 pub const KNOWN_SETTINGS: &str = "re = 10, 50 or 100, crest = 1 and flux = 1";
 
 /// Read and checked once: 25 000 rows, which every run, every plan and every figure asks for.
-static KNOWN: LazyLock<Result<Vec<Reference>, ReferenceError>> =
-    LazyLock::new(|| REYNOLDS.into_iter().map(Reference::read).collect());
+static KNOWN: LazyLock<Result<Vec<HillReference>, ReferenceError>> =
+    LazyLock::new(|| REYNOLDS.into_iter().map(HillReference::read).collect());
 
 /// A profile across one section.
 #[derive(Clone, Debug)]
@@ -33,7 +33,7 @@ pub struct Station {
 
 /// Results of finite elements at one Reynolds number.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub struct HillReference {
     /// Profiles, in the order of x.
     pub stations: Vec<Station>,
     /// More of them, to start from: not to compare with.
@@ -45,7 +45,7 @@ pub struct Reference {
     pub uncertainty: f64,
 }
 
-impl Reference {
+impl HillReference {
     /// The reference of these settings; `None` where nothing was computed for their geometry, their flux or
     /// their Reynolds number.
     pub fn of(settings: &HillSettings) -> Result<Option<&'static Self>, ReferenceError> {
@@ -57,7 +57,7 @@ impl Reference {
 
     /// The content of the package for a Reynolds number.
     fn read(re: f64) -> Result<Self, ReferenceError> {
-        let (package, text) = (Package::load("periodic_hill")?, re.to_string());
+        let (package, text) = (Reference::load("periodic_hill")?, re.to_string());
         let of = [("re", &*text)];
         let wall = package.table("wall")?.select(&of, ["x", "hill_shear", "lid_shear"])?;
         let profiles = package.table("profiles")?;
@@ -110,7 +110,7 @@ impl Reference {
 
 /// The line between bubble and stream at a Reynolds number \[H\]; empty where the flow does not separate.
 pub fn bubble(re: f64) -> Vec<(f64, f64)> {
-    Package::curve("periodic_hill", "line", ["x", "y"], &[("re", &re.to_string())])
+    Reference::curve("periodic_hill", "line", ["x", "y"], &[("re", &re.to_string())])
 }
 
 /// Rows of x, y, u, v as stations.
@@ -125,13 +125,13 @@ fn stations(rows: &[[f64; 4]]) -> Vec<Station> {
 
 /// The reference at this Reynolds number. A reference that cannot be read makes every run fail, so its error
 /// is not repeated here.
-pub fn reference(re: f64) -> Option<&'static Reference> {
-    Reference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
+pub fn reference(re: f64) -> Option<&'static HillReference> {
+    HillReference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
 }
 
 /// Value and uncertainty of a quantity of the summary at this Reynolds number; NaN if it has none.
 pub fn summary(re: f64, quantity: &str) -> [f64; 2] {
-    Package::summarised("periodic_hill", &[("re", &re.to_string()), ("quantity", quantity)])
+    Reference::summarised("periodic_hill", &[("re", &re.to_string()), ("quantity", quantity)])
 }
 
 /// The floor as a line.
@@ -161,7 +161,7 @@ mod tests {
     }
 
     /// rms distance between the start and the values at these stations \[U_b\].
-    fn distance(reference: &Reference, stations: &[Station]) -> f64 {
+    fn distance(reference: &HillReference, stations: &[Station]) -> f64 {
         let squares: Vec<f64> = stations
             .iter()
             .flat_map(|station| {
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn three_reynolds_numbers_have_a_reference_and_others_have_none() {
-        let at = |re| Reference::of(&HillSettings { re, ..HillSettings::default() });
+        let at = |re| HillReference::of(&HillSettings { re, ..HillSettings::default() });
         for re in [10.0, 50.0, 100.0] {
             let reference = at(re).expect("sound").expect("computed");
             assert_eq!((reference.stations.len(), reference.wall.len()), (10, 361));

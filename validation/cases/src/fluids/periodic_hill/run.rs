@@ -7,7 +7,7 @@ use touchstone_harness::{series::Series, snapshot::Snapshot};
 use touchstone_schemes::hill::{Driving, HillMethod};
 
 use super::{
-    HillSettings, Setup,
+    HillSettings, HillSetup,
     measure::{Window, mean_velocity, measure, particles},
 };
 
@@ -78,7 +78,7 @@ pub struct Monitor {
 
 impl Monitor {
     /// After a stretch: the flow is sampled if it is time.
-    fn look(&mut self, setup: &Setup, now: &Snapshot) {
+    fn look(&mut self, setup: &HillSetup, now: &Snapshot) {
         let (time, mean) = (now.time(), mean_velocity(now, self.area));
         self.mean = mean.clone().unwrap_or(self.mean);
         let flux = mean.map(|mean| mean * self.area / setup.hill.period());
@@ -102,14 +102,14 @@ fn kinetic_energy(now: &Snapshot) -> f64 {
     now.stored().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum()
 }
 
-impl Setup {
+impl HillSetup {
     /// Looks of the controller.
     fn stretches(&self) -> f64 {
         (self.settings.end / (STRETCH * self.flow.rules.dt())).ceil().max(1.0)
     }
 }
 
-impl Problem for Setup {
+impl Problem for HillSetup {
     type Extra = ();
     type Simulation = dyn Driving;
     type Watch = Monitor;
@@ -146,7 +146,7 @@ impl Problem for Setup {
         Monitor { controller, window, series, area, stretch, mean }
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.at("samples", |setup, monitor, now, _, _| monitor.look(setup, now)).control(
             "controller",
             |_, monitor, simulation| {
@@ -165,7 +165,7 @@ impl Problem for Setup {
     ) {
         if record.status == Status::Completed {
             measure(self, &window, area, record);
-            particles(self, end, Asked::of(&record.run).particles, record);
+            particles(self, end, OptionalOutput::of(&record.run).particles, record);
         }
         let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
         let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];

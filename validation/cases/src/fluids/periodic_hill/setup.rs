@@ -8,7 +8,7 @@ use touchstone_solver::Role;
 
 use super::{
     HillSettings,
-    reference::{KNOWN_SETTINGS, Reference},
+    reference::{HillReference, KNOWN_SETTINGS},
 };
 use crate::fluids::unit_flow::{Scales, UnitFlow};
 
@@ -16,7 +16,7 @@ use crate::fluids::unit_flow::{Scales, UnitFlow};
 pub const FLUX: f64 = 2.035;
 
 /// The numbers of one run, H = U_b = ρ = 1.
-pub struct Setup {
+pub struct HillSetup {
     /// The settings they follow from.
     pub settings: HillSettings,
     /// The method that they are for.
@@ -28,10 +28,10 @@ pub struct Setup {
     /// Depth of the first row of wall particles \[dx\].
     pub first: f64,
     /// The reference, if there is one.
-    pub reference: Option<&'static Reference>,
+    pub reference: Option<&'static HillReference>,
 }
 
-impl Setup {
+impl HillSetup {
     /// Follows the rules for a method.
     ///
     /// # Errors
@@ -42,7 +42,7 @@ impl Setup {
         let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.6, force, area: 27.0, dt: None };
         let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let hill = Hill::new(1.0).map_err(|e| RunError::Reference(e.to_string()))?;
-        let reference = Reference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;
+        let reference = HillReference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;
         if s.from_reference && reference.is_none() {
             return Err(RunError::Combination {
                 key: "from_reference",

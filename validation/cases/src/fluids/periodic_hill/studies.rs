@@ -26,7 +26,7 @@ use super::{
         SEPARATION_ERROR, STATIONS,
     },
     plan::{END, Group, Row, Table, flow, name, shown, table},
-    reference::{REYNOLDS, Reference, bubble, floor, reference, summary},
+    reference::{HillReference, REYNOLDS, bubble, floor, reference, summary},
     setup::FLUX,
 };
 
@@ -240,7 +240,7 @@ fn profiles(table: &Table) -> Curves {
 }
 
 /// The velocity along the channel, every tenth point of a station.
-fn profile(row: &Row, reference: &Reference) -> CurvePanel {
+fn profile(row: &Row, reference: &HillReference) -> CurvePanel {
     const SCALE: f64 = 0.8;
     let line = |k: usize| CurveOf {
         name: String::new(),
@@ -266,7 +266,7 @@ fn profile(row: &Row, reference: &Reference) -> CurvePanel {
 }
 
 /// Shear stress along the hill.
-fn shear(rows: &[&Row], reference: &Reference) -> CurvePanel {
+fn shear(rows: &[&Row], reference: &HillReference) -> CurvePanel {
     let columns = ["x", "hill shear"];
     let line = |row: &&Row| CurveOf::columns(name(row), row.run.spec.clone(), "wall", columns);
     let exact = reference.wall.iter().map(|w| (w[0], w[1])).collect();

@@ -14,7 +14,7 @@ use touchstone_report::{Axis, ColourMap};
 use touchstone_schemes::flow;
 
 use crate::fluids::unit_flow::Numerics;
-use run::{ENERGY, L2, MOMENTUM_ADDED, NEAREST, Setup};
+use run::{ENERGY, L2, MOMENTUM_ADDED, NEAREST, VortexSetup};
 
 touchstone_base::settings! {
     /// Settings of the vortices. L = U = ρ = 1.
@@ -58,7 +58,7 @@ fn variants() -> Compositions<VortexSettings> {
     let carried =
         "modern with stronger shifting that takes the velocity of the new place: is that enough?";
     let consistent = "carried with sums that are exact for linear fields";
-    Variants::of(|m, s| Ok(Setup::new(m, s)))
+    Variants::of(|m, s| Ok(VortexSetup::new(m, s)))
         .with("plain", plain, flow::vortices_plain(), |_| {})
         .with("modern", modern, flow::vortices_modern(), |_| {})
         .with("carried", carried, flow::vortices_carried(), strong)

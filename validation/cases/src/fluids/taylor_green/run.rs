@@ -15,7 +15,7 @@ use super::VortexSettings;
 use crate::fluids::unit_flow::{Scales, UnitFlow};
 
 /// The numbers of one run, L = U = ρ = 1.
-pub struct Setup {
+pub struct VortexSetup {
     settings: VortexSettings,
     method: Method,
     exact: TaylorGreen,
@@ -34,7 +34,7 @@ touchstone_base::metrics! {
     NEAREST = "nearest" ["-"] "least distance of two particles over dx";
 }
 
-impl Setup {
+impl VortexSetup {
     /// Follows the rules for a method.
     pub fn new(method: &Method, s: &VortexSettings) -> Self {
         let VortexSettings { re, n, h_over_dx, c0, end, dt, .. } = *s;
@@ -101,7 +101,7 @@ pub struct Series {
     errors: Vec<[f64; 2]>,
 }
 
-impl Problem for Setup {
+impl Problem for VortexSetup {
     type Extra = ();
     type Simulation = dyn Stepper<()>;
     type Watch = Series;
@@ -127,7 +127,7 @@ impl Problem for Setup {
         Series { drift: drift(&start), errors: vec![[0.0, self.error(0.0, &start)]] }
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.at("series", |setup, series, now, _, _| {
             series.errors.push([now.time(), setup.error(now.time(), &now.all())]);
         })
@@ -136,7 +136,7 @@ impl Problem for Setup {
     fn measure(&self, Series { drift, mut errors }: Series, now: &Snapshot, record: &mut Record) {
         if record.status == Status::Completed {
             measure(self, drift, now, &errors, record);
-            if Asked::of(&record.run).particles {
+            if OptionalOutput::of(&record.run).particles {
                 let (end, time) = (now.all(), now.time());
                 let scale = self.exact.decay(time);
                 let all = end.iter().map(|p| {
@@ -159,7 +159,7 @@ fn drift(particles: &[Point]) -> Vector2<f64> {
 }
 
 fn measure(
-    setup: &Setup,
+    setup: &VortexSetup,
     start: Vector2<f64>,
     now: &Snapshot,
     series: &[[f64; 2]],
@@ -211,14 +211,14 @@ mod tests {
     use super::*;
     use touchstone_base::record::Record;
 
-    fn setup() -> Setup {
+    fn setup() -> VortexSetup {
         let settings = VortexSettings { n: 40, ..VortexSettings::default() };
-        Setup::new(&touchstone_schemes::flow::vortices_modern(), &settings)
+        VortexSetup::new(&touchstone_schemes::flow::vortices_modern(), &settings)
     }
 
     /// The record of particles that have the exact velocity times `1 + error`, a uniform velocity and the
     /// exact pressure times `1 + pressure`, at `time`.
-    fn measured(setup: &Setup, time: f64, [error, drift, pressure]: [f64; 3]) -> Record {
+    fn measured(setup: &VortexSetup, time: f64, [error, drift, pressure]: [f64; 3]) -> Record {
         let eos = setup.flow.medium.eos;
         let at = |time: f64, [error, drift, pressure]: [f64; 3]| {
             let mut particles = setup.particles();

@@ -13,7 +13,7 @@ use touchstone_base::{
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Parameter, Step},
-    snapshot::{Columns, Point, Snapshot},
+    snapshot::{ParticleArrays, Point, Snapshot},
 };
 use touchstone_maths::theory::time_step::{self, Mode};
 use touchstone_schemes::lattice::summing_step;
@@ -92,7 +92,7 @@ impl Operator {
     ///
     /// # Errors
     /// Without densities that the operator reads.
-    fn values(self, start: &Columns, end: &Snapshot, m: &Medium) -> Result<Values, Absent> {
+    fn values(self, start: &ParticleArrays, end: &Snapshot, m: &Medium) -> Result<Values, Absent> {
         let (all, time) = (end.all(), end.time());
         let pairs = || start.points.iter().zip(&all).enumerate();
         let along = |value| Vector2::new(value, 0.0);
@@ -154,7 +154,8 @@ impl Subject {
             }
             Operator::Laplacian => {
                 let eta2 = if self.is_corrected { 0.0 } else { ETA2 };
-                let unit = time_step::Medium { c0: 1.0, h: 1.0, nu: 1.0, alpha: 0.0, delta: 0.0 };
+                let unit =
+                    time_step::WaveMedium { c0: 1.0, h: 1.0, nu: 1.0, alpha: 0.0, delta: 0.0 };
                 let lattice = method.properties.square([ratio, eta2]);
                 let mode = Mode::new(&lattice, Vector2::repeat(phase), &unit);
                 mode.viscous / (2.0 * (phase * ratio).powi(2)) / corrected
@@ -183,7 +184,7 @@ impl Sums<'_> {
     ///
     /// # Errors
     /// Without densities at the start, or if the nearest image is not the only one in reach.
-    fn error(&self, start: &Columns, values: &Values) -> Result<f64, Absent> {
+    fn error(&self, start: &ParticleArrays, values: &Values) -> Result<f64, Absent> {
         if self.reach >= 0.5 {
             return Err("the support reaches half of the period".into());
         }
@@ -262,7 +263,7 @@ impl Sampled {
 /// The particles at the start.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Start {
-    particles: Columns,
+    particles: ParticleArrays,
 }
 
 impl Problem for Sampled {

@@ -12,7 +12,7 @@ use touchstone_base::{
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Limits, PLANNED_DT, Step},
+    case::{PLANNED_DT, Step, TimeStepLimits},
     snapshot::{Snapshot, momentum},
 };
 use touchstone_maths::{
@@ -87,12 +87,12 @@ impl Wave {
             ..method.properties.medium(eos, [dx, h]).set_by(s)
         };
         let waves =
-            time_step::Medium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
+            time_step::WaveMedium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
         let mode = Mode::new(&lattice, theta, &waves);
         let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
         // The predictor-corrector amplifies sound at every dt, which is part of the comparison.
         let theory = time_step::Integrator::Leapfrog;
-        let limits = Limits::of(&modes(&lattice, s.n, &waves), theory);
+        let limits = TimeStepLimits::of(&modes(&lattice, s.n, &waves), theory);
         let period = std::f64::consts::TAU / mode.omega;
         let time = match polarisation {
             Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
@@ -218,7 +218,7 @@ impl Problem for Wave {
         Projection::new(self)
     }
 
-    fn calls(&self, calls: Calls<Self>, _: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
         calls.every_step_of_ours("projection", |wave, projection, s| projection.after_step(wave, s))
     }
 

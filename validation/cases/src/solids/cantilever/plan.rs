@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use touchstone_base::mutation::Constant;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Curve, Draws, Statement},
+    case::{Draws, Statement, SubmittedCurve},
     studies::{Accuracy, Sensitivity, Spacing, Watched},
     table::{Row, Table},
 };
@@ -153,9 +153,9 @@ pub fn facts() -> Facts {
 }
 
 /// The path of the end, represented by a bar of uniform strain with this end.
-fn path_of_end() -> Curve {
+fn path_of_end() -> SubmittedCurve {
     let compared = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
-    Curve {
+    SubmittedCurve {
         columns: &[("x", "m"), ("y", "m")],
         about: "x and y are the displacement of the middle of the free end since the start",
         least: end::LEAST_POINTS,

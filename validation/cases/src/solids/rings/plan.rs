@@ -12,7 +12,7 @@ use super::{
         IMPULSE_ERROR, MOMENTUM, PHASES, PIECES_MOST, RESTITUTION_ERROR, STRETCH_MOST, WIDTH_MIN,
         WIDTH_MIN_ERROR, X_C_WORST, phase,
     },
-    reference::Reference,
+    reference::RingReference,
 };
 use crate::solids::{
     causes::{FOLDS, SHARED_IMPULSE, SOFT_CONTACT, TEARING},
@@ -96,7 +96,9 @@ fn gates(row: &Row) -> Vec<Gate> {
         gates.push(always(ENERGY_LOST, Bound::Within(-0.01, 0.01), NOTHING_DISSIPATES));
     }
     gates.extend(of_wholeness(row, id));
-    let Some(exact) = Reference::of(row.variant, s).filter(|_| is_compared) else { return gates };
+    let Some(exact) = RingReference::of(row.variant, s).filter(|_| is_compared) else {
+        return gates;
+    };
     let distances = Distances { row, id, exact, allowed: 0.5 * s.spacing };
     gates.push(distances.of_stretch());
     gates.extend(if is_lagrangian { distances.of_lagrangian() } else { distances.of_extremes() });
@@ -158,7 +160,7 @@ fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
 struct Distances<'a> {
     row: &'a Row,
     id: &'a str,
-    exact: Reference,
+    exact: RingReference,
     /// The deviation from 1 that first order allows.
     allowed: f64,
 }

@@ -2,7 +2,7 @@
 
 use touchstone_base::{
     record::{MetricKey, Record},
-    reference::Reference as Package,
+    reference::Reference,
 };
 use touchstone_lagrangian::{Hencky, Law as _};
 use touchstone_maths::metrics::{history, norms::rms};
@@ -22,13 +22,13 @@ const JAUMANN: &str = "jaumann";
 
 /// Results of finite elements for one law and speed.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub struct RingReference {
     quantities: Quantities,
     /// Phases of contact: impulse \[ρ c₀ L²\] and the times when 1 and 99 % of it have passed \[L/c0\].
     pub phases: Vec<[f64; 3]>,
     /// The uncertainty of the last of these times \[L/c0\].
     pub doubt: f64,
-    /// The columns of [`Reference::COLUMNS`] over t \[L/c0\].
+    /// The columns of [`RingReference::COLUMNS`] over t \[L/c0\].
     pub histories: Histories,
     /// The uncertainty of [`HISTORIES`], from the uncertainties of the columns.
     pub uncertainty: f64,
@@ -43,7 +43,7 @@ pub fn outlines(speed: f64, time: f64) -> Vec<Vec<(f64, f64)>> {
     let [speed, time] = [speed, time].map(|number| format!("{number:?}"));
     let face = |name| {
         let of = [("law", JAUMANN), ("speed", &*speed), ("t", &*time), ("face", name)];
-        let half = Package::curve(PACKAGE, "outlines", ["x", "y"], &of);
+        let half = Reference::curve(PACKAGE, "outlines", ["x", "y"], &of);
         let mirrored = half.clone().into_iter().rev().map(|(x, y)| (x, -y));
         half.into_iter().chain(mirrored).collect::<Vec<_>>()
     };
@@ -53,12 +53,12 @@ pub fn outlines(speed: f64, time: f64) -> Vec<Vec<(f64, f64)>> {
 /// Metrics of the comparison at every time of the reference.
 const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST];
 
-/// Points of [`Reference::COLUMNS`] over t \[L/c0\].
+/// Points of [`RingReference::COLUMNS`] over t \[L/c0\].
 type Histories = [Vec<(f64, f64)>; 4];
 
 /// Adds the distances from finite elements to the metrics of a measured run, or the reason for their absence.
 pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &mut Record) {
-    let Some(exact) = Reference::of(&record.run.variant, s) else {
+    let Some(exact) = RingReference::of(&record.run.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
         for metric in errors.into_iter().chain(OF_HISTORIES) {
             record.leave_out(
@@ -77,7 +77,7 @@ pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &m
     exact.compare_histories(found, record);
 }
 
-impl Reference {
+impl RingReference {
     /// Columns of the series: centre of mass, its velocity, extents.
     pub const COLUMNS: [&'static str; 4] = ["x_c", "v_c", "width", "height"];
 
@@ -90,7 +90,7 @@ impl Reference {
         let law = if variant == LAGRANGIAN { Hencky::NAME } else { JAUMANN };
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
-        let curve = |table, columns| Package::curve(PACKAGE, table, columns, &of);
+        let curve = |table, columns| Reference::curve(PACKAGE, table, columns, &of);
         let histories = Self::COLUMNS.map(|name| curve("series", ["t", name]));
         let doubts = ["x_c_uncertainty", "width_uncertainty", "height_uncertainty"]
             .map(|name| rms(curve("series", ["t", name]).into_iter().map(|(_, doubt)| doubt)));
@@ -99,7 +99,7 @@ impl Reference {
         let (_, doubt) = *ends.last()?;
         let phases = begins.into_iter().zip(ends);
         let strain = [("check", "greatest principal logarithmic strain"), of[0], of[1]];
-        let strains = Package::curve(PACKAGE, "checks", ["mesh", "value"], &strain);
+        let strains = Reference::curve(PACKAGE, "checks", ["mesh", "value"], &strain);
         Some(Self {
             quantities: quantities(PACKAGE, &of)?,
             phases: phases.map(|((begin, impulse), (end, _))| [impulse, begin, end]).collect(),
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn outlines_have_the_extents_of_the_series() {
-        let paper = Reference::of("seed", &RingSettings::default()).expect("the paper's speed");
+        let paper = RingReference::of("seed", &RingSettings::default()).expect("the paper's speed");
         for time in [32.0, 60.0, 80.0, 120.0, 200.0] {
             let lines = outlines(0.059, time);
             assert_eq!(lines.len(), 2);
@@ -206,7 +206,8 @@ mod tests {
 
     #[test]
     fn two_speeds_have_a_reference_and_others_have_none() {
-        let at = |speed| Reference::of("seed", &RingSettings { speed, ..RingSettings::default() });
+        let at =
+            |speed| RingReference::of("seed", &RingSettings { speed, ..RingSettings::default() });
         let paper = at(0.059).expect("the paper's speed");
         let [restitution, spread] = paper.number(RESTITUTION).expect("measured");
         assert!((restitution - 0.8004).abs() < 1e-3 && spread < 0.01);
@@ -214,9 +215,9 @@ mod tests {
         assert!((paper.phases[0][0] - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
         let start = paper.histories.iter().map(|points| points[0].1).collect::<Vec<f64>>();
         assert_eq!(start, [5.0, -0.059, 8.0, 8.0]);
-        let other = Reference::of(LAGRANGIAN, &RingSettings::default()).expect("its law");
+        let other = RingReference::of(LAGRANGIAN, &RingSettings::default()).expect("its law");
         assert_eq!(other.number(RESTITUTION).map(|[value, _]| value), Some(0.795617));
         let softer = RingSettings { shear_modulus: 0.2, ..RingSettings::default() };
-        assert!(Reference::of("seed", &softer).is_none());
+        assert!(RingReference::of("seed", &softer).is_none());
     }
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Rotation2, Vector2};
 use touchstone_base::functions::{rotation, sin_cos};
 use touchstone_harness::{case::RunError, method::Properties, snapshot::Snapshot};
-use touchstone_solver::{Limits, Particle, Symmetric};
+use touchstone_solver::{DivergenceBounds, Particle, Symmetric};
 
 use super::{RingSettings, measure::Series};
 use crate::solids::solid::{Body, Common, Material, Scales};
@@ -54,7 +54,7 @@ impl Body for RingSettings {
             decisive: "end, dt, courant, spacing or outer",
             meet: true,
             stops: self.samples,
-            bounds: Limits { density: [0.5 * density, 2.0 * density], speed: most },
+            bounds: DivergenceBounds { density: [0.5 * density, 2.0 * density], speed: most },
             ..Scales::default()
         }
     }

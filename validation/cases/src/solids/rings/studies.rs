@@ -8,7 +8,7 @@ use touchstone_base::{
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Curve, Drawn, Draws, Statement},
+    case::{Drawn, Draws, Statement, SubmittedCurve},
     pictures::{self, Film},
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
@@ -29,7 +29,7 @@ use super::{
         WIDTH_MIN_ERROR, WIDTH_RMS, X_C_RMS, X_C_WORST,
     },
     plan::{Group, Row, SPEED, Table, table},
-    reference::{self, Reference},
+    reference::{self, RingReference},
 };
 use crate::solids::solid::{Body, LAGRANGIAN, corners};
 
@@ -52,10 +52,10 @@ const STEPWISE: &[MetricKey] = &[
 const SHOWN: [&str; 2] = [LAGRANGIAN, "seed"];
 
 /// Centre, velocity and extents of the ring on the right, represented by both rings with uniform stretch.
-fn path_and_extents() -> Curve {
+fn path_and_extents() -> SubmittedCurve {
     let errors = [X_C_WORST, X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS, HISTORIES];
     let extents = [WIDTH_MIN, WIDTH_MIN_ERROR, HEIGHT_MAX, HEIGHT_MAX_ERROR];
-    Curve {
+    SubmittedCurve {
         columns: &[("x_c", "m"), ("v_c", "m/s"), ("width", "m"), ("height", "m")],
         about: "of the ring on the right: place and velocity of its centre of mass along the line of flight, \
                 and its extents along that line and across it, from surface to surface",
@@ -187,7 +187,7 @@ fn comparisons(accuracy: &Accuracy) -> Comparisons {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes, steps, contact, disorder \
                            (`references/rubber_rings`)";
     let of = |ladder: &Ladder| {
-        let exact = Reference::of(ladder.variant, &RingSettings::default())?;
+        let exact = RingReference::of(ladder.variant, &RingSettings::default())?;
         let share =
             |quantity| exact.number(quantity).map_or(f64::NAN, |[value, spread]| spread / value);
         let quantities = [
@@ -219,7 +219,7 @@ fn card(accuracy: &Accuracy) -> Card {
                     Stated::setting(settings, "spacing")
                 ),
                 against: "finite elements",
-                uncertainty: of.and_then(|of| Some(Reference::of("seed", &of)?.uncertainty)),
+                uncertainty: of.and_then(|of| Some(RingReference::of("seed", &of)?.uncertainty)),
                 unit: "",
             }
         },
@@ -238,13 +238,13 @@ fn card(accuracy: &Accuracy) -> Card {
 /// The recommended variant and the paper's, with the reference of the law of the recommended.
 fn histories(table: &Table) -> Curves {
     let settings = RingSettings::default();
-    let exact = Reference::of(LAGRANGIAN, &settings);
+    let exact = RingReference::of(LAGRANGIAN, &settings);
     let labels = ["centre of mass [L]", "its velocity [c0]", "width [L]", "height [L]"];
     let panel = |(k, label): (usize, &str)| {
         let rows = SHOWN.map(|of| table.of(Group::Paper).filter(move |row| row.variant == of));
         let lines = rows.into_iter().flatten().map(|row| {
             let name = format!("{}, spacing {} L", row.variant, row.settings.spacing);
-            CurveOf::columns(name, row.run.spec.clone(), "series", ["t", Reference::COLUMNS[k]])
+            CurveOf::columns(name, row.run.spec.clone(), "series", ["t", RingReference::COLUMNS[k]])
         });
         let points = exact.as_ref().map(|exact| exact.histories[k].clone()).unwrap_or_default();
         let axes = ["t [L/c0]", label];

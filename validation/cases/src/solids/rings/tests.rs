@@ -16,7 +16,7 @@ use super::{
         RESTITUTION_ERROR, RMS, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, WIDTH_MIN,
         WIDTH_MIN_ERROR, X_C_WORST, phase,
     },
-    reference::Reference,
+    reference::RingReference,
 };
 use crate::solids::solid::Body;
 
@@ -137,7 +137,7 @@ fn rings_that_still_touch_at_the_end_have_no_restitution() {
 
 /// Finite elements at a time, moved by some L/c0.
 fn finite_elements(speed: f64, late: f64) -> impl Fn(f64) -> [f64; 4] {
-    let exact = Reference::of("seed", &RingSettings { speed, ..RingSettings::default() });
+    let exact = RingReference::of("seed", &RingSettings { speed, ..RingSettings::default() });
     let exact = exact.expect("a reference");
     move |time| {
         let place = ((time - late) / 0.5).clamp(0.0, 400.0);
@@ -195,7 +195,7 @@ fn a_run_that_is_late_has_errors_with_their_sign() {
 
 #[test]
 fn reach_is_when_finite_elements_leave() {
-    let exact = Reference::of("seed", &RingSettings::default()).expect("a reference");
+    let exact = RingReference::of("seed", &RingSettings::default()).expect("a reference");
     let leaves = exact.leaves(0.1);
     assert!((leaves - 126.0).abs() <= 0.5, "near until 126 L/c0, found {leaves}");
     assert!(exact.leaves(0.2) > leaves);

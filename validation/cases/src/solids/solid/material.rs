@@ -1,7 +1,7 @@
 //! The elastic material, and the medium that it is at a spacing.
 
 use touchstone_harness::{
-    limits::{Limits, Mechanism},
+    limits::{Mechanism, TimeStepLimits},
     method::{Medium, Properties},
 };
 use touchstone_maths::theory::time_step;
@@ -70,11 +70,11 @@ pub fn limits(
     medium: &Medium,
     h_over_dx: f64,
     approach: f64,
-) -> Limits {
+) -> TimeStepLimits {
     let meeting = medium.h / approach;
     if let Some(limit) = method.limit {
         let lattice = limit(medium);
-        let mut limits = Limits::of_waves(lattice).with(Mechanism::Contact, meeting);
+        let mut limits = TimeStepLimits::of_waves(lattice).with(Mechanism::Contact, meeting);
         if approach > 0.0 {
             // Each of two equal bodies changes its velocity by V, half of that, which takes rho c_p V and
             // compresses it by V/c_p; the frequencies of compressed matter grow as its density.
@@ -87,7 +87,7 @@ pub fn limits(
     }
     let wave = material.p_wave_speed();
     let alpha = medium.alpha * material.sound_speed() / wave;
-    let waves = time_step::Medium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };
+    let waves = time_step::WaveMedium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };
     let limits = method.limits([h_over_dx, 0.01], LIMIT_BOX, &waves);
     // Both kinds of waves have the rates of one gradient.
     let shear = limits.alone(Mechanism::Waves) * wave / material.shear_wave_speed();

@@ -54,7 +54,7 @@ pub struct Scales {
     /// Open, unless a case has a period.
     pub domain: Domain,
     /// Densities and speeds beyond which a run counts as diverged.
-    pub bounds: touchstone_solver::Limits,
+    pub bounds: touchstone_solver::DivergenceBounds,
 }
 
 /// Elastic bodies, stated by the settings of a case: the differences between cases of solids.
@@ -245,13 +245,13 @@ impl<B: Body> Problem for Solid<B> {
         self.body.watch(scene, start)
     }
 
-    fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, output: OptionalOutput) -> Calls<Self> {
         calls
             .after_step("measurements", |_, watch, now| {
                 watch.after_step(now);
                 ControlFlow::Continue(())
             })
-            .when(asked.particles, |calls| {
+            .when(output.particles, |calls| {
                 calls.at_positions("particles", |_, watch, now, stop, record| {
                     watch.keep(now, stop, record);
                 })

@@ -128,16 +128,16 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
 
 /// Known values of a median of `modern`: of forty other starts, seeds 21 to 60, with their scatter, and of
 /// twenty with 3 % more and less gravity.
-type Known = [[f64; 2]; 2];
+type KnownMedian = [[f64; 2]; 2];
 
 /// H/dx, and the known values of the level at H3 and of the impulse on P3.
-const MEDIANS: [(usize, Known, Known); 2] = [
+const MEDIANS: [(usize, KnownMedian, KnownMedian); 2] = [
     (20, [[0.5150, 0.0108], [0.549, 0.476]], [[0.1284, 0.0046], [0.174, 0.099]]),
     (30, [[0.5629, 0.0100], [0.526, 0.521]], [[0.1218, 0.0039], [0.153, 0.083]]),
 ];
 
 /// The gate on a median.
-fn judged(id: String, metric: &str, [[median, scatter], [more, less]]: Known) -> Gate {
+fn judged(id: String, metric: &str, [[median, scatter], [more, less]]: KnownMedian) -> Gate {
     // A median of normal numbers scatters by (π/2)^(1/2) = 1.25 of their mean's.
     let bound = 4.0 * 1.25 * scatter * (1.0_f64 / 20.0 + 1.0 / 40.0).sqrt();
     let because = format!(

@@ -101,7 +101,7 @@ impl Problem for Dam {
         }
     }
 
-    fn calls(&self, calls: Calls<Self>, asked: Asked) -> Calls<Self> {
+    fn calls(&self, calls: Calls<Self>, output: OptionalOutput) -> Calls<Self> {
         calls
             .when(self.is_lobovsky(), |calls| {
                 calls.after_step("pressure gauges", |dam, watch, now| {
@@ -111,11 +111,11 @@ impl Problem for Dam {
             .at_positions("front and levels", |dam, watch, now, _, _| {
                 watch.samples.sample(dam, now);
             })
-            .when(asked.all, |calls| {
+            .when(output.all, |calls| {
                 let name = "energy ledger and momentum";
                 calls.of_ours(name, |dam, watch, s| watch.ledger.sample(&dam.medium, s))
             })
-            .when(asked.particles, |calls| {
+            .when(output.particles, |calls| {
                 calls.at_positions("picture", |dam, watch, now, k, record| {
                     if let Some(frame) = watch.frames.iter().position(|at| *at == k) {
                         picture(dam, now, frame, record);

@@ -134,7 +134,8 @@ impl Dam {
         // the rim: nothing stops its fall.
         let falling = speed + self.settings.gravity * self.rules.end;
         let fastest = c0.max(2.0 * speed).max(falling);
-        let limits = touchstone_solver::Limits { density: [0.5 * rho, 2.0 * rho], speed: fastest };
+        let limits =
+            touchstone_solver::DivergenceBounds { density: [0.5 * rho, 2.0 * rho], speed: fastest };
         let parts = Parts::new(*medium, Domain::open(), particles);
         Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }

@@ -10,7 +10,7 @@ use touchstone_base::{
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Curve, Draws, Statement},
+    case::{Draws, Statement, SubmittedCurve},
     pictures::Film,
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, Picture, PicturePanel,
@@ -174,8 +174,8 @@ fn picture(table: &Table) -> Picture {
 }
 
 /// The front over time, represented by the column moved with it.
-fn front() -> Curve {
-    Curve {
+fn front() -> SubmittedCurve {
+    SubmittedCurve {
         columns: &[("front", "m")],
         about: "front is the x of the foremost water below H/4, from the back wall: of particles that of the \
                 foremost one plus what it lacks of the width of the column at the start, which is dx/2",

@@ -8,7 +8,7 @@ use touchstone_base::settings::SettingError;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::Step,
-    limits::Limits,
+    limits::TimeStepLimits,
     method::{FirstRow, Properties},
 };
 use touchstone_maths::{exact, geometry::Tank};
@@ -22,8 +22,14 @@ const ETA2: f64 = 0.01;
 
 /// The limits of the time step on a resting lattice of n × n particles with artificial viscosity on every
 /// pair and the terms of the method. `c0` is the largest sound speed \[m/s\].
-pub fn limits(method: &Properties, medium: &Medium, [h_over_dx, c0]: [f64; 2], n: usize) -> Limits {
-    let waves = touchstone_maths::theory::time_step::Medium { c0, ..medium.waves(&method.uses) };
+pub fn limits(
+    method: &Properties,
+    medium: &Medium,
+    [h_over_dx, c0]: [f64; 2],
+    n: usize,
+) -> TimeStepLimits {
+    let waves =
+        touchstone_maths::theory::time_step::WaveMedium { c0, ..medium.waves(&method.uses) };
     method.limits([h_over_dx, ETA2], n, &waves)
 }
 
