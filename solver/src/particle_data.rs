@@ -467,7 +467,7 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Half of the largest approach of two particles, or of their images, since the lists were built \[m\].
-    /// It is at most half the diagonal of the bounding box of all displacements and 0, because a period moves
+    /// The bound is half the diagonal of the bounding box of all displacements and 0, because a period moves
     /// all images alike, and at most the largest displacement, which a mirror may turn.
     fn approach(&self, extent: BlockExtrema) -> f64 {
         let diagonal = (extent.high - extent.low).norm();

@@ -21,7 +21,7 @@ pub enum Outcome {
     /// A particle exceeded [`Setting::limits`](crate::scene::Setting::limits); the remaining state is
     /// unusable.
     Diverged(Divergence),
-    /// The observer asked to stop.
+    /// The observer requested a stop.
     Stopped,
 }
 

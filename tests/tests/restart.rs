@@ -1,4 +1,4 @@
-//! A run that goes on from a checkpoint has the bits of one that was never interrupted.
+//! A run that continues from a checkpoint has the bits of one that was never interrupted.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
@@ -405,7 +405,7 @@ fn two_records_are_compared_to_the_last_bit() {
     assert_eq!(none, "", "a metric that is not finite in both");
 }
 
-/// Every variant of every case: a run that goes on from a checkpoint has the record of one that was not
+/// Every variant of every case: a run that continues from a checkpoint has the record of one that was not
 /// interrupted, with every metric, curve and series.
 #[test]
 fn every_case_goes_on_with_an_equal_record() {

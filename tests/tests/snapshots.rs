@@ -505,7 +505,7 @@ fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) ->
 type ByVariant<'a> = BTreeMap<&'a str, Vec<(&'a Run, &'a Record)>>;
 
 /// Runs what is kept of every case and compares, two snapshots for each case, metrics and work. All of them
-/// are compared before the test fails, so that it tells what changed.
+/// are compared before the test fails, so that the message lists all changes.
 #[test]
 fn results_are_as_they_were() {
     let kept: Vec<(&dyn Case, Run)> = touchstone_cases::CASES

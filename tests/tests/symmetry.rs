@@ -216,7 +216,7 @@ const FLAWED: Composed<Decay> = Composed {
     studies: |_| Studies::default(),
 };
 
-/// All relations are asked of each run, one run after the other, and the particles of all runs are kept.
+/// Each run is tested for all relations, one run after the other, and the particles of all runs are kept.
 #[test]
 fn a_battery_takes_what_all_relations_of_all_runs_take() {
     let of = |count: usize| {

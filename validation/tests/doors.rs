@@ -360,7 +360,7 @@ fn a_run_with_a_frame_that_cannot_be_written_has_its_record_and_ends_with_2() {
     Record::from_json(&record).expect("the record of a run that went on");
 }
 
-/// A checkpoint that cannot be written names the last one that could, from which the run can go on.
+/// A checkpoint that cannot be written names the last one that could, from which the run can continue.
 #[test]
 fn a_checkpoint_that_cannot_be_written_names_the_last_good_one() {
     let folder = tempfile::tempdir().unwrap();

@@ -46,7 +46,7 @@ impl Map {
     }
 
     /// The image of a column, `slip` being [`super::Walls::SLIPS`]. Density and pressure are equal to the
-    /// source's. If the source has crossed the wall, its image would be in the fluid: it gets no mass and no
+    /// source's. If the source has crossed the wall, its image would be in the fluid: it has no mass and no
     /// volume, and acts on nothing. `motion` is 1, or 0 where velocities are differences of two states: U and
     /// ∂²v/∂n² are then 0.
     #[inline(always)]

@@ -36,7 +36,7 @@ const FIXED: [(Absent, &str); 5] = [
     (Absent::OfParticles, "it follows from particles, and the submission is a profile or a series"),
 ];
 
-/// Before the name of a column that was not handed in.
+/// Before the name of a column that was not submitted.
 const NOT_GIVEN: &str = "not given: ";
 
 impl Absent {

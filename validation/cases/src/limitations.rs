@@ -11,9 +11,9 @@ use touchstone_report::{Block, Section, sig};
 pub fn section(suite: &Suite) -> Section {
     let causes = by_cause(suite.judged(), |found| found.judged);
     let section = Section::new("limitations", "Limitations by cause").prose(
-        "Each gate below is outside of its bound, and inside a wider one; beyond that it would fail. The \
-         wider bound follows from the cause, unless it is said to be fitted to own runs. Causes that are \
-         unexplained state where numbers are off, and not why.",
+        "Each gate below is outside its bound and inside a wider one, beyond which it fails. The wider \
+         bound follows from the cause or is marked as fitted to own runs. Unexplained causes state where \
+         numbers are wrong, not why.",
     );
     let blocks = causes.iter().flat_map(|(cause, found)| {
         let mut cases: Vec<&str> = found.iter().map(|found| found.case.name()).collect();

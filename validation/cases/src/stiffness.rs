@@ -50,18 +50,17 @@ impl Row {
 }
 
 /// Explanation of the columns of [`table`].
-pub const READING: &str = "\
-    Limits of the time step at default settings, each over the step that is taken: below 1 the \
-    mechanism would forbid the step by itself. Limits of waves, viscosity, artificial viscosity and \
-    density diffusion are 2 over the largest rate on the lattice at rest; with the predictor-corrector, \
-    sound needs damping as well. Motion is the time h/V, body force (h/F)^(1/2), contact the time in \
-    which bodies approach each other by h. *Together* is the limit of all waves, beyond which a step is \
-    refused; for particles that move at most 0.8 of it is advised. *Bound by* names the stiffest \
-    mechanism; super-time-stepping takes viscosity out of the contest. The slowest mechanism is the \
-    slowest of the problem (waves, viscosity, motion, force, contact) that acts within the run, else the \
-    run itself. *Slowest/stiffest* is the ratio of their limits, *steps/slowest* the number of steps \
-    over that which the slowest alone would need. *Sweeps* are the pair sweeps of the run, which count \
-    the stages of super-time-stepping.";
+pub const READING: &str = "Limits of the time step at default settings, each over the step that is taken: \
+    below 1 the mechanism would forbid the step by itself. Limits of waves, viscosity, artificial \
+    viscosity and density diffusion are 2 over the largest rate on the lattice at rest; with the \
+    predictor-corrector, sound needs damping as well. Motion is the time h/V, body force (h/F)^(1/2), \
+    contact the time in which bodies approach each other by h. *Together* is the limit of all waves, \
+    beyond which a step is refused; for particles that move at most 0.8 of it is advised. *Bound by* names \
+    the stiffest mechanism; super-time-stepping removes the limit of viscosity. The slowest mechanism is \
+    the slowest of the problem (waves, viscosity, motion, force, contact) that acts within the run, else \
+    the run itself. *Slowest/stiffest* is the ratio of their limits, *steps/slowest* the number of steps \
+    over that which the slowest alone would need. *Sweeps* are the pair sweeps of the run, which count the \
+    stages of super-time-stepping.";
 
 /// The table of these rows.
 pub fn table(rows: &[Row]) -> Table {

@@ -27,7 +27,7 @@ pub const SCHEMA: u32 = 1;
 /// Name of the document in the folder of a problem.
 pub const PROBLEM: &str = "problem.json";
 
-/// Name of the table of a profile or series that a code may hand in.
+/// Name of the table of a profile or series that a code may submit.
 pub const CURVE: &str = "curve.csv";
 /// The field that lists its gates.
 const JUDGED_BY: &str = "judged_by";
@@ -415,8 +415,9 @@ impl Problem {
             return "All numbers are in SI units, in two dimensions, masses per unit depth.".into();
         }
         format!(
-            "All numbers are in the units of this observer, in two dimensions, masses per unit depth: where \
-             a head or `{PROBLEM}` says m, s or kg/m, read {length} m, {time} s or {mass} kg/m."
+            "All numbers are in the units of this reference frame, in two dimensions, masses per unit \
+             depth: where a head or `{PROBLEM}` says m, s or kg/m, read {length} m, {time} s or {mass} \
+             kg/m."
         )
     }
 
@@ -482,9 +483,9 @@ impl Problem {
     fn ours(&self) -> String {
         let Outline { method, medium: m, dt, .. } = &self.outline;
         format!(
-            "The closed division takes particles, spacing and support radius; nothing else of this is asked \
-             for. Kernel: {}, smoothing length h = {} m, support radius {} m. Integrator: {}, time step \
-             {dt} s. Walls: {}. Terms:",
+            "The closed division requires these particles, spacing and support radius; all else is free. \
+             Kernel: {}, smoothing length h = {} m, support radius {} m. Integrator: {}, time step {dt} s. \
+             Walls: {}. Terms:",
             method.kernel,
             m.h,
             method.support * m.h,
@@ -500,7 +501,7 @@ impl Problem {
         };
         match (self.gates.is_empty(), self.relation) {
             (false, _) => table(["gate", "metric", "bound"], self.gates.iter().map(gate)),
-            (true, Some(_)) => "No gate judges it: two observers are compared.".into(),
+            (true, Some(_)) => "No gate judges it: two reference frames are compared.".into(),
             (true, None) => self.unjudged().unwrap_or_default(),
         }
     }
@@ -549,8 +550,8 @@ impl Problem {
         let then = match self.relation.map(Relation::name) {
             None => format!("`touchstone submit {case} DIR --store STORE` measures and judges it."),
             Some(by) => format!(
-                "All is seen by an observer ({by}), and `touchstone symmetry {case} --results SAME DIR` \
-                 compares it."
+                "All numbers are in another reference frame ({by}), and `touchstone symmetry {case} \
+                 --results SAME DIR` compares it."
             ),
         };
         let times: Vec<String> = self.times().iter().map(f64::to_string).collect();

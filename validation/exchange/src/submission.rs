@@ -116,7 +116,7 @@ pub struct Entry {
     pub asked: Option<ProblemDocument>,
     /// The particles.
     pub results: Results,
-    /// The table of a profile or series, of a code that hands in no particles, and its columns' names.
+    /// The table of a profile or series, of a code that submits no particles, and its columns' names.
     pub curve: Option<(String, Renamed)>,
 }
 
@@ -298,7 +298,7 @@ fn unnamed(file: &str, field: &str, text: &str) -> Option<Flaw> {
     }
     let shown: String = text.chars().take(100).collect();
     let has = unseen.map_or(String::new(), |what| format!(" and has {what}"));
-    let what = format!("it is {shown:?}{has}; expected 1 to 100 characters that are seen");
+    let what = format!("it is {shown:?}{has}; expected 1 to 100 visible characters");
     Some(Flaw::of(file, what).in_column(field))
 }
 
@@ -414,10 +414,7 @@ impl Entry {
         let (domain, reach) = (&problem.outline.domain, reach(problem));
         for (frame, (file, line)) in frames.iter().zip(places) {
             if flaws.len() >= MOST_FLAWS {
-                flaws.push(Flaw::of(
-                    file,
-                    "more flaws like these; nothing after them was looked at",
-                ));
+                flaws.push(Flaw::of(file, "more flaws like these; later entries were not checked"));
                 break;
             }
             let flaw = |what: String| Flaw::of(file, what).in_column("id");
@@ -564,7 +561,7 @@ impl Entry {
         Ok(record)
     }
 
-    /// The digits that were not handed in, in words, if there are few: rounding of a file is no flaw of a
+    /// The digits that were not submitted, in words, if there are few: rounding of a file is no flaw of a
     /// method.
     pub fn few_digits(&self, problem: &Problem) -> Option<String> {
         let Results { frames, own, .. } = &self.results;

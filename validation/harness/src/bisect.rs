@@ -146,7 +146,7 @@ pub struct Growth {
     seen: u64,
     /// Sums over the second and the last quarter.
     quarters: [f64; 2],
-    /// Is there no need to go on?
+    /// Is there no need to continue?
     pub beyond_doubt: bool,
 }
 
@@ -156,7 +156,7 @@ impl Growth {
         Self { start, steps, seen: 0, quarters: [0.0; 2], beyond_doubt: false }
     }
 
-    /// The energy after one more step; `true` if there is no need to go on.
+    /// The energy after one more step; `true` if there is no need to continue.
     pub fn see(&mut self, energy: f64) -> bool {
         self.seen += 1;
         let quarter = (4 * self.seen - 1) / self.steps.max(1);

@@ -242,7 +242,7 @@ struct Simulations {
 }
 
 impl<'a> Checkpoints<'a> {
-    /// Checkpoints every so often, of a run that goes on from the simulations of an earlier one, or that
+    /// Checkpoints every so often, of a run that continues from the simulations of an earlier one, or that
     /// begins if there are none.
     pub fn new(every: Duration, earlier: Vec<Vec<u8>>, write: Write<'a>) -> Self {
         let simulations =

@@ -133,7 +133,7 @@ pub enum RunError {
     #[error("a reference that the case needs cannot be loaded: {0}")]
     Reference(String),
     /// A panic, which the hook of panics has reported.
-    #[error("it ended by the bug of which was told")]
+    #[error("it ended by the bug reported above")]
     Bug,
     /// The bytes of a checkpoint do not belong to the run.
     #[error("the checkpoint is not one of this run: {0}")]

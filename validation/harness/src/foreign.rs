@@ -1,4 +1,4 @@
-//! Particles at times that another code handed in, as snapshots.
+//! Particles at times that another code submitted, as snapshots.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub struct ForeignParticle {
     pub position: Vector2<f64>,
     /// \[m/s\].
     pub velocity: Vector2<f64>,
-    /// \[kg/m³\], if it was handed in.
+    /// \[kg/m³\], if it was submitted.
     pub density: Option<f64>,
 }
 
@@ -159,7 +159,7 @@ impl Foreign<'_> {
     }
 
     /// The median particle of a frame by the mass in its square, if the density there exceeds any allowed
-    /// one: particles crowded on a line or in a corner, whatever densities they state.
+    /// one: particles crowded on a line or in a corner, for any stated densities.
     pub(crate) fn crowded<X>(
         &self,
         frame: &Frame,
@@ -202,7 +202,7 @@ pub fn misplaced(frames: &[Frame], times: &[f64]) -> Option<(usize, &'static str
             Some("it is after the end; expected no later times than those of the problem")
         }
         frame if k > 0 && frame.is_at(frames[k - 1].time, 2.0 * end) => Some(
-            "it is the time of the frame before it but for round-off; expected one frame a time",
+            "it equals the time of the frame before up to round-off; expected one frame per time",
         ),
         _ => None,
     };

@@ -11,8 +11,7 @@ use crate::{
     runs::{Planned, Tier},
 };
 
-/// The judged simulations of the quick and the full tier of a case: planned once, when they are first asked
-/// for.
+/// The judged simulations of the quick and the full tier of a case: planned once, at their first use.
 pub struct GateIndex<'a> {
     /// The case.
     pub case: &'a dyn Case,

@@ -172,7 +172,7 @@ type At<P> =
     fn(&P, &mut <P as Problem>::Watch, &Snapshot<<P as Problem>::Extra>, usize, &mut Record);
 /// Called at each of the times of interest of our own runs.
 type OfOurs<P> = fn(&P, &mut <P as Problem>::Watch, &mut <P as Problem>::Simulation);
-/// Called when a run goes on from a checkpoint.
+/// Called when a run continues from a checkpoint.
 type Resumed<P> = fn(&P, &<P as Problem>::Watch, &mut <P as Problem>::Simulation);
 
 /// The functions of a problem that are called on the way, with the names that a profile of the run shows.
@@ -604,7 +604,7 @@ trait Parted: Problem {
     ) -> Result<OurSums<Self::Simulation>, RunError> {
         let own = foreign.own_particles();
         let lacks = own.is_none().then(|| Absent::NotGiven(DENSITY.into()));
-        // Without densities the kernel alone is asked for.
+        // Without densities only the kernel is required.
         let own = own.filter(|own| !own.is_empty());
         let parts = Parts { particles: own.unwrap_or(parts.particles), ..parts };
         let simulation = RefCell::new(self.built(parts, &View::default())?);

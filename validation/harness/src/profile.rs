@@ -120,7 +120,7 @@ impl Profiler {
     /// Looks at the lists of a simulation that was brought to a time, if the last look is long ago.
     pub fn sample<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) {
         let steps = simulation.work().steps;
-        // Before the first step nothing is derived yet that could be looked at.
+        // Before the first step nothing is derived yet that could be sampled.
         if steps == 0 || self.lists.count > 0.0 && steps < self.sampled + SAMPLE_EVERY {
             return;
         }

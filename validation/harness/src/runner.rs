@@ -417,7 +417,7 @@ pub fn check_size(
 type AfterStep<'a, X, S> = Box<dyn Fn(&mut S, &dyn Stepper<X>) -> ControlFlow<()> + 'a>;
 /// A function that is called at the k-th of the times of interest.
 type At<'a, D, S> = Box<dyn Fn(&mut S, &mut D, usize) + 'a>;
-/// A function that is called when a run goes on from a checkpoint.
+/// A function that is called when a run continues from a checkpoint.
 type Resumed<'a, D, S> = Box<dyn Fn(&S, &mut D) + 'a>;
 
 /// The observations of a run, and the calls after every step.
@@ -598,7 +598,7 @@ mod tests {
         }
     }
 
-    /// Steps of a large disk take a second: an interrupt was looked at after 64 of them.
+    /// Steps of a large disk take a second: an interrupt was checked after 64 of them.
     #[test]
     fn an_interrupt_is_obeyed_after_the_next_step() {
         let flag = AtomicBool::new(false);
@@ -858,7 +858,7 @@ mod tests {
         assert_eq!(run(false, kept).0, [(10, 0), (20, 0), (30, 1)]);
     }
 
-    /// 9,999 frames of two steps were written before an interrupt was looked at.
+    /// 9,999 frames of two steps were written before an interrupt was checked.
     #[test]
     fn an_interrupt_is_obeyed_between_the_frames_of_one_step() {
         let folder = tempfile::tempdir().unwrap();

@@ -97,7 +97,7 @@ impl Draws {
             (Some((at, most, a)), _) | (None, Some((at, most, a))) => {
                 let (factor, order) = (exp(self.order * ln(at / fineness)), self.order);
                 let words =
-                    format!("The bound is that of {a} at this resolution, with order {order}.");
+                    format!("The bound equals that of {a} at this resolution, with order {order}.");
                 Some((most * factor, words))
             }
             (None, None) => None,

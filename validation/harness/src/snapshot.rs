@@ -1,5 +1,5 @@
 //! Particles at one time, as the measures of a case read them: particles of our simulation, or particles that
-//! another code handed in, which may lack columns.
+//! another code submitted, which may lack columns.
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -47,7 +47,7 @@ pub fn momentum(points: &[Point]) -> Vector2<f64> {
 pub enum SnapshotColumn<'a, X, T> {
     /// A quantity of the particles of our simulation, as they are stored.
     Ours(&'a [State<X>], fn(&State<X>) -> T),
-    /// A column that was handed in.
+    /// A column that was submitted.
     Given(&'a [T]),
 }
 
@@ -61,7 +61,7 @@ impl<X, T: Copy> SnapshotColumn<'_, X, T> {
     }
 }
 
-/// Particles as arrays in the order of the scene. Optional columns are absent if they were not handed in.
+/// Particles as arrays in the order of the scene. Optional columns are absent if they were not submitted.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ParticleArrays<X = ()> {
     /// The particles.
@@ -107,7 +107,7 @@ impl<X: Numbers> ParticleArrays<X> {
     }
 }
 
-/// Our method, which sums over the neighbours of particles that were handed in.
+/// Our method, which sums over the neighbours of particles that were submitted.
 pub trait Sums<X: Numbers> {
     /// The kernel W \[1/m²\] of r² \[m²\].
     fn weight(&self, r2: f64) -> f64;
@@ -146,7 +146,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
         Self { time, source: Source::Given(ParticleArrays::all(particles), None) }
     }
 
-    /// Particles that were handed in for a time \[s\], and our method, which sums over their neighbours.
+    /// Particles that were submitted for a time \[s\], and our method, which sums over their neighbours.
     pub fn given(time: f64, columns: ParticleArrays<X>, sums: &'a dyn Sums<X>) -> Self {
         Self { time, source: Source::Given(columns, Some(sums)) }
     }
@@ -223,7 +223,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
     /// Our simulation.
     ///
     /// # Errors
-    /// [`Absent::OwnTerms`] of particles that were handed in.
+    /// [`Absent::OwnTerms`] of particles that were submitted.
     pub fn simulation(&self) -> Result<&'a dyn Stepper<X>, Absent> {
         match &self.source {
             Source::Ours(simulation) => Ok(*simulation),

@@ -30,7 +30,7 @@ const SUBMITTED: &str = "submitted-";
 /// Prefix of the file that states that a run is under way, or why it failed. Its age is the time since the
 /// last sign of life, which separates a run that continues from the remains of a killed process.
 const BEGUN: &str = ".begun-";
-/// Wall time between signs of life, and without one after which a run does not go on any more.
+/// Wall time between signs of life, and without one after which a run is no longer continued.
 const SIGN_EVERY: Duration = Duration::from_secs(20);
 const DEAD_AFTER: Duration = Duration::from_secs(120);
 /// More than this is no reason for a failure \[bytes\].

@@ -70,7 +70,7 @@ mod tests {
     use crate::{Axis, ColourMap, Dots, Figure, Layer, Plot, Series};
     use serde_json::Value;
 
-    /// What the script reads: the values that were given with five digits, gaps, and names of points.
+    /// The data that the script reads: values with five digits, gaps, and names of points.
     #[test]
     fn the_data_of_a_figure_are_its_values() {
         let names = vec!["first".into(), "a < b".into()];

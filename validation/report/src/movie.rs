@@ -17,7 +17,7 @@ use super::{
 const BITS: u8 = 4;
 /// Colours of a film: with 24 of them a frame takes two thirds of the bytes that it takes with 256.
 const COLOURS: usize = 24;
-/// One pixel of this many is looked at to choose the colours, in one frame of ten.
+/// One pixel of this many is sampled to choose the colours, in one frame of ten.
 const SAMPLED: i32 = 10;
 /// Frames a second.
 const RATE: u16 = 12;

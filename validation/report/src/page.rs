@@ -194,7 +194,7 @@ impl Page {
     pub fn write_html(&self, path: &Path, html: &str) -> io::Result<()> {
         let folder = path.parent().unwrap_or(Path::new("."));
         if !self.figure_folder.is_empty() {
-            // What a report that was killed left there goes, too.
+            // Also removes files of a report that was killed.
             let images = OutputFolder::create_inside(&folder.join(&self.figure_folder));
             write_images(&self.images(), &images.map_err(io::Error::other)?)?;
         }
@@ -215,7 +215,7 @@ pub fn made_from(html: &str) -> Option<&str> {
     Some(after.split_once('"')?.0)
 }
 
-/// What is written beside a page.
+/// A file that is written beside a page.
 enum Image<'a> {
     Figure(&'a Figure),
     Movie(&'a Movie),

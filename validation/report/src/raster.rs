@@ -1,6 +1,6 @@
 //! A drawing in pixels.
 //!
-//! The rasteriser knows whole pixels only, so everything is drawn `scale` times larger.
+//! The rasteriser has whole pixels only, so everything is drawn `scale` times larger.
 
 use super::canvas::{Point, Sheet};
 use super::colour::Colour;

@@ -51,7 +51,7 @@ fn driven<S: Standard<Extra = (), Forces: Driven>>() -> HillMethod {
 type Pairs = Fluid<BodyForce>;
 type Carried = (Pressure<Tait>, Viscosity, BodyForce, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
-/// Wall particles know how the velocity bends across the wall.
+/// Wall particles include the curvature of the velocity across the wall.
 type Curved = ExtrapolatingWall<Tait, CurvedNoSlip>;
 
 methods! { driven => HillMethod:
@@ -61,7 +61,7 @@ methods! { driven => HillMethod:
     interface_wall: Modern<Pairs, Stabilised, InterfaceWall>;
     /// With [`Stabilised`].
     modern: Modern<Pairs, Stabilised, Mean>;
-    /// Where shifting carries the velocity of the new place, and walls know how the velocity bends.
+    /// Where shifting carries the velocity of the new place, and walls include the curvature of the velocity.
     carried: Modern<Carried, Stabilised, Curved>;
     /// `carried` with sums that are exact for linear fields.
     consistent: Modern<Consistent, ConsistentDrift, Curved>;

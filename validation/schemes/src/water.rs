@@ -1,5 +1,5 @@
-//! Water with a free surface. To a method a free surface is nothing: density follows (3), which knows no
-//! surface, and there is neither Morris viscosity nor a search for the surface.
+//! Water with a free surface, which needs no treatment: density follows equation (3), and there is neither
+//! Morris viscosity nor a search for the surface.
 
 use touchstone_harness::method::{self, Standard};
 use touchstone_maths::metrics::budget::{Metered, WaterDrift, WaterForces};

@@ -33,12 +33,12 @@ pub enum Command {
     Run(Run),
     /// Print the runs of a tier, or of a sweep over settings of one case, one JSON line per run
     Plan(Plan),
-    /// Make the runs whose records the store lacks, and judge every gate
+    /// Make every run that has no stored record, and judge every gate
     Verify(Verify),
     /// Earlier name of `verify --no-runs`
     #[command(hide = true)]
     Judge(Earlier),
-    /// Do what `verify` does and write the report; with --store, write it without making any run
+    /// Run `verify` and write the report; with --store, write it from stored records without any run
     Report(Report),
     /// Write a problem into a folder for another code: particles, walls, material, times
     Export(Export),
@@ -47,8 +47,8 @@ pub enum Command {
     Challenge(Earlier),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
-    /// Compare what observers who are turned, mirrored, in motion and so on have of our own runs, or what
-    /// another code wrote for two of them
+    /// Test symmetry: compare results in rotated, mirrored, moving and other reference frames, of our own
+    /// runs or of another code
     Symmetry(Symmetry),
     /// Earlier name of `symmetry --results`
     #[command(hide = true)]
@@ -59,7 +59,7 @@ pub enum Command {
     Stability(Stability),
     /// Show what a gate checks, its bound, and the reason for the bound
     Explain(Explain),
-    /// Show what this program was built from, and check that it works on this machine
+    /// Show the build, and check that the program works on this machine
     Doctor(Doctor),
     /// Print a completion script for a shell
     #[command(hide = true)]
@@ -99,8 +99,12 @@ fn one_of<T: Copy + Send + Sync>(all: &'static [Named<T>]) -> impl TypedValuePar
 
 /// How much is measured of a run.
 const METRICS: [Named<Measure>; 2] = [
-    ("headline", Measure::Headline, "What costs little beside the time steps"),
-    ("all", Measure::All, "Also what takes pair sweeps of its own, as the energy of each term"),
+    ("headline", Measure::Headline, "Metrics that cost little compared with the time steps"),
+    (
+        "all",
+        Measure::All,
+        "Also metrics that need extra pair sweeps, such as the energy of each term",
+    ),
 ];
 
 /// The options of `run` that apply to a single run and are refused with `--specs`.
@@ -131,7 +135,7 @@ pub struct Run {
     /// Short for `--set rows=N`; giving both is an error
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub rows: Option<String>,
-    /// How much is measured; with --specs, at least so much of each run
+    /// Metrics to measure; with --specs, at least these in each run
     #[arg(long, value_name = "WHICH", value_parser = one_of(&METRICS), default_value = "headline")]
     pub metrics: Measure,
     /// Write into this folder record.json, the curves of the record (series.csv and others) and profile.csv,
@@ -139,7 +143,7 @@ pub struct Run {
     /// --out and --vtk no file is written
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Write into the folder even if it holds the record of another case, whose files then go
+    /// Write into the folder even if it holds the record of another case; the files of that case are removed
     #[arg(long)]
     pub overwrite: bool,
     /// Also write N frames for ParaView (folder without --out: reports/run-CASE-VARIANT)
@@ -151,8 +155,8 @@ pub struct Run {
     /// Print every gate, not only those that did not pass
     #[arg(long, conflicts_with = "json")]
     pub all: bool,
-    /// Also find out where the time goes: seconds and share of each part of a step and of each observer,
-    /// neighbours visited, bytes moved; with --json it is the part `cost.breakdown` of the record
+    /// Also profile the run: seconds and share of each part of a step and of each measurement, neighbours
+    /// visited, bytes moved; with --json as `cost.breakdown` of the record
     #[arg(long)]
     pub profile: bool,
     /// Number of threads inside the run, 1 to 1024, used from 10,000 particles on; with --specs, number
@@ -169,21 +173,21 @@ pub struct Run {
     /// at an interrupt; it is removed at the end of the run
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..))]
     pub checkpoint_every: Option<u32>,
-    /// Go on with the run whose checkpoint is in this folder, with the options of that run: its record is the
-    /// one that the run would have had without the interruption, but for its wall times
+    /// Continue the run whose checkpoint is in this folder, with the options of that run. Except for wall
+    /// times, its record equals that of an uninterrupted run
     #[arg(long, value_name = "DIR", conflicts_with_all = OF_A_CHECKPOINT.split(' '))]
     pub resume: Option<PathBuf>,
     /// Make the runs of this file of JSON lines, as `touchstone plan` prints them; `-` is standard input
     #[arg(long, value_name = "FILE", requires = "store", conflicts_with_all = OF_ONE_RUN.split(' '))]
     pub specs: Option<PathBuf>,
-    /// Folder for the records of --specs; a run whose record is there already is not made again
+    /// Folder for the records of --specs; runs that have a record there are skipped
     #[arg(long, value_name = "DIR", requires = "specs")]
     pub store: Option<PathBuf>,
     /// With --specs, make only the run with this key
     #[arg(long, value_name = "KEY", requires = "specs", conflicts_with = "index")]
     pub only: Option<String>,
-    /// With --specs, make only the run of line N, counted from 0, or those of the lines N to M - 1, as a
-    /// task of an array job does; M may lie beyond the last line
+    /// With --specs, make only the run of line N, counted from 0, or the runs of lines N to M - 1, as in a
+    /// task of an array job; M may exceed the number of lines
     #[arg(long, value_name = "N or N..M", requires = "specs", value_parser = lines)]
     pub index: Option<Range<usize>>,
 }
@@ -225,12 +229,12 @@ pub struct Plan {
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub variant: Vec<String>,
     /// Also write a table of the time and memory that each run is estimated to take, one row a line of the
-    /// plan, and tell their sum; the deep tier tells the sum in any case
+    /// plan, and print their sum; the deep tier always prints the sum
     #[arg(long, value_name = "FILE")]
     pub estimates: Option<PathBuf>,
 }
 
-/// For whom a problem is written.
+/// The code for which a problem is written.
 const FORMATS: [Named<Format>; 4] = [
     ("csv", Format::Csv, "Tables of comma-separated values"),
     ("vtu", Format::Vtu, "Also an unstructured grid of ParaView"),
@@ -243,7 +247,7 @@ const FORMATS: [Named<Format>; 4] = [
 pub struct Written {
     /// Name of the case
     pub case: String,
-    /// Name of the variant whose particles and walls are written; by default that of `touchstone run`
+    /// Name of the variant whose particles and walls are written; by default the recommended one
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
     /// Files in addition to problem.json, README.md and particles.csv
@@ -252,8 +256,8 @@ pub struct Written {
     /// The folder
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
-    /// Write into the folder even if it holds another problem, whose files and results then go, or other
-    /// files of the names that are written
+    /// Write into the folder even if it holds another problem, whose files and results are removed, or files
+    /// with the names of the exported ones
     #[arg(long)]
     pub overwrite: bool,
 }
@@ -268,20 +272,20 @@ pub struct Export {
     /// Also make the run and write its results as a submission of this program
     #[arg(long)]
     pub solve: bool,
-    /// Write what another observer sees at a few early times, for `symmetry --results`: same, turned,
-    /// mirrored, boosted, binary-units, other-units, renumbered, shifted
+    /// Write the problem in another reference frame with a few early times, for `symmetry --results`: same,
+    /// turned, mirrored, boosted, binary-units, other-units, renumbered, shifted
     #[arg(long, value_name = "NAME", value_parser = Relation::named)]
     pub relation: Option<Relation>,
-    /// Draw the settings from this number and from the method of --method. The number is public, and known
-    /// only after the method was published, such as the first digits of a lottery or of a random beacon at a
-    /// stated time
+    /// Derive the settings from this number and from the method of --method. Use a public number that became
+    /// known only after the method was published, such as the first digits of a lottery or of a random beacon
+    /// at a stated time
     #[arg(long, value_name = "N", requires = "method", conflicts_with_all = ["set", "solve", "relation"])]
     pub sealed: Option<u64>,
     /// The method.json that the submission of a sealed problem will have; if its code, version, scheme,
     /// division or settings are changed afterwards, the submission is refused
     #[arg(long, value_name = "FILE", requires = "sealed")]
     pub method: Option<PathBuf>,
-    /// Do it even if it is estimated to take more than 4 GB of memory or, with --solve, 24 hours on one core
+    /// Continue even if the estimate exceeds 4 GB of memory or, with --solve, 24 hours on one core
     #[arg(long)]
     pub allow_long: bool,
 }
@@ -293,15 +297,15 @@ pub struct Symmetry {
     /// Change a setting (repeatable)
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
-    /// Compare in place of our own runs the results of another code for the problems of one case that
-    /// `export --relation same` and `export` with another relation wrote
+    /// Compare the results of another code instead of our own runs: two exports of one problem, with
+    /// `--relation same` and with another relation
     #[arg(long, num_args = 2, value_names = ["SAME", "OTHER"], requires = "cases", conflicts_with = "set")]
     pub results: Option<Vec<PathBuf>>,
     /// Names of columns in these results, as in `--map x=pos_x,y=pos_y`
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
     #[arg(requires = "results")]
     pub map: Vec<(String, String)>,
-    /// Do it even if it is estimated to take more than 24 hours on one core or 4 GB of memory
+    /// Continue even if the estimate exceeds 24 hours on one core or 4 GB of memory
     #[arg(long)]
     pub allow_long: bool,
 }
@@ -321,7 +325,7 @@ pub struct Submit {
     /// The folder of the submission: method.json, system.json, results.csv (or *.dump, *.npz, *.vtu, *.vtp),
     /// and the problem.json that `export` wrote
     pub folder: PathBuf,
-    /// The folder for the record, as that of `verify` and `report`
+    /// Folder for the record, as in `verify` and `report`
     #[arg(long, value_name = "DIR", required_unless_present = "check")]
     pub store: Option<PathBuf>,
     /// Name of the variant whose problem it solves, if the folder has no problem.json
@@ -333,10 +337,10 @@ pub struct Submit {
     /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
     pub map: Vec<(String, String)>,
-    /// Say everything that is missing or wrong, and record nothing
+    /// List all missing and invalid entries, and record nothing
     #[arg(long)]
     pub check: bool,
-    /// Do it even if it is estimated to take more than 4 GB of memory
+    /// Continue even if the estimate exceeds 4 GB of memory
     #[arg(long)]
     pub allow_long: bool,
     /// Print every gate, not only those that did not pass
@@ -356,7 +360,7 @@ fn pair(text: &str) -> Result<(String, String), String> {
 /// How the runs of a plan are made.
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub struct MakeArguments {
-    /// Also reuse records made by a build of other sources; the report then says so
+    /// Also reuse records made by a build of other sources; the report states this
     #[arg(long)]
     pub any_build: bool,
     /// Reuse no record: make every run again
@@ -390,7 +394,7 @@ pub struct Judged {
 pub struct Verify {
     #[command(flatten)]
     pub of: Judged,
-    /// Folder for the records; a run whose record is there already is not made again
+    /// Folder for the records; runs that have a record there are skipped
     #[arg(long, value_name = "DIR", default_value = "reports/records")]
     pub store: PathBuf,
     /// Make no run: judge what the store has
@@ -416,8 +420,8 @@ pub struct Report {
     /// such as those of a sweep, are shown in a table and a figure, and not judged
     #[arg(long, value_name = "DIR", conflicts_with = "fresh")]
     pub store: Option<PathBuf>,
-    /// With --store, judge only what is there, and list every run without a record: missing, running,
-    /// stopped or failed
+    /// With --store, judge only the runs that have records, and list all others as missing, running, stopped
+    /// or failed
     #[arg(long, requires = "store")]
     pub partial: bool,
     #[command(flatten)]
@@ -445,7 +449,8 @@ pub struct Stability {
     /// How many variants to examine
     #[arg(long, value_parser = one_of(&TIERS), default_value = "quick")]
     pub tier: Tier,
-    /// Make no run: print for every variant which mechanism limits its step by theory, at default settings
+    /// Without any run, print which mechanism limits the time step of each variant by linear theory, at
+    /// default settings
     #[arg(long, conflicts_with_all = ["tier", "threads"])]
     pub theory: bool,
     /// Print the limits as JSON on standard output
@@ -472,7 +477,7 @@ pub struct Explain {
 /// A verdict by name.
 const VERDICTS: [Named<Verdict>; 4] = [
     ("pass", Verdict::Pass, "Inside its bound"),
-    ("fail", Verdict::Fail, "Outside its bounds, no number, or of a run that ended early"),
+    ("fail", Verdict::Fail, "Outside its bounds, not finite, or from a run that ended early"),
     (
         "limitation",
         Verdict::Limitation,

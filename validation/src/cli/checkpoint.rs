@@ -92,7 +92,7 @@ fn parse(
     let head: Result<(ResumableRun, Vec<usize>), _> =
         serde_json::from_str(&String::from_utf8_lossy(head));
     let (asked, lengths) = head.map_err(|reason| {
-        format!("what was asked for cannot be read from the checkpoint {path:?}: {reason}")
+        format!("the settings cannot be read from the checkpoint {path:?}: {reason}")
     })?;
     let ours = sources(&asked.spec.case);
     if asked.sources != ours {

@@ -186,7 +186,7 @@ fn solve(
         Some(series) => (CURVE, series),
         None => (RESULTS, results.into_inner().unwrap_or_else(PoisonError::into_inner)),
     };
-    let told = |what| Failure::usage(format!("{name} is not written: {what}"));
+    let told = |what| Failure::usage(format!("{name} was not written: {what}"));
     table.check_finite().map_err(told)?;
     folder.write(name, table.to_csv().as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
@@ -248,7 +248,7 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
     record.manifest.sources = (session.sources)(case.name());
     // To look whether it is complete is no verdict, but one that diverged is not complete.
     if arguments.check && record.status == Status::Completed {
-        output::say("complete: every fact that a submission needs is there; nothing was recorded");
+        output::say("complete: the submission has all required entries; nothing was recorded");
         return Ok(Exit::Pass);
     }
     let said = match arguments.store.as_ref().filter(|_| !arguments.check) {
@@ -371,8 +371,9 @@ pub fn relate(
             return Err(refused(vec![Flaw::of(file, what).at(line + row as u64)]));
         }
         if let Some(few) = entry.few_digits(&problem) {
-            let words =
-                format!("observers are compared to round-off, and these are not given: {few}");
+            let words = format!(
+                "the comparison to round-off needs these quantities, which are missing: {few}"
+            );
             return Err(usage(&words));
         }
         Ok((entry, problem, by))
@@ -421,8 +422,8 @@ fn problem(
             return Err(Failure::usage(words));
         }
         Some(asked) if asked.relation.is_some() => {
-            let words = "problem.json asks for a few steps that an observer sees; `touchstone symmetry \
-                         --results` compares them";
+            let words = "problem.json was written by `export --relation` and has only a few steps; \
+                         `touchstone symmetry --results` compares them";
             return Err(Failure::usage(words));
         }
         Some(asked) => spec_of(case, asked)?,

@@ -222,15 +222,13 @@ fn tell(lines: &[String]) {
 
 /// Reports records that could not be read, kept or made.
 fn tell_trouble(made: &BatchResult) {
-    let again = |(_, error): &(RunKey, FileError)| {
-        format!("{error}; a record in this place does not count")
-    };
+    let again = |(_, error): &(RunKey, FileError)| format!("{error}; this record is ignored");
     tell(&made.unsound.iter().map(again).collect::<Vec<_>>());
     let lost = |(_, error): &(RunKey, FileError)| format!("a record could not be stored: {error}");
     tell(&made.not_kept.iter().map(lost).collect::<Vec<_>>());
     let failed = |(key, failed): &(RunKey, RunError)| format!("run {key} has no record: {failed}");
     tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
-    let unread = |error: &FileError| format!("{error}; the submission does not count");
+    let unread = |error: &FileError| format!("{error}; the submission is ignored");
     tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
 }
 
@@ -341,7 +339,7 @@ fn dispatch(command: &Command, session: &Session) -> Outcome {
         Command::Symmetry(of) => match of.results.as_deref() {
             Some([same, other]) => match &of.cases[..] {
                 [case] => exchange::relate(case, [same, other], &of.map, of.allow_long, session),
-                _ => Err(Failure::usage("--results are those of one case; name one")),
+                _ => Err(Failure::usage("--results belong to one case; name it")),
             },
             _ => symmetry::symmetry(of, session),
         },

@@ -59,8 +59,8 @@ fn width(text: &str) -> usize {
         .count()
 }
 
-/// Text whose control characters are seen and not obeyed, as `\u{1b}`: text from a file or an argument must
-/// not move the cursor or change the title of the window. Colours of [`painted`] are obeyed.
+/// Text with visible control characters, such as `\u{1b}`: text from a file or an argument must not move the
+/// cursor or change the title of the window. Colours of [`painted`] stay.
 fn visible(text: &str) -> String {
     visible_with(text, *HAS_COLOUR)
 }
@@ -134,11 +134,11 @@ fn refused(error: &io::Error) -> Failure {
     }
 }
 
-/// Set while a run goes on from numbers of a file, which anybody can change.
+/// Set while a run continues from numbers of a file, which anybody can change.
 pub static GOES_ON: AtomicBool = AtomicBool::new(false);
 /// Before the words of a panic then.
-const OTHER_RUN: &str = "touchstone: the run cannot go on from these numbers of the checkpoint, which no run \
-                         has. If nobody changed the file, please report it with these lines:";
+const OTHER_RUN: &str = "touchstone: the run cannot continue from the numbers of this checkpoint, which are \
+                         invalid. If nobody changed the file, please report it with these lines:";
 
 /// The hook of a panic.
 pub fn report_bug(info: &PanicHookInfo) {

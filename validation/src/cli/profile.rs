@@ -29,7 +29,7 @@ pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
     let moved = breakdown.bytes_a_step;
     let counts = [
         ("processor time of the stepping, all threads", seconds(cost.cpu_s)),
-        ("neighbours visited, of a fluid particle in a pair sweep", sig(breakdown.neighbours, 3)),
+        ("neighbours visited, per fluid particle and pair sweep", sig(breakdown.neighbours, 3)),
         ("share of them inside the support", percent(breakdown.inside, 3)),
         ("builds of neighbour lists", breakdown.list_builds.to_string()),
         ("time steps a build", sig(steps / breakdown.list_builds as f64, 3)),
@@ -39,11 +39,10 @@ pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
     let counts = counts.map(|(what, number)| vec![what.to_string(), number]);
     let threads = match cost.threads {
         1 => String::from("1 thread"),
-        count => format!("{count} threads: what they share counts once, until the last is done"),
+        count => format!("{count} threads: shared work counts once, until the last thread ends"),
     };
     format!(
-        "\nWhere the time went, in wall seconds ({threads}); ns: nanoseconds a fluid particle and time \
-         step\n\n{}\n{}",
+        "\nProfile in wall seconds ({threads}); ns: nanoseconds per fluid particle and time step\n\n{}\n{}",
         output::table(&["part", "time", "share", "ns", "times"], rows),
         output::table(&["work and data", ""], counts)
     )

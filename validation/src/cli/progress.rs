@@ -16,7 +16,7 @@ pub struct Bar {
     start: Instant,
     /// Before this there is nothing new to show.
     next: Mutex<Instant>,
-    /// Part of the run that was done at the start: more than 0 of one that goes on from a checkpoint.
+    /// Part of the run that was done at the start: more than 0 of one that continues from a checkpoint.
     first: OnceLock<f64>,
 }
 
@@ -83,7 +83,7 @@ impl Bar {
         self.suspend(|| output::say(text));
     }
 
-    /// Takes the bar away while something is said.
+    /// Hides the bar while a message is printed.
     pub fn suspend<T>(&self, say: impl FnOnce() -> T) -> T {
         self.bar.suspend(say)
     }

@@ -57,11 +57,11 @@ const HEADS: [&str; 7] =
     ["variant", "step [s]", "limit/step", "bound by", "stiffness", "steps", "sweeps"];
 /// Explanation of the columns.
 const READING: &str = "At default settings. Step: the time step that is taken. Limit/step: the largest \
-    stable step of all waves together, by linear theory on the lattice at rest, over the step; at least 1.25 \
-    is advised for particles that move. Bound by: the mechanism with the smallest limit of its own. \
-    Stiffness: the limit of the slowest mechanism of the problem over the smallest one. Sweeps: pair sweeps \
-    of the run, with the stages of super-time-stepping. With --json, and in the report, the limit of each \
-    mechanism stands beside these.";
+    stable step of all waves together, by linear theory on the lattice at rest, over the step; at least \
+    1.25 is advised for particles that move. Bound by: the mechanism with the smallest limit. Stiffness: \
+    the limit of the slowest mechanism of the problem over the smallest one. Sweeps: pair sweeps of the \
+    run, with the stages of super-time-stepping. --json and the report also have the limit of each \
+    mechanism.";
 
 /// The mechanism that limits the step of each variant, without a run.
 fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {

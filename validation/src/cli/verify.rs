@@ -113,7 +113,7 @@ pub fn run(
         let (kept, all) = (made.records.len() - made.not_kept.len(), jobs.len());
         return Err(Failure::interrupted(match fresh {
             true => format!(
-                "nothing is judged; runs made again: {kept} of {all}; the other records are those of before"
+                "nothing is judged; runs made again: {kept} of {all}; the other records are unchanged"
             ),
             false => format!(
                 "nothing is judged; records stored: {kept} of {all}; the same command makes the others"

@@ -86,9 +86,9 @@ pub static CASE: Composed<Cavity> = Composed {
                   flow is off by -19 %<!-- cavity.consistent; n=16; return --> with 16 spacings a side",
         papers: Some("seed"),
     },
-    about: "The lid of a closed box drives a vortex, steady at Re 100 and 1000. The fluid starts at rest and \
-            fills the box, so that a density that drifts has nowhere to go. Both mid-lines are compared with \
-            finite differences of this project and with Ghia, Ghia & Shin 1982, which these judge too.",
+    about: "The lid of a closed box drives a vortex, steady at Re 100 and 1000. The fluid starts at rest \
+            and fills the box, so its volume must stay. Both mid-lines are compared with finite \
+            differences of this project and with Ghia, Ghia & Shin 1982.",
     variants,
     facts,
     studies,
@@ -308,14 +308,16 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     use Evidence::{Invariant, Reference};
     let run = format!("{variant}.re{re}.{}", s.n);
     let of = |metric, bound, evidence, why| CASE.gate(&run, metric, bound, evidence, why);
-    let half = "A wall is known to be where it is within dx/2; the mean slope of the lines is U/L.";
-    let control = "Control: by (3), densities of walls fall for ever beside a lid that glides by.";
+    let half =
+        "The position of a wall is known to within dx/2; the mean slope of the lines is U/L.";
+    let control =
+        "Control: by equation (3), densities of wall particles beside a sliding lid keep falling.";
     let closed = "The box is closed. Pressures of the order ρ U^2 change densities by (U/c0)^2.";
     let rises = "The volume falls by 0.13 to 0.3 % in each L/U: the bound is 0.4 %.";
-    let driven = "A lid that is wrong by 3 % must be told. Nothing but compression, (U/c0)^2 = 1 %, makes \
-                  the vortex stronger; slip and smoothing may take as much again.";
+    let driven = "A lid speed that is wrong by 3 % must be detected. Only compression, (U/c0)^2 = 1 %, \
+                  makes the vortex stronger; slip and smoothing may weaken it by twice as much.";
     let weak =
-        "It falls short at any spacing; layers at Re 1000 are a third as thick as at Re 100.";
+        "It is too weak at any spacing; layers at Re 1000 are a third as thick as at Re 100.";
     let (half_dx, mach2) = (Bound::Below(0.5 / s.n as f64), 1.0 / (s.c0 * s.c0));
     let inside = of(OUTSIDE, Bound::Equals(0.0), Invariant, "No particle passes a wall.");
     let volume = of(VOLUME, Bound::Within(-mach2, mach2), Invariant, closed);
@@ -331,7 +333,7 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     let weaker = |low| limited(&strength, low, weak, &LAYERS).fitted();
     // The error left in the limit, and that in proportion to dx/L, of runs with 14 to 64 spacings.
     let slow = |[left, of_dx]: [f64; 2]| {
-        let why = "It falls short by an error of first order (`consistent` at Re 100), or of less.";
+        let why = "It is too weak by an error of first order (`consistent` at Re 100) or less.";
         limited(&back, -left - of_dx / s.n as f64, why, &LAYERS).fitted()
     };
     match (*variant, *re == 100.0) {

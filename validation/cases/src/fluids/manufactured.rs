@@ -55,9 +55,11 @@ const MODERN: [&str; 2] = ["modern", "modern-interface"];
 const CONSISTENT: [&str; 2] = ["consistent", "consistent-interface"];
 
 fn variants() -> Compositions<ManufacturedSettings> {
-    let of_seed = "the paper's terms, kernel and predictor-corrector: what order have they?";
-    let of_modern = "quintic spline, leapfrog, density diffusion, shifting: what order have they?";
-    let of_consistent = "modern with sums that are exact for linear fields: what order have they?";
+    let of_seed = "the paper's terms, kernel and predictor-corrector: which order do they reach?";
+    let of_modern =
+        "quintic spline, leapfrog, density diffusion, shifting: which order do they reach?";
+    let of_consistent =
+        "modern with sums that are exact for linear fields: which order do they reach?";
     Variants::of(pose)
         .with(SEED[0], of_seed, flow::manufactured_seed(), seed)
         .with(SEED[1], of_seed, flow::manufactured_seed_interface(), seed)
@@ -79,11 +81,11 @@ pub static CASE: Composed<ManufacturedSettings> = Composed {
         because: "its sums are exact for linear fields on the particles that the flow carries along",
         papers: Some(SEED[0]),
     },
-    about: "Between walls at y = 0 and y = L, periodic along x with period L, a force that depends on the \
-            place makes u = U (sin(2 pi y/L) cos(2 pi x/L)/2, sin(pi y/L)^2 sin(2 pi x/L)) the exact \
-            steady flow, from rest, whatever the viscosity and the sound speed. At Re 0.5 particles move by \
-            less than 0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 \
-            it is mixed.",
+    about: "Between walls at y = 0 and y = L, periodic along x with period L, a position-dependent force \
+            makes u = U (sin(2 pi y/L) cos(2 pi x/L)/2, sin(pi y/L)^2 sin(2 pi x/L)) the exact steady \
+            flow, from rest, whatever the viscosity and the sound speed. At Re 0.5 particles move by less \
+            than 0.06 L until it is steady, so that their lattice is strained and not mixed; at Re 10 it \
+            is mixed.",
     variants,
     facts: Facts::default,
     studies,

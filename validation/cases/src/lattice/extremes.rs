@@ -44,12 +44,12 @@ pub static EXTREMES: Composed<ExtremeSettings> = Composed {
     problem: "Extreme settings and scenes: does the program stay sound?",
     recommended: Recommended {
         variant: "rest",
-        because: "each variant is an experiment of its own, and this one is the plainest",
+        because: "each variant is one experiment, and this one is the simplest",
         papers: None,
     },
-    about: "Extreme scenes and settings must end well. They are a lattice at rest for very long, particles \
-            on top of each other, and a block at a thousand times the speed of sound. Each variant is an \
-            experiment of its own.",
+    about: "Extreme scenes and settings, each variant one experiment: a lattice at rest for a very long \
+            time, particles on top of each other, and a block at a thousand times the speed of sound. The \
+            program must stay sound.",
     variants,
     facts: Facts::default,
     studies,
@@ -82,7 +82,7 @@ fn variants() -> Compositions<ExtremeSettings> {
     let cubic = touchstone_schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
     // Positive pressure pairs particles of a cubic spline, not of a Wendland function.
-    let pressed = "does it under pressure? Wendland function";
+    let pressed = "does round-off heat a lattice under pressure? Wendland kernel";
     let coincident = "are two particles at one place harmless, in a lattice stirred at 0.05 c0?";
     let bullet = "does a block that hits another keep the momentum?";
     let all_but = |uses: &[&str]| {
@@ -126,7 +126,7 @@ impl Extreme {
         self.scene == Scene::AtRest
     }
 
-    /// How often it is looked at.
+    /// How often its state is sampled.
     fn looks(&self) -> usize {
         if self.is_resting() { 10 } else { 1 }
     }
@@ -273,8 +273,8 @@ fn gates(Row { variant, settings: s, .. }: &Row<ExtremeSettings, ()>) -> Vec<Gat
         }
         COINCIDENT => vec![momentum(
             &format!("coincident.{:e}", s.distance),
-            "The distance 0 must not be divided by. The run stays finite for 400 steps, and every pair force \
-             has its opposite.",
+            "No division by the distance 0. The run stays finite for 400 steps, and every pair force has an \
+             opposite.",
         )],
         _ => vec![momentum(
             if s.dt < 0.3 { "bullet.its speed" } else { "bullet.sound" },

@@ -62,7 +62,7 @@ pub static RESTING_BOX: Composed<BoxSettings> = Composed {
     problem: "Small noise at rest: is the time step stable?",
     recommended: Recommended {
         variant: CUBIC,
-        because: "all have the limit that theory predicts, and this one takes the fewest pairs a step",
+        because: "all reach the limit of theory, and this one needs the fewest pairs per step",
         papers: None,
     },
     about: "Velocity noise of 1e-8 c0 excites every wave of a periodic lattice at rest. Its energy grows \
@@ -97,11 +97,11 @@ fn method(variant: &str) -> Method {
 
 fn variants() -> Compositions<BoxSettings> {
     let cubic =
-        "what sound and viscosity allow together: the kernel and the viscous term of the seed";
-    let midpoint = "what the predictor-corrector allows, which amplifies sound that nothing damps";
-    let super_stepping = "what is left of the limit of viscosity by super-time-stepping";
-    let damped = "what artificial viscosity and density diffusion take from the step";
-    let single = "what one pair sweep a step allows, in place of the leapfrog's two";
+        "largest step with sound and viscosity together: kernel and viscous term of the seed";
+    let midpoint = "largest step of the predictor-corrector, which amplifies undamped sound";
+    let super_stepping = "largest step with super-time-stepping of viscosity";
+    let damped = "largest step with artificial viscosity and density diffusion";
+    let single = "largest step with one pair sweep per step instead of the leapfrog's two";
     let quintic = "does theory hold for a kernel of wider support?";
     Variants::of(Resting::new)
         .with(CUBIC, cubic, method(CUBIC), |_| ())

@@ -18,15 +18,15 @@ pub static SOFT_CONTACT: Cause = Cause::new(
 
 /// Short waves are slow.
 pub static DISPERSION: Cause = Cause::new(
-    "Waves of some spacings are slower than long ones, so a front leaves waves behind it, which keep a share \
+    "Waves of a few spacings are slower than long ones, so a front leaves waves behind, which keep a share \
      of the energy.",
     "Finer spacing, or viscosity that acts in shocks alone.",
 );
 
 /// Folds of few spacings.
 pub static FOLDS: Cause = Cause::new(
-    "Where a thin ring is folded its curvature changes within a few spacings, and what \
-     resists modes that deform no particle makes it too stiff.",
+    "Where a thin ring folds, its curvature changes within a few spacings, and the resistance to hourglass \
+     modes makes it too stiff.",
     "More particles through the thickness.",
 );
 
@@ -60,7 +60,7 @@ pub static TEARING: Cause = Cause::new(
 pub static SHARED_IMPULSE: Cause = Cause::unexplained(
     "The two phases of contact share the impulse differently from finite elements; artificial viscosity \
      explains a part alone.",
-    "This is not known: XSPH, softness in bending and softness of the contact do not explain it.",
+    "Unknown: XSPH, softness in bending and softness of the contact do not explain it.",
 );
 
 /// Layers that cannot keep their volume.

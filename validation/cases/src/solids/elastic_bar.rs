@@ -37,7 +37,7 @@ touchstone_base::settings! {
         collide: bool = false,
         /// largest velocity of the pulse, or the speed of each bar
         speed: f64 ["c_p"] in 1e-12..=0.9 = 1e-4,
-        /// gap between the bars beyond one spacing; 0: both stand on one lattice, in touch
+        /// gap between the bars beyond one spacing; 0: both bars are on one lattice and touch
         gap: f64 ["dx"] in 0.0..=100.0 = 0.0,
         /// standard deviation of the pulse
         width: f64 ["L"] in 0.01..=0.2 = 0.0625,
@@ -362,8 +362,8 @@ const LATTICE: f64 = 0.02;
 /// Why bars with a gap are soft.
 const SOFT: &str = "Until they bear the strain V/c_p, faces sink 0.7 dx into each other's support, because \
     density rises as 0.14 (d/h)^3.5 with the depth d. That takes as long as 2 L/c_p, and viscosity \
-    dissipates meanwhile. The bound: what bars of 20 to 80 spacings have at this speed, and `bare` at any \
-    speed.";
+    dissipates meanwhile. The bound: the result of bars of 20 to 80 spacings at this speed, and of `bare` \
+    at any speed.";
 
 /// A gate of a run: metric, least and most, evidence, reason.
 type Of<'a> = &'a dyn Fn(MetricKey, [f64; 2], Evidence, &str) -> Gate;
@@ -395,21 +395,21 @@ fn pulse(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
                  h/width, which is 9 % at the start. The bound: that, and the 0.68 % by which waves on the \
                  lattice are faster.";
     let lattice = "Small errors are left: the amplitude of 1e-4, the time step, (omega dt)^2/24, and the \
-                   3e-4 of the pulse that stand outside of four standard deviations.";
+                   3e-4 of the pulse beyond four standard deviations.";
     let energy = "The forces derive from the stored energy. The leapfrog leaves (omega dt)^2/8 of it, at the \
                   waves of the pulse, for which omega dt is about 0.3, at most 1 %.";
     let (most, theory) = (if row.variant == LAGRANGIAN { 0.005 } else { 0.01 }, Evidence::Theory);
     let travel = gate(TRAVEL_ERROR, [-most, most], Evidence::Analytic, group);
-    let shape = "What this program computed before, with 5 % either way. Waves of some spacings are slow, so \
-                 that the pulse is followed by a wake, whose share falls from 52 over 20 to 5 % with 20, 40 \
-                 and 80 spacings.";
+    let shape = "The earlier result of this program, with 5 % either way. Waves of a few spacings are slow \
+                 and follow the pulse; their share falls from 52 over 20 to 5 % with 20, 40 and 80 \
+                 spacings.";
     let before = gate(PULSE_RMS, [0.19, 0.21], Evidence::Regression, shape);
     let arrives = "A pulse that is half of its standard deviation away differs from the exact one by (2 - 2 \
                    e^(-1/16))^(1/2) = 0.35 of it, one that has not moved by 1.4.";
     let id = format!("{}.{}.pulse{}.arrives", ELASTIC_BAR.name, row.variant, row.settings.n);
     let there = Gate::new(id, PULSE_RMS, Bound::Below(0.35), Evidence::Analytic, arrives);
-    let trails = "Waves of some spacings are slow and follow the pulse. The bound is what 40 spacings have, \
-                  and 5 % more.";
+    let trails = "Waves of a few spacings are slow and follow the pulse. The bound is the result of 40 \
+                  spacings plus 5 %.";
     let trailing =
         |gate: Gate| gate.with_limitation(Bound::Below(0.466), trails, &DISPERSION).fitted();
     let keeps =

@@ -39,7 +39,7 @@ pub static ELASTIC_WAVE: Composed<WaveSettings> = Composed {
     problem: "A small wave in rubber",
     recommended: Recommended {
         variant: CubicSpline::NAME,
-        because: "it is the only one, and follows the theory of the lattice to round-off",
+        because: "the only variant; it follows lattice theory to round-off",
         papers: None,
     },
     about: "The frequency of an infinitesimal wave in rubber on a stress-free lattice is known exactly \
@@ -64,8 +64,8 @@ touchstone_base::metrics! {
 }
 
 fn variants() -> Compositions<WaveSettings> {
-    let equations =
-        "equations (9) to (12), leapfrog, cubic spline: are both moduli those of the material?";
+    let equations = "equations (9) to (12), leapfrog, cubic spline: does the method have both moduli of the \
+                     material?";
     Variants::of(|m: &Method<Symmetric>, s: &WaveSettings| {
         Ok(Wave { settings: s.clone(), method: m.clone() })
     })

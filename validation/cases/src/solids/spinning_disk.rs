@@ -33,7 +33,7 @@ touchstone_base::settings! {
         radius: f64 ["m"] in 1e-9..=1e6 = 0.04,
         /// speed of the rim
         speed: f64 ["c0"] in 1e-6..=0.5 = 0.05,
-        /// end of the run, of a rigid disk
+        /// end of the run, in revolutions of a rigid disk
         end: f64 ["revolutions"] in 1e-4..=1e4 = 1.0,
         /// settings of solids
         solid: SolidSettings = SolidSettings::default(),
@@ -46,12 +46,12 @@ pub static SPINNING_DISK: Composed<DiskSettings> = Composed {
     problem: "A free elastic disk spins",
     recommended: Recommended {
         variant: LAGRANGIAN,
-        because: "it keeps its angular momentum to round-off, where the paper's disk loses all of its spin",
+        because: "it conserves angular momentum to round-off; the paper's disk loses all of its spin",
         papers: Some("seed"),
     },
-    about: "A free elastic disk begins to spin without stress. Angular momentum must stay, and stress must \
-            stay of the order rho U^2 of the speed U of the rim; more is rotation that the method mistakes \
-            for strain.",
+    about: "A free elastic disk begins to spin without stress. Angular momentum must be conserved, and \
+            stress must stay of the order rho U^2, with U the speed of the rim; more stress means that the \
+            method mistakes rotation for strain.",
     variants: || solid::variants(touchstone_schemes::solid::free()).all,
     facts,
     studies,
@@ -74,7 +74,7 @@ touchstone_base::metrics! {
 
 /// Samples of the series.
 const SAMPLES: f64 = 200.0;
-/// When the angular momentum is looked at first, of a revolution.
+/// When the angular momentum is first sampled, of a revolution.
 const TENTH: f64 = 0.1;
 
 impl Body for DiskSettings {
@@ -284,8 +284,8 @@ const REVERSED: &str = "The disk can spring back. The bound: the square of the a
     twice the moment of inertia times the energy, which grows by at most 5 %.";
 
 /// How large the stress can become.
-const ALL_SHEAR: &str = "The stress grows as long as there is kinetic energy to feed it. The bound: all of \
-    it, rho U^2/4 per area, and 5 % more, stored as energy of shear, S:S/(4 mu).";
+const ALL_SHEAR: &str = "The stress grows at the expense of kinetic energy. The bound: all of it, rho U^2/4 \
+    per area, and 5 % more, stored as energy of shear, S:S/(4 mu).";
 
 /// Gates of all disks, and of disks that keep spinning or do not.
 fn gates(row: &Row<DiskSettings, Group>) -> Vec<Gate> {
@@ -300,14 +300,14 @@ fn gates(row: &Row<DiskSettings, Group>) -> Vec<Gate> {
     let law = Evidence::Invariant;
     let opposite =
         "Forces of pairs are equal and opposite, central or not, so only round-off is left.";
-    let no_strain = "Where gradients are exact for linear fields, a rotation has no strain. What is left is \
-                     round-off, divided by the angle of one step, 1e-3 to 1e-2 rad.";
+    let no_strain = "Where gradients are exact for linear fields, a rotation has no strain. Round-off \
+                     remains, divided by the angle of one step, 1e-3 to 1e-2 rad.";
     let noticed = "A free body keeps its angular momentum. A change of 1 % per revolution, or of 0.1 % in a \
                    tenth of it, would not be noticed in colliding rings. Forces that derive from an energy \
                    have no torque but round-off.";
     let stressed = "A disk that spins steadily in plane strain has a root-mean-square deviatoric stress of \
-                    about 0.1 rho U^2. After a start without stress it swings to twice that; twice that is \
-                    allowed.";
+                    about 0.1 rho U^2. After a start without stress it oscillates up to twice that; the \
+                    bound is twice this maximum.";
     let is_braked = row.group == Group::Braked;
     let [tenth, drift] = if is_braked { [1e-3, 1e-2] } else { [1e-11; 2] };
     let tenth = gate(ANGULAR_MOMENTUM_TENTH, Bound::Within(-tenth, tenth), law, noticed);

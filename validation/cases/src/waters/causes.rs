@@ -59,9 +59,9 @@ pub static NOISY_DENSITY: Cause = Cause::new(
     "Density diffusion, as in `modern`.",
 );
 
-/// A mirror knows no gravity.
+/// A mirror does not include gravity.
 pub static MIRRORED_PRESSURE: Cause = Cause::new(
-    "Ghost particles mirror the pressure of the water at the bottom, where it should go on rising, so the \
-     lowest row bears too much.",
+    "Ghost particles mirror the pressure of the water at the bottom, where it should keep rising, so the \
+     lowest row has too much pressure.",
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
 );

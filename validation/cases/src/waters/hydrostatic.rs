@@ -51,9 +51,9 @@ touchstone_base::settings! {
         courant: f64 ["-"] in 1e-6..=10.0 = 0.25,
         /// end of the run
         end: f64 ["4 H/c0"] in 1e-3..=1e5 = 20.0,
-        /// each particle starts this far from its place, at random
+        /// random displacement of each particle at the start
         jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
-        /// start with the density of the surface everywhere, instead of with the exact one
+        /// start with the surface density everywhere instead of the exact profile
         uniform: bool = false,
         /// stabilising terms
         stabilisation: Stabilisation = Stabilisation::default(),
@@ -446,13 +446,13 @@ fn gates(row: &Row) -> Vec<Gate> {
                   spacing leaves a visible gap.";
     let still = "Nothing moves. The bound is the energy that raises the surface by a tenth of a spacing, \
                  (0.1 dx/H)² M g H at 20 rows.";
-    let light = "Control: without gravity in the extrapolation, the bottom bears the mean pressure of the \
-                 water before it instead of the pressure at its own depth, and the water sinks.";
-    let levelled = "Control: density diffusion that does not know the weight of the water levels its density \
-                    out, and the column rises by 3 % of its depth.";
+    let light = "Control: without gravity in the extrapolation, the bottom has the mean pressure of the \
+                 water above instead of the pressure at its own depth, and the water sinks.";
+    let levelled = "Control: density diffusion without the weight of the water makes its density uniform, \
+                    and the column rises by 3 % of its depth.";
     let tight = "No particle passes a wall.";
-    let across = "The water fills the tank: it is where it is known to be, to half of a spacing, of which \
-                  columns that are one spacing apart take half.";
+    let across = "The water fills the tank: its position is known to within half a spacing, of which \
+                  columns one spacing apart take half.";
     let variant = row.variant;
     let (run, because) = match (row.group, row.settings.compressibility) {
         (Group::Ladder, _) => return Vec::new(),

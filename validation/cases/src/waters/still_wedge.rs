@@ -52,7 +52,7 @@ touchstone_base::metrics! {
 fn variants() -> Compositions<Wedge> {
     let seed = "the paper's: interface and wall particles, XSPH, artificial viscosity and stress";
     let modern = "Wendland C2, density diffusion that keeps a column at rest, walls that extrapolate the \
-                  pressure: do they bear water at corners too?";
+                  pressure: do they carry water at corners too?";
     Variants::of(|m, s| Ok(Still::new(m, s)))
         .with("seed", seed, touchstone_schemes::water::seed(), |s| s.water.courant = 0.4)
         .with("modern", modern, touchstone_schemes::water::modern(), |s| {
@@ -72,8 +72,8 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
         papers: Some("seed"),
     },
     about: "Water rests in a tank over a wedge of 45 degrees, whose apex is half way to the surface. Its \
-            columns are stretched to fill the tank, so that their particles are not those of a lattice and \
-            must first find their places. The exact pressure is that of the depth, and nothing moves.",
+            columns are stretched to fill the tank, so that their particles are not on a lattice and must \
+            first settle. The exact pressure is hydrostatic, and nothing moves.",
     variants,
     facts,
     studies,
@@ -290,8 +290,8 @@ fn table(tier: Tier) -> table::Table<Wedge, ()> {
 
 /// Why walls of particles with a density by (3) do not bear the weight above them.
 static UNWEIGHED: Cause = Cause::new(
-    "The density of interface and wall particles follows (3) and knows no weight, so that a wall that is too \
-     light stays so.",
+    "The density of interface and wall particles follows equation (3), which has no weight, so a wall with \
+     too little density keeps it.",
     "Walls that extrapolate the pressure with the weight of the water, as in `modern`.",
 );
 
@@ -301,7 +301,7 @@ fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
     let of =
         |metric, bound, because| STILL_WEDGE.gate(&run, metric, bound, Evidence::Analytic, because);
     let known =
-        "A wall is known to be where it is within half of a spacing: half of the weight of a row.";
+        "The position of a wall is known to within half a spacing: half of the weight of a row.";
     let level =
         "The level of the water must stay within a quarter of a spacing, whose weight this is.";
     let still = "The energy that raises the surface by a tenth of a spacing, (0.1 dx/H)^2 M g H.";

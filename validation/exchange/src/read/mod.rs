@@ -92,7 +92,7 @@ pub struct Results {
     pub own: Vec<OwnParticle>,
     /// The file of each frame, and the line of its first row where it has lines.
     pub places: Vec<(String, u64)>,
-    /// The columns that were handed in.
+    /// The columns that were submitted.
     pub columns: BTreeSet<&'static str>,
     /// Mass, or NaN, and role of each particle for which the files state one of them.
     pub stated: BTreeMap<u32, (f64, Option<Role>)>,
@@ -376,10 +376,8 @@ fn frames(all: &[Rows]) -> Result<Results, Vec<Flaw>> {
         flaws.extend(results.take_columns(rows, &all[0].file));
         for k in 0..rows.len() {
             if flaws.len() >= MOST_FLAWS {
-                flaws.push(Flaw::of(
-                    &rows.file,
-                    "more flaws like these; nothing after them was read",
-                ));
+                flaws
+                    .push(Flaw::of(&rows.file, "more flaws like these; later lines were not read"));
                 return Err(flaws);
             }
             let line = rows.first_line + k as u64;

@@ -14,7 +14,7 @@ use crate::problem::{PARTICLES, PROBLEM, Problem};
 /// compressible scheme is for free surfaces, too.
 const PYSPH: &str = include_str!("run_pysph.py");
 
-/// For whom a problem is written.
+/// The code for which a problem is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// Tables alone.

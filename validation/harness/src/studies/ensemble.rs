@@ -175,7 +175,7 @@ fn complete(made: &CompletedEnsemble) -> Judged {
     let (id, all) = (format!("{}.members", made.of.id), made.of.members.len() as f64);
     let because =
         "A distribution without the members that ended early is one of those that did not.";
-    let name = "members that reached their end [1]";
+    let name = "members that reached the end [1]";
     let gate = Gate::new(id, name, Bound::Equals(all), Evidence::Invariant, because);
     Judged::new(gate, Some(made.records.len() as f64))
 }

@@ -17,16 +17,16 @@ use crate::{
     study::Study,
 };
 
-const ABOUT: &str = "What the gates can detect. One constant of the scene is multiplied by 1 + e and by 1 \
-                     - e, while everything that is measured and judged follows the settings as before. An \
-                     error counts as detected if the run fails a gate with both signs. Gates that compare \
-                     the program with itself do not count, and conserved quantities count for constants of \
-                     the discretisation alone. An error of 3 % of a physical constant and of 10 % of an \
-                     ingredient of the method must be detected, and so must gross faults: a wrong sign \
-                     (× -1), a missing term (× 0), a constant that is wrong by a factor. Errors \
-                     between 0.1 % and 30 % are tried by bisection, which assumes that a larger error is \
-                     easier to detect: `detected from` does not cover the larger errors that were not \
-                     tried. The quick tier tries only the largest error that may go undetected.";
+const ABOUT: &str = "Errors that the gates can detect. One constant of the scene is multiplied by 1 + e and \
+                     by 1 - e, while measurements and gates keep the original settings. An error counts as \
+                     detected if the run fails a gate with both signs. Gates that compare the program with \
+                     itself do not count, and conserved quantities count for constants of the \
+                     discretisation alone. An error of 3 % of a physical constant and of 10 % of an \
+                     ingredient of the method must be detected, and so must gross faults: a wrong sign (× \
+                     -1), a missing term (× 0), a constant that is wrong by a factor. Errors between 0.1 % \
+                     and 30 % are tried by bisection, which assumes that a larger error is easier to \
+                     detect: `detected from` does not cover the larger errors that were not tried. The \
+                     quick tier tries only the largest error that may go undetected.";
 
 /// An error that means that none up to 30 % is detected.
 const NONE: f64 = 1.0;

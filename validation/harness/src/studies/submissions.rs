@@ -138,7 +138,8 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
         caption += " Ours of the session in which the records of the program were made are black.";
     }
     if marks.iter().any(|mark| mark.session.is_none()) {
-        caption += " Runs from the store were made elsewhere, so that their seconds compare with no others.";
+        caption += " Runs from the store were made on other machines, so their seconds compare with no \
+                    others.";
     }
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
@@ -177,10 +178,9 @@ fn provenance(runs: &Runs) -> Option<String> {
     let day = runs.peers.iter().find_map(|run| session(&run.record))?;
     let mut words = format!(
         "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
-         turn with ours, each on one thread while other programs were at work. Their seconds \
-         compare with each other, not with those of other sections. The authors of the codes have not looked \
-         at the scripts that ran them: a run that is worse than what they publish is first of all a question \
-         to the script."
+         turn with ours, each on one thread while other programs were at work. Their seconds compare only \
+         with each other. The authors of the codes have not reviewed the scripts: a run that is worse than \
+         published results may be an error of the script."
     );
     let records = || runs.peers.iter().map(|run| &run.record);
     if records().any(|record| (1..=FEW).contains(&record.cost.particles)) {
@@ -190,7 +190,7 @@ fn provenance(runs: &Runs) -> Option<String> {
     let ours = records().filter(|record| record.run.submission.as_deref().is_some_and(is_ours));
     if ours.into_iter().any(|record| record.run.variant == "curved") {
         words += " Our `curved` was added after the first results of the others, of which two were better \
-                  than ours; a reader who compares first attempts leaves it out.";
+                  than ours; omit it to compare first attempts.";
     }
     Some(words)
 }
@@ -198,7 +198,7 @@ fn provenance(runs: &Runs) -> Option<String> {
 /// Number of pairs of equal results that are named.
 const MOST_EQUAL: usize = 10;
 
-/// Results that several codes handed in.
+/// Results that several codes submitted.
 fn equal(runs: &Runs) -> Option<String> {
     let mut found = Vec::new();
     let of = |run: &JudgedRun| run.record.run.submission.as_deref().cloned();
@@ -239,13 +239,12 @@ pub fn section(case: &str, studies: &Studies, runs: &Runs) -> Option<Section> {
     let words = first.into_iter().chain(equal(runs)).chain(provenance(runs));
     let section = words.fold(Section::new(&id, "Runs of other codes"), Section::prose);
     let section = section.prose(
-            "Particles that other codes wrote, measured by the code that measures our own runs and judged by \
-             the bounds of the same gates; known limitations of our own method are no excuse. A gate is not \
-             applicable if its metric needs what no file holds or what was not handed in, or if its bound \
-             follows from our own kernel, support and step. A record proves nothing that its results \
-             do not: `touchstone submit` measures them again, and refuses a record in the store that says \
-             something else of them. Versions, seconds and steps are as submitted, for this program cannot \
-             check them.",
+            "Particles of other codes, measured by the code that measures our own runs and judged by the \
+             same gates; known limitations of our own method do not apply. A gate is not applicable if its \
+             metric needs data that no file holds or that were not submitted, or if its bound follows from \
+             our own kernel, support and step. `touchstone submit` measures results again and refuses a \
+             stored record that contradicts them. Versions, seconds and steps are as submitted, because \
+             this program cannot check them.",
         );
     let section = match &found {
         Some((accuracy, marks)) => section.block(figure(&format!("{id}-cost"), accuracy, marks)),
@@ -287,9 +286,9 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
         .text("ended", |(_, run, ..)| run.record.status.to_string())
         .table(
             "Closed division: our particles, spacing and support of the kernel. Open division: other \
-             particles or another resolution, at a stated cost. In each the best first. The accuracy is \
-             judged by gates on the error; none means that no gate judges it. Versions and processor times \
-             are as submitted.",
+             particles or another resolution, at a stated cost. The best is first in each. Gates on the \
+             error judge the accuracy; *none*: no gate does. Versions and processor times are as \
+             submitted.",
             rows,
         )
 }

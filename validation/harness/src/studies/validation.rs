@@ -293,23 +293,22 @@ fn order_of_differences(differences: f64, [wide, ratio]: [f64; 2]) -> Option<f64
     (differences > 1.0 && SLOWEST < order && order < FASTEST).then_some(order)
 }
 
-const OF_EXACT: &str = "\
-    Errors against references that are exact, by the finest level. All of such an error is numerical: \
-    V&V 20 has nothing to say of it. Order: of all levels, with its interval of 95 %. *Converges*: this \
-    interval is above 0. *Stops at*: the differences of the last three levels approach another limit \
+const OF_EXACT: &str = "Errors of the finest level against exact references. Such an error is entirely \
+    numerical, so V&V 20 does not apply. Order: of all levels, with its interval of 95 %. *Converges*: \
+    this interval is above 0. *Stops at*: the differences of the last three levels approach another limit \
     than 0, by more than three times the distance from it, or the error fell and then stopped falling.";
 
-const OF_UNCERTAIN: &str = "\
-    Uncertainty of the comparisons with references that have their own, by ASME V&V 20-2009. E is the \
-    finest result minus the reference; norms have no sign. u_num follows from the ladder. Where one \
-    order describes all levels, U_num of 95 % is 1.25 times the distance of the finest from the limit of \
-    that order (grid convergence index), and u_num is U_num/1.15. Where the differences of the last \
-    three levels have an order, which nothing tests, U_num is 3 times the distance from its limit, and \
-    else 3 times the range of the last three (Eça & Hoekstra 2014); u_num is U_num/2. u_input is the \
-    change by inputs that are wrong by their own uncertainty, of the coarsest run; u_D the uncertainty \
-    that the reference states; u_val the root of the sum of squares. |E| ≤ 2 u_val: not distinguishable; \
-    |E| > 2 u_val: model error. If |E| ≤ 2 u_val and 2 u_val is above a tenth of what is compared, \
-    nothing can be said. Without an order there is neither: the ladder does not tell.";
+const OF_UNCERTAIN: &str = "Uncertainty of the comparisons with references that have their own, by ASME V&V \
+    20-2009. E is the finest result minus the reference; norms have no sign. u_num follows from the \
+    ladder. Where one order describes all levels, U_num of 95 % is 1.25 times the distance of the finest \
+    from the limit of that order (grid convergence index), and u_num is U_num/1.15. Where only the \
+    differences of the last three levels have an order, which is not tested, U_num is 3 times the distance \
+    from its limit, otherwise 3 times the range of the last three (Eça & Hoekstra 2014); u_num is U_num/2. \
+    u_input is the change by inputs that are wrong by their own uncertainty, of the coarsest run; u_D the \
+    uncertainty that the reference states; u_val the root of the sum of squares. |E| ≤ 2 u_val: not \
+    distinguishable; |E| > 2 u_val: model error. If |E| ≤ 2 u_val and 2 u_val exceeds a tenth of the \
+    compared quantity, nothing can be said. Without an order there is no verdict: the ladder does not \
+    tell.";
 
 /// The comparisons of a case with references, exact ones and others.
 pub struct Comparisons(pub Vec<Comparison>);

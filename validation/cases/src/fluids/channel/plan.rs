@@ -37,8 +37,8 @@ pub const GHOSTS: [(Flow, usize, [f64; 2]); 5] = [
 /// The gate for a code with another kernel or step: `most` holds for our own steps only, whose error cancels
 /// a part of the error of the sums.
 fn of_others(gate: Gate, most: f64) -> Gate {
-    let because = "The exact solution has the error 0. Allowed is 2 %, by which sums over a lattice may \
-                   change the viscosity, and beside it the error of our own walls.";
+    let because = "The exact solution has no error. The bound is 2 %, by which sums over a lattice may \
+                   change the viscosity, plus the error of our own walls.";
     gate.of_others(Bound::Below(0.02 + most), because)
 }
 

@@ -18,7 +18,8 @@ touchstone_base::settings! {
         re: f64 ["-"] in 1e-9..=1e6 = 0.5,
         /// rows of particles between the plates: spacing dx = L/rows
         rows: usize ["-"] in 4..=2000 = 20,
-        /// particles along the channel; 0: as few as the kernel allows, for the flow does not depend on x
+        /// particles along the channel; 0: the fewest that the kernel allows, because the flow does not
+        /// depend on x
         columns: usize ["-"] in 0..=100000 = 0,
         /// distance of the plates L (inferred)
         width: f64 ["m"] in 1e-9..=1e3 = 1e-3,
@@ -36,23 +37,23 @@ touchstone_base::settings! {
         c0: Option<f64> ["m/s"] in 1e-12..=1e6 = None,
         /// density variation δ that Morris' rule allows: c0² = max(V², ν V/L, F L)/δ
         density_variation: f64 ["-"] in 1e-8..=1.0 = 0.01,
-        /// least c0 in units of ν/h; sound no stiffer than viscosity does not shorten the time step
+        /// minimum c0 in units of ν/h; sound at the viscous limit does not shorten the time step
         c0_viscous: f64 ["nu/h"] in 0.0..=100.0 = 0.0,
         /// exponent of the Tait equation
         gamma: usize ["-"] in 1..=20 = 7,
         /// background pressure p0
         background: f64 ["rho c0^2"] in 0.0..=10.0 = 0.0,
-        /// time step; auto: the least of courant h/(c0 + V), viscous h²/ν (or of limit_share), √(h/F)/4
+        /// time step; auto: the minimum of courant h/(c0 + V), viscous h²/ν (or of limit_share), √(h/F)/4
         dt: Option<f64> ["s"] in 1e-15..=1e3 = None,
         /// Courant number of the time step
         courant: f64 ["-"] in 1e-6..=100.0 = 0.25,
         /// viscous number of the time step
         viscous: f64 ["-"] in 1e-6..=100.0 = 0.125,
-        /// time step as a share of its theoretical limit, in place of both numbers; auto: not
+        /// time step over its theoretical limit, instead of both numbers; auto: not used
         limit_share: Option<f64> ["-"] in 0.01..=1.0 = None,
-        /// least number of time steps from one time of comparison to the next
+        /// minimum number of time steps between two times of comparison
         least_steps: usize ["-"] in 1..=100000 = 1,
-        /// wall ghosts know the curvature -F/ν of the velocity at the wall
+        /// ghosts include the curvature -F/ν of the velocity at the wall
         wall_curvature: bool = false,
         /// artificial viscosity, linear
         alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
@@ -72,7 +73,7 @@ touchstone_base::settings! {
         jitter: f64 ["dx"] in 0.0..=0.5 = 0.0,
         /// Verlet skin: reach of neighbour lists beyond the support radius
         skin: f64 ["h"] in 0.0..=2.0 = 0.15,
-        /// keep the lowest pressure mode of the last 60 L/c0; profiles are compared at the end alone
+        /// record the lowest pressure mode over the last 60 L/c0; profiles are then compared only at the end
         watch_mode: bool = false,
     }
 }
@@ -151,7 +152,7 @@ pub struct ChannelSetup {
 
 /// The settings on which time and memory of a run depend.
 pub const DECISIVE: &str = "end, dt, c0, rows or columns";
-/// Largest sound speed \[m/s\], in whatever way it follows from the settings.
+/// Largest sound speed \[m/s\] that follows from the settings.
 const MOST_SOUND: f64 = 1e6;
 
 impl ChannelSetup {

@@ -16,7 +16,7 @@ use super::{ChannelSettings, ChannelTable, Flow, Group, Row, measure::L2};
 pub const REYNOLDS: [(f64, f64); 2] = [(0.5, 1.0 / 5.0), (1e-4, 1.0 / 10.0)];
 
 static SOUND: Cause = Cause::new(
-    "Morris' rule makes sound in Poiseuille flow 2.8 times as fast as in Couette flow, and sound sets the \
+    "By Morris' rule sound in Poiseuille flow is 2.8 times as fast as in Couette flow, and sound limits the \
      step.",
     "A sound speed chosen by the pressure of the flow, which is 0 here, and not by its force.",
 );

@@ -314,7 +314,7 @@ const SOUND: &str =
     "At Mach 0.1 compressibility changes the velocity by less than the spacing does.";
 const ORDER: &str =
     "At Re 0.5 particles stay in straight rows, and this term acts on disorder alone.";
-const REACH: &str = "What a longer reach adds to the error of a parabolic profile at 20 rows is inside the \
+const REACH: &str = "The error that a longer reach adds to a parabolic profile at 20 rows is inside the \
                      bounds until the reach is wrong by 20 %.";
 const LISTS: &str = "A list that is kept 30 % too long still holds every neighbour, for it is built again \
                      before a particle has crossed half of the skin.";

@@ -20,7 +20,7 @@ fn wendland(s: &mut ChannelSettings) {
     (s.h_over_dx, s.viscous) = (2.0, 0.23);
 }
 
-/// `modern` with ghosts that know the curvature of the velocity at the wall.
+/// `modern` with ghosts that include the curvature of the velocity at the wall.
 fn curved(s: &mut ChannelSettings) {
     modern(s);
     s.wall_curvature = true;
@@ -50,8 +50,8 @@ pub fn of_couette() -> Compositions<ChannelSettings> {
 /// Variants of Poiseuille flow, whose profile is curved, and in which the seed is unstable: each adds one
 /// remedy to the paper's method.
 pub fn of_poiseuille() -> Compositions<ChannelSettings> {
-    let bent =
-        "plain with ghosts that know the curvature of the velocity at the wall: is it their error?";
+    let bent = "plain with ghosts that include the curvature of the velocity at the wall: is this their \
+                error?";
     let stress = "seed with artificial stress, equations (18) and (19): does it cure the seed's \
                   instability?";
     let viscosity = "seed with artificial viscosity, equations (16) and (17): does it cure the seed's \
@@ -73,16 +73,17 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
     let interface =
         "seed with interface and wall particles (section 4.2 of the paper): as good as ghosts?";
     let kernel =
-        "Wendland C2, h/dx 2, small eta, leapfrog: is the error of another kernel cheaper?";
+        "Wendland C2, h/dx 2, small eta, leapfrog: does another kernel cost less for equal error?";
     let plain =
         "quintic spline, h/dx 1, small eta, leapfrog: what is the error without stabilisers?";
     let extrapolating =
         "plain with walls that extrapolate (Adami, Hu & Adams 2012): are they better than ghosts?";
     let modern_is =
         "plain, curved ghosts, density diffusion and shifting: one rule for every Reynolds number?";
-    let single = "modern with one pair sweep a step in place of two: is its error cheaper?";
-    let steps =
-        "modern with super-time-stepping: what does a step save that viscosity does not limit?";
+    let single =
+        "modern with one pair sweep per step instead of two: does it cost less for equal error?";
+    let steps = "modern with super-time-stepping: how much does it save if viscosity does not limit the \
+                 step?";
     Variants::of(move |m, s| ChannelSetup::new(flow, s, m))
         .with("seed", seed, methods.seed, |_| {})
         .with("interface-wall", interface, methods.interface_wall, |_| {})

@@ -28,17 +28,17 @@ touchstone_base::settings! {
         n: usize ["-"] in 4..=400 = 10,
         /// height of the crest; 0 is a flat channel
         crest: f64 ["H"] in 0.0..=1.5 = 1.0,
-        /// flux over that of the reference
+        /// flux over the flux of the reference
         flux: f64 ["2.035 U_b H"] in 0.0..=10.0 = 1.0,
         /// start from an interpolation of the reference instead of from rest
         from_reference: bool = false,
         /// body force at the start
         force: f64 ["U_b^2/H"] in -1e3..=1e3 = 0.0,
-        /// time in which the controller closes a gap in flux; 0 keeps the force
+        /// time constant of the flux controller; 0 keeps the force constant
         response: f64 ["H/U_b"] in 0.0..=1e3 = 1.0,
         /// end of the run
         end: f64 ["H/U_b"] in 1e-3..=1e4 = 30.0,
-        /// last part of the run, over which profiles are averaged
+        /// final share of the run over which profiles are averaged
         average: f64 ["of the run"] in 0.01..=0.3 = 0.2,
         /// smoothing length over spacing
         h_over_dx: f64 ["-"] in 0.9..=3.0 = 1.0,
@@ -59,11 +59,11 @@ fn variants() -> Compositions<HillSettings> {
         "quintic spline, h/dx 1, leapfrog, extrapolating walls, no stabiliser: is one needed?";
     let interface =
         "modern with the paper's interface and wall particles (section 4.2): how good are they?";
-    let modern =
-        "plain with density diffusion and shifting: does what suits channels suit curved walls?";
-    let carried = "modern with stronger shifting that takes the velocity of the new place, and walls that \
-                   know how the velocity bends";
-    let consistent = "carried with sums that are exact for linear fields: are they worth more work for each \
+    let modern = "plain with density diffusion and shifting: do the stabilisers of the channels suit curved \
+                  walls?";
+    let carried = "modern with stronger shifting, in which particles take the velocity of their new place, \
+                   and walls that include the curvature of the velocity";
+    let consistent = "carried with sums that are exact for linear fields: are they worth the extra work per \
                       pair?";
     Variants::of(HillSetup::new)
         .with("plain", plain, hill::plain(), |_| {})

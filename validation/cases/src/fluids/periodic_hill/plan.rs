@@ -115,9 +115,9 @@ fn gates(row: &Row) -> Vec<Gate> {
             vec![control.expected_to_fail().may_end_early()]
         }
         Group::Fast => {
-            let because = "By Helmholtz' theorem no flow with this flux between these walls takes less than \
-                           slow flow, and slow flow here takes more than plane Poiseuille flow takes in the \
-                           widest gap, 3.035 H, through which the flux is 2.035 U_b H.";
+            let because = "By Helmholtz' theorem no flow with this flux between these walls needs less \
+                           force than slow flow, and slow flow here needs more than plane Poiseuille flow \
+                           of the flux 2.035 U_b H in the widest gap, 3.035 H.";
             let least = 12.0 / re * 2.035 / 3.035_f64.powi(3);
             vec![outside, CASE.gate(&run, FORCE, Bound::Above(least), Evidence::Theory, because)]
         }
@@ -132,9 +132,9 @@ fn gates(row: &Row) -> Vec<Gate> {
 
 /// The velocity and the flux of runs with few spacings, and of other variants.
 fn coarse(run: &str, n: usize) -> Vec<Gate> {
-    let walls = "A wall is known to be where it is to half of a spacing, over which the velocity changes by \
-                 U_b dx/(2 H) if it changes by U_b over the height of the hill.";
-    let flux = "The flux is asked for. The bound is 1 %.";
+    let walls = "The position of a wall is known to within half a spacing, over which the velocity changes \
+                 by U_b dx/(2 H) if it changes by U_b over the height of the hill.";
+    let flux = "The flux is prescribed. The bound is 1 %.";
     vec![
         CASE.gate(run, L2_U, Bound::Below(0.5 / n as f64), Evidence::Reference, walls),
         CASE.gate(run, FLUX, Bound::Within(-0.01, 0.01), Evidence::Invariant, flux),
@@ -180,9 +180,9 @@ fn balances(run: &str, n: usize) -> Vec<Gate> {
     let sections = "A steady flow has the same flux through every section, but for the density variation of \
                     (1.3/15)^2/2 = 0.4 %. At ten spacings it is 0.8 % more, because the line fitted to the \
                     field lies below a parabola by 0.27 h^2 |u''|.";
-    let flux = "The controller integrates, so the flux that it holds is the one wanted.";
-    let drags = "In steady flow the walls take what the force gives: to 1 %, and at ten spacings four times \
-                 that, because the slope at the wall is found to second order.";
+    let flux = "The controller integrates, so it holds the prescribed flux.";
+    let drags = "In steady flow the drag of the walls balances the force: to 1 %, and at ten spacings to 4 \
+                 %, because the slope at the wall is measured to second order.";
     vec![
         CASE.gate(run, WALL_OFFSET, Bound::Below(0.05), Evidence::Invariant, walls),
         CASE.gate(run, SECTION_FLUX, Bound::Below(section), Evidence::Invariant, sections),

@@ -316,7 +316,7 @@ const BOUNDS: &str = "The error of the method at ten spacings a hill takes up mo
 const CONTROLLED: &str = "A controller sets the force, whatever force it begins with.";
 const SOUND: &str = "Compressibility changes the velocity by less than the spacing does.";
 const REACH: &str =
-    "Sums hold for any reach, whose error is inside the bounds at ten spacings a hill.";
+    "Sums are valid for any reach; its error is inside the bounds at ten spacings a hill.";
 const DISORDER: &str =
     "Particles stay evenly spread with 30 % less or more of it, and not without.";
 

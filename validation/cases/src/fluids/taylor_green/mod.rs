@@ -53,10 +53,10 @@ fn strong(s: &mut VortexSettings) {
 
 fn variants() -> Compositions<VortexSettings> {
     let plain = "quintic spline, h/dx 1, leapfrog, no stabiliser: is one needed?";
-    let modern =
-        "plain with density diffusion and shifting: does what suits channels suit vortices?";
-    let carried =
-        "modern with stronger shifting that takes the velocity of the new place: is that enough?";
+    let modern = "plain with density diffusion and shifting: do the stabilisers of the channels suit \
+                  vortices?";
+    let carried = "modern with stronger shifting, in which particles take the velocity of their new place: \
+                   is that enough?";
     let consistent = "carried with sums that are exact for linear fields";
     Variants::of(|m, s| Ok(VortexSetup::new(m, s)))
         .with("plain", plain, flow::vortices_plain(), |_| {})
@@ -162,19 +162,18 @@ fn gates(row: &Row) -> Vec<Gate> {
 
 /// Why the vortices of `modern` die too soon.
 static NOISE: Cause = Cause::new(
-    "Sums over pairs of particles that the vortices have mixed are noisy, and the noise takes the energy of \
-     the flow as viscosity does.",
+    "Sums over pairs of particles that the vortices have mixed are noisy, and the noise dissipates the \
+     energy of the flow like viscosity.",
     "Sums that are exact for linear fields, as in `consistent`.",
 );
-const MUFFLED: &str = "Noise takes energy and gives none. The bound: 1 is the error of a fluid that has come \
-    to rest.";
+const MUFFLED: &str = "Noise only removes energy. The bound: 1 is the error of a fluid at rest.";
 
 /// The gates of the recommended variant.
 fn of_best(run: &str, n: usize) -> Vec<Gate> {
     let goal = "The best of the codes measured has 2.2 % at 50 x 50 and 1.5 % at 100 x 100. The goal is a \
                 smaller error from either start, of second order below 50 x 50.";
-    let energy = "At the end e^-3.2 of the energy is left, so 1 % of it is 0.3 % of the viscosity, on \
-                  particles that shifting keeps evenly spread.";
+    let energy = "At the end e^-3.2 of the energy is left, so 1 % of it is 0.3 % of the viscosity, if \
+                  shifting keeps particles evenly spread.";
     let apart = "Shifting keeps particles apart, and half a spacing is far from pairing.";
     let drift =
         "Terms that are exact for linear fields may add what their error of about 1 % adds.";
@@ -207,9 +206,9 @@ fn studies(tier: Tier) -> Studies {
     let spacing = Spacing::count(|s: &mut VortexSettings| &mut s.n, "{} x {}");
     let mut ladders = LADDER.map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
     for ladder in ladders.iter_mut().filter(|of| of.variant == RECOMMENDED && tier == Tier::Full) {
-        let because = "The bound is what this program computed before, 1.95, with 0.3 either way. Errors of \
-                       the sums fall as h^2, but those of the sound speed and the time step fall otherwise \
-                       and partly cancel them, so theory gives no order at these spacings.";
+        let because = "The bound is the earlier result of this program, 1.95, with 0.3 either way. Errors \
+                       of the sums fall as h^2, but errors of the sound speed and the time step fall \
+                       otherwise and partly cancel them, so theory gives no order at these spacings.";
         let (id, bound) =
             (format!("{NAME}.{RECOMMENDED}.{DISTURBED}.order"), Bound::Within(1.6, 2.3));
         ladder.order = Some(Gate::new(id, "order", bound, Evidence::Regression, because));

@@ -82,9 +82,9 @@ impl Subject {
             (Operator::Laplacian, false) => {
                 "is the viscous force (6) the Laplacian of the velocity?"
             }
-            (Operator::Laplacian, true) => "is it if linear fields are subtracted?",
+            (Operator::Laplacian, true) => "(6) minus its sum for the linear part of the velocity",
             (Operator::Divergence, false) => "is (3) the divergence of the velocity?",
-            (_, true) => "is it with a gradient that is exact for linear fields?",
+            (_, true) => "the same with sums that are exact for linear fields",
         }
     }
 }
@@ -202,7 +202,7 @@ pub static OPERATORS: Composed<OperatorSettings> = Composed {
     problem: "One operator of a known field on disordered particles",
     recommended: Recommended {
         variant: "quintic-gradient-corrected",
-        because: "with the divergence it is the operator that converges on disordered particles",
+        because: "this operator and the corrected divergence converge on disordered particles",
         papers: None,
     },
     about: "A known field on particles at rest on a lattice, displaced at random. Over a few steps of \

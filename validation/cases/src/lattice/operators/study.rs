@@ -143,9 +143,8 @@ fn section(tier: Tier, table: &Table, runs: &Runs) -> Section {
         Refinement { title, axes: [spacing, axis], slopes, lines: lines.collect() }
     });
     let section = Section::new("operators-orders", "Orders of single operators").prose(
-        "What an operator makes of a wave is a gain times the exact value, and noise. On a lattice there \
-         is no noise, and the gain is known to 1e-5 by theory, so that these gates name the operator that \
-         is wrong.",
+        "An operator applied to a wave gives a gain times the exact value, plus noise. On a lattice there \
+         is no noise, and theory gives the gain to 1e-5, so these gates identify a wrong operator.",
     );
     let figure = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a \
                   lattice (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = \

@@ -36,8 +36,8 @@ touchstone_base::settings! {
         rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
         /// sound speed
         c0: f64 ["m/s"] in 1e-9..=1e9 = 1.0,
-        /// density of the lattice over that density, less one; the sound speed rises with its cube, and a
-        /// background pressure makes the pressure 0 again
+        /// density of the lattice over the reference density, minus one; the sound speed rises with its cube,
+        /// and a background pressure cancels the pressure
         compression: f64 ["-"] in 0.0..=0.2 = 0.0,
         /// kinematic viscosity
         nu: f64 ["m^2/s"] in 0.0..=1e6 = 1e-3,
@@ -47,8 +47,8 @@ touchstone_base::settings! {
         eta2_over_h2: f64 ["-"] in 1e-12..=0.1 = 0.01,
         /// density diffusion δ
         diffusion: f64 ["-"] in 0.0..=10.0 = 0.0,
-        /// standard deviation of the initial displacements, for sums that no symmetry makes vanish;
-        /// theory is that of the lattice
+        /// standard deviation of the initial displacements, which break the symmetry of the sums; theory
+        /// assumes the lattice
         jitter: f64 ["dx"] in 0.0..=0.2 = 0.0,
         /// initial velocity amplitude
         amplitude: f64 ["c0"] in 1e-12..=0.1 = 1e-6,
@@ -101,8 +101,7 @@ pub static SHEAR_WAVE: Composed<WaveSettings> = Composed {
 
 const RECOMMENDED: Recommended = Recommended {
     variant: "cubic-leapfrog",
-    because: "all kernels follow the theory of the lattice to round-off, and this one takes the fewest \
-              pairs",
+    because: "all kernels follow lattice theory to round-off, and this one needs the fewest pairs",
     papers: None,
 };
 
@@ -139,10 +138,12 @@ const STEPWISE: &[MetricKey] = &[
 ];
 
 fn variants(of: Polarisation) -> Compositions<WaveSettings> {
-    let of_kernel = "are the symbols those of this kernel? its plain equations with the leapfrog";
-    let of_step =
-        "is a step that of the predictor-corrector, which amplifies sound? else as cubic-leapfrog";
-    let of_diffusion = "does density diffusion decay as its symbol says? else as cubic-leapfrog";
+    let of_kernel =
+        "plain equations with this kernel and the leapfrog: do the sums have its symbols?";
+    let of_step = "as cubic-leapfrog, with the predictor-corrector: does it amplify sound exactly as theory \
+                   says?";
+    let of_diffusion =
+        "as cubic-leapfrog, with density diffusion: does it decay as its symbol says?";
     Variants::of(move |m, s| run::Wave::new(of, s, m))
         .with(CUBIC, of_kernel, touchstone_schemes::lattice::cubic(), |_| ())
         .with(MIDPOINT, of_step, touchstone_schemes::lattice::midpoint(), |_| ())

@@ -28,7 +28,7 @@ touchstone_base::settings! {
     pub struct CantileverSettings {
         /// particles through the thickness
         n: usize ["-"] in 2..=1000 = 10,
-        /// length outside of the clamp
+        /// free length, without the clamp
         length: f64 ["m"] in 1e-9..=1e6 = 0.35,
         /// thickness
         thickness: f64 ["m"] in 1e-9..=1e6 = 0.02,
@@ -48,9 +48,9 @@ pub static CANTILEVER: Composed<CantileverSettings> = Composed {
     problem: "A clamped elastic bar swings under its own weight",
     recommended: Recommended {
         variant: LAGRANGIAN,
-        because: "with 5 layers its end falls as in finite elements to \
-                  -0.4 %<!-- cantilever.lagrangian; n=5 end=0.75; first_least_y_error -->, and bodies of the \
-                  paper's variant bend too far with so few layers",
+        because: "with 5 layers its end falls as in finite elements to -0.4 %<!-- cantilever.lagrangian; \
+                  n=5 end=0.75; first_least_y_error -->, and bodies of the paper's variant bend too far \
+                  with few layers",
         papers: Some("seed"),
     },
     about: "An elastic bar, held at one end and at rest without stress, begins to swing when its weight \
@@ -111,8 +111,8 @@ const fn error(name: &'static str) -> MetricKey {
 const SAINT_VENANT: &str = "lagrangian-saint-venant";
 
 fn variants() -> Compositions<CantileverSettings> {
-    let papers = "what the paper describes, with weight: predictor-corrector, artificial viscosity, \
-                  artificial stress in principal axes, XSPH";
+    let papers = "the paper's, with weight: predictor-corrector, artificial viscosity, artificial stress in \
+                  principal axes, XSPH";
     let law = "the same with the stored energy of St. Venant and Kirchhoff, the law of the test CSM3: does \
                the law matter?";
     solid::no_variants()

@@ -56,9 +56,9 @@ fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
     let run = format!("{}.{n}{load}{time}", row.variant);
     let gate =
         |metric, bound, evidence, because| CANTILEVER.gate(&run, metric, bound, evidence, because);
-    let reach = "The bounds are what the project set out to reach with 10 layers, and wider with fewer as an \
-                 error of second order is. Finite elements are uncertain by 0.5 % along, by 0.24 % across \
-                 the bar and by 0.13 % of the frequency.";
+    let reach = "The bounds are the goal of the project with 10 layers, wider with fewer layers as for an \
+                 error of second order. Finite elements are uncertain by 0.5 % along, by 0.24 % across the \
+                 bar and by 0.13 % of the frequency.";
     let wider = if n < 10 { (10.0 / n as f64).powi(2) } else { 1.0 };
     let near = |metric, most: f64| {
         let most = most * wider;
@@ -92,9 +92,8 @@ fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
             let longer = 1.0 + faces::known_excess(n, row.settings.solid.h_over_dx);
             let nothing =
                 "Nothing elastic dissipates, and the weight has a potential, so all energy stays.";
-            let loses = "Artificial viscosity brakes the swing. The bound: a bar that has come to rest, at \
-                         half of the greatest deflection, has lost the greatest kinetic energy of an \
-                         undamped swing.";
+            let loses = "Artificial viscosity damps the swing. The bound: a bar at rest, at half of the \
+                         largest deflection, has lost the largest kinetic energy of an undamped swing.";
             let energy =
                 gate(ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, nothing);
             vec![

@@ -23,11 +23,11 @@ touchstone_base::settings! {
     pub struct PlateSettings {
         /// particles through the thickness
         n: usize ["-"] in 2..=1000 = 10,
-        /// length outside of the clamp
+        /// free length, without the clamp
         length: f64 ["m"] in 1e-9..=1e6 = 0.2,
         /// thickness
         thickness: f64 ["m"] in 1e-9..=1e6 = 0.02,
-        /// largest velocity at the start, that of the tip
+        /// initial velocity of the tip, the largest of the plate
         speed: f64 ["c0"] in 1e-9..=0.1 = 0.01,
         /// end of the run: periods of thin-plate theory
         end: f64 ["periods"] in 0.01..=1e3 = 0.75,
@@ -56,7 +56,8 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
 };
 
 fn variants() -> Compositions<PlateSettings> {
-    let of = "the terms of `seed` without XSPH, stepped by the leapfrog: what do XSPH and the integrator do?";
+    let of = "the terms of `seed` without XSPH, with the leapfrog: what is the effect of XSPH and the \
+              integrator?";
     solid::variants(touchstone_schemes::solid::clamped())
         .with(PLAIN, of, touchstone_schemes::solid::clamped_plain(), |s| {
             solid::leave_out(s, &["xsph"])

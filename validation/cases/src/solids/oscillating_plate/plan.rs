@@ -154,12 +154,12 @@ fn of_elements(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
         10..20 => 0.01,
         _ => 0.003,
     };
-    let exact = "Finite elements are uncertain by 0.02 % of the period. The bounds are what the project set \
-                 out to reach with 5, 10 and 20 layers.";
+    let exact = "Finite elements are uncertain by 0.02 % of the period. The bounds are the goals of the \
+                 project with 5, 10 and 20 layers.";
     let far = "Nothing dissipates, and the ratio does not depend on the stiffness. A place that is half a \
                spacing away swings 0.34 % less far with 20 layers and 1.4 % with 5.";
-    let path = "A period that is wrong by the share e, here what is allowed of it, moves the phase by 2 pi \
-                e in every period: through three of them a root mean square of 6 pi e/6^(1/2) extremes.";
+    let path = "A relative error e of the period, here its bound, shifts the phase by 2 pi e in every \
+                period: over three periods a root mean square of 6 pi e/6^(1/2) extremes.";
     let theory = "With the stiffness of its layers by theory, what is left is the clamp, whose plane lies \
                   between two rows of particles, and shear, 1 %, in which the lattice is little wrong.";
     let rms = 6.0 * std::f64::consts::PI / 6.0_f64.sqrt() * period;
@@ -180,8 +180,7 @@ const LOCKS: &str = "The displacements of an even number of layers cannot keep t
 /// A total Lagrangian plate that hardly changes its volume.
 fn locked(row: &Row<PlateSettings, Group>) -> Gate {
     let thin = "Shear and rotary inertia lengthen the period by 1 %, and the clamp shortens it by half of \
-                that. Beside it is allowed what the project set out to reach with 5 and 10 layers, 3 and 1 \
-                %.";
+                that. The bound adds the goal of the project with 5 and 10 layers, 3 and 1 %.";
     let (n, poisson) = (row.settings.n, row.settings.solid.poisson);
     let [least, most] = [-0.005, 0.014];
     let error = if n < 10 { 0.03 } else { 0.01 };

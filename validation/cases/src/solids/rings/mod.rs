@@ -40,7 +40,7 @@ touchstone_base::settings! {
         shear_modulus: f64 ["K"] in 0.0..=1.5 = 0.22,
         /// speed of each ring
         speed: f64 ["c0"] in 0.0..=1.0 = 0.059,
-        /// direction of the flight: the whole scene is rotated by this angle
+        /// rotation angle of the whole scene
         angle: f64 ["deg"] in -360.0..=360.0 = 0.0,
         /// end of the run
         end: f64 ["L/c0"] in 1e-3..=1e6 = 200.0,
@@ -76,8 +76,8 @@ fn variants() -> Compositions<RingSettings> {
                          does the answer depend on the axes?";
     let staggered = "the seed with the staggered leapfrog, one right-hand side a step, and longer steps: \
                      does that change anything but the cost?";
-    let conjugate = "the terms of `leapfrog` without XSPH, with corrected gradients, and the forces that \
-                     are conjugate to them: what do uncorrected gradients at free faces do?";
+    let conjugate = "the terms of `leapfrog` without XSPH, with corrected gradients and conjugate forces: \
+                     what is the effect of uncorrected gradients at free faces?";
     solid::no_variants::<RingSettings>()
         .with("seed", papers, seed(), |_| {})
         .with(COMPONENTWISE, by_components, componentwise(), |_| {})

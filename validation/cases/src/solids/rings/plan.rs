@@ -131,8 +131,8 @@ fn reference(id: &str, metric: impl Into<MetricName>, bound: Bound, because: &st
 /// cut through once is one piece still.
 fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
     const WHOLE: &str = "Rubber does not break at strains like those in finite elements, nor at any speed \
-        below a fifth of the speed of sound. The paper claims that artificial stress is enough for that \
-        (claim M2). A body that keeps the neighbours of its reference cannot tear.";
+        below a fifth of the speed of sound. The paper claims that artificial stress ensures this (claim \
+        M2). A total Lagrangian body cannot tear, because its neighbours stay.";
     const CUT: &str = "Artificial stress delays the tensile instability: rings of ten layers are cut through \
         from 0.09 c0 on, those of five at 0.2 c0, and at 0.12 c0 with corrected gradients or stress \
         component by component, which is weaker at 45 degrees to the axes. The bound: a cut ring has no \
@@ -272,27 +272,28 @@ impl Distances<'_> {
     }
 }
 
-const GOAL: &str = "Finite elements of the same law. The bounds are what the project set out to reach: 2, 1 \
-    and 0.5 % with 5, 10 and 20 layers, and an end of contact within 3 L/c0.";
+const GOAL: &str = "Finite elements of the same law. The bounds are the goals of the project: 2, 1 and 0.5 \
+    % with 5, 10 and 20 layers, and an end of contact within 3 L/c0.";
 const NO_GAP: &str = "Kernels in rings of 5 layers reach across a gap of 0.4 L, and between the two phases \
-    of contact the gap in finite elements is 0.28 L. The rings never let go in between, so there is one \
+    of contact the gap in finite elements is 0.28 L. The rings never separate in between, so there is one \
     phase.";
-const REACH: &str = "Kernels reach 3 dx and particles stand dx/2 inside of the surface, so a ring is in \
-    touch at a distance of dx from the plane. The time lies between those when finite elements are at this \
-    distance and when they touch. The bound adds first order in dx/thickness of the time since the first \
-    touch, and the uncertainty of finite elements.";
+const REACH: &str = "Kernels reach 3 dx and particles lie dx/2 inside the surface, so a ring touches the \
+    plane at a distance of dx. The time lies between those when finite elements are at this distance and \
+    when they touch. The bound adds first order in dx/thickness of the time since the first touch, and the \
+    uncertainty of finite elements.";
 const SHARED: &str = "Rings of 10 and 20 layers have 6 and 4 % less impulse in the first phase and 6 % more \
     in the second, up to 7 and 12 % at 0.03 c0. It is one error seen twice, because the sum goes with the \
     restitution. The bound: the largest of these, and the 2 % by which a quarter of the viscosity changes \
     it.";
-const TEAR_BEGINS: &str = "A tear begins at the inner face: neighbours part to 2.7 dx in rings of 20 layers, \
-    and with corrected gradients to 2.9 dx in rings of 10 while they fly apart. The bound: beyond 3 dx, the \
-    reach of the kernel, neighbours have let go.";
+const TEAR_BEGINS: &str = "A tear begins at the inner face: neighbours part to 2.7 dx in rings of 20 \
+    layers, and with corrected gradients to 2.9 dx in rings of 10 while they fly apart. The bound: beyond \
+    3 dx, the reach of the kernel, neighbours no longer interact.";
 const HALF_A_SPACING: &str = "The surface of a body of particles is known to half a spacing, and so are its \
     extents over time. The bound: half a spacing over the outer diameter.";
-const SENSITIVE: &str = "The restitution hangs on how the second contact meets the vibration of the rings: \
-    in finite elements the law of St. Venant and Kirchhoff changes it by +3.1 %. The folds of flattened \
-    rings are a few spacings wide. The bound: the difference of the two laws and 1 %; with 20 layers 1 %.";
+const SENSITIVE: &str = "The restitution depends on the phase of the vibration of the rings at the second \
+    contact: in finite elements the law of St. Venant and Kirchhoff changes it by +3.1 %. The folds of \
+    flattened rings are a few spacings wide. The bound: the difference of the two laws and 1 %; with 20 \
+    layers 1 %.";
 const LIGHT_TOUCH: &str = "At the end of the second phase the rings touch lightly, while they vibrate. The \
     bound: the 5.9 L/c0 from 99 % of the impulse to the last touch of finite elements, a sample of 0.25 \
     L/c0, and the time in which rings come apart by a spacing of 0.2 L at the speed 0.094 c0 of both.";

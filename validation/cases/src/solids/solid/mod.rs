@@ -28,7 +28,7 @@ touchstone_base::settings! {
         poisson: f64 ["-"] in 0.0..=0.4999 = 0.3975,
         /// density without stress
         rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
-        /// smoothing length over spacing; published runs of rubber rings have 1.5
+        /// smoothing length over spacing; published runs of rubber rings use 1.5
         h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
         /// artificial viscosity α
         alpha: f64 ["-"] in 0.0..=10.0 = 1.0,

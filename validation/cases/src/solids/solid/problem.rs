@@ -128,10 +128,10 @@ pub fn no_variants<B: Body + Settings + Clone>() -> Alike<B> {
 
 /// The variants of every problem; the methods: the paper's, and its equations alone.
 pub fn variants<B: Body + Settings + Clone>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<B> {
-    let papers = "what the paper describes: predictor-corrector, artificial viscosity, artificial stress in \
-                  principal axes, XSPH";
-    let alone = "the equations (3), (9)-(12) alone, stepped by the leapfrog: what is due to them, and what \
-                 to the terms that stabilise?";
+    let papers = "the paper's: predictor-corrector, artificial viscosity, artificial stress in principal \
+                  axes, XSPH";
+    let alone = "equations (3), (9)-(12) alone, with the leapfrog: which errors are theirs, which those of \
+                 stabilisers?";
     no_variants()
         .with("seed", papers, seed, |_| {})
         .with("bare", alone, bare, |s| leave_out(s, &["alpha", "beta", "xi", "xsph"]))

@@ -25,23 +25,23 @@ touchstone_base::settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
     pub struct DamSettings {
         /// spacings along the shorter side of the column; with fewer than 5 no particle is below a quarter of
-        /// its height, where the front is read
+        /// its height, where the front is measured
         n: usize ["-"] in 5..=2000 = 20,
         /// width of the column
         width: f64 ["m"] in 1e-6..=1e3 = 0.05715,
         /// height H of the column
         height: f64 ["m"] in 1e-6..=1e3 = 0.1143,
-        /// length of the tank inside; by default the far wall is never reached
+        /// inner length of the tank; by default water never reaches the far wall
         tank: f64 ["m"] in 1e-6..=1e4 = 0.485775,
         /// height of the walls of the tank
         rim: f64 ["H"] in 0.1..=10.0 = 1.25,
         /// gravity
         gravity: f64 ["m/s^2"] in 1e-6..=1e6 = 9.81,
-        /// sound speed: ten times the speed of a fall from the top of the column
+        /// sound speed: ten times the speed of free fall from the top of the column
         c0: f64 ["(g H)^(1/2)"] in 1.0..=1e3 = 14.142135623730951,
         /// end of the run
         end: f64 ["(H/g)^(1/2)"] in 1e-6..=100.0 = 1.8,
-        /// the column starts this far to the left of its place and below it, with the densities of its place
+        /// shift of the initial column to the left and downwards, without a change of its densities
         offset: f64 ["dx"] in 0.0..=0.5 = 0.0,
         /// settings of water
         water: WaterSettings = WaterSettings::default(),
@@ -103,15 +103,15 @@ fn variants() -> Compositions<DamSettings> {
     use touchstone_schemes::water;
     let paper = "the paper's: cubic spline, interface and wall particles, XSPH, artificial viscosity and \
                  stress, predictor-corrector";
-    let ghosts = "the seed with ghosts; in a corner a particle has a third one, turned by half a turn about \
-                  it, with its own velocity";
+    let ghosts = "the seed with ghosts; in a corner a particle has a third ghost, rotated by 180 degrees \
+                  about the corner, with the velocity of the particle";
     let modern_is = "Wendland C2, density diffusion that keeps a column at rest, leapfrog, walls that \
-                extrapolate the pressure, not below 0, so that they cannot suck, little artificial \
-                viscosity, and none between water and walls, so that water slips";
-    let slip = "the seed with ghosts that keep the velocity along the wall: is the opposite velocity what \
-                makes `ghosts` noisy?";
-    let sticking = "modern with artificial viscosity that sees the particles of the walls too, which stand \
-                    still: how much do they drag the water?";
+                extrapolate the pressure without suction (at least 0), little artificial viscosity, none \
+                between water and walls (free slip)";
+    let slip = "the seed with ghosts that keep the velocity along the wall: does the opposite velocity make \
+                `ghosts` noisy?";
+    let sticking = "modern with artificial viscosity also between water and resting wall particles: how \
+                    much do they drag the water?";
     Variants::of(Dam::new)
         .with("seed", paper, water::seed(), seed)
         .with("ghosts", ghosts, water::ghosts(), seed)

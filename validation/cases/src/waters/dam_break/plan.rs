@@ -152,12 +152,12 @@ fn invariants(run: &str, dx: f64) -> Vec<Gate> {
     let closes =
         "Each term reports its power: only errors of the time step and of sampling it remain.";
     let momentum =
-        "Walls and gravity alone give momentum: only the error of sampling the force remains.";
+        "Only walls and gravity change momentum: the error of sampling the force remains.";
     let slow =
         "Above Mach 0.3 the density changes by 5 %, and water is no longer nearly incompressible.";
-    let still =
-        "Walls at rest do no work. The bound is for what their pressure stores and gives back.";
-    let ends = "A run that ends early says nothing about what comes later.";
+    let still = "Walls at rest do no work. The bound allows for the energy that their pressure stores and \
+                 returns.";
+    let ends = "A run that ends early has no later results.";
     let filled = "The column is H high, so its centre is at H/2. Its lowest row is half a spacing to a whole \
                   one above the wall, which is dx/2 or nothing of difference.";
     let released = Bound::Within(-dx, dx);
@@ -184,8 +184,8 @@ fn free_references(run: &str) -> Vec<Gate> {
     let peers = "Three other codes agree within 0.04 on this place. The bound adds 0.1, the spread of \
                  digitised curves of the experiment, which is slower.";
     let front = "The spread of digitised curves of the experiment is 0.1 a.";
-    let late = "The experiment is late and never early, because the diaphragm takes time to open and a film \
-                of real water sticks. Its delay is 0.25 against other codes.";
+    let late = "The experiment can only be late, because the diaphragm takes time to open and a film of \
+                real water adheres. Its delay is 0.25 against other codes.";
     let height = "The height is measured at stations that are 1/18 of the column apart.";
     let clock =
         "A diaphragm that takes time to open can only delay the height, as it delays the front.";
@@ -203,8 +203,8 @@ fn free_references(run: &str) -> Vec<Gate> {
 
 /// The gate on a front that falls back.
 fn runs_out(run: &str) -> Gate {
-    let because = "Water that runs out over a dry floor never goes back. The bound of 0.1 a is the spread of \
-                   digitised curves of a front.";
+    let because = "Water that spreads over a dry floor never flows back. The bound of 0.1 a is the spread \
+                   of digitised curves of a front.";
     DAM_BREAK.gate(run, FRONT_BACK, Bound::Below(FRONT_SPREAD), Evidence::Invariant, because)
 }
 

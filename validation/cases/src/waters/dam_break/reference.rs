@@ -226,8 +226,8 @@ const TOO_SHORT: &str = "the run ends before the times that this is of";
 /// Why a metric of a probe or a sensor is absent.
 const DRY: &str = "the run ends before water comes to this place";
 
-/// Puts a metric whose value is of a time, if the run goes on until then: a curve is constant beyond its end,
-/// and an impulse would be of a part of its window. A time that is not a number never comes.
+/// Puts a metric at a time if the run reaches this time: a curve is constant beyond its end, and an impulse
+/// would cover only a part of its window. A time that is not a number is never reached.
 fn put_if_reached(
     record: &mut Record,
     metric: impl Into<MetricName>,

@@ -76,14 +76,14 @@ touchstone_base::settings! {
     pub struct WaterSettings {
         /// density at rest
         rho: f64 ["kg/m^3"] in 1e-6..=1e6 = 1000.0,
-        /// smoothing length over spacing: 1.5 as in the rings; at 1.2 artificial stress adds more
-        /// energy than viscosity can take
+        /// smoothing length over spacing: 1.5 as in the rings; at 1.2 artificial stress adds more energy than
+        /// viscosity can dissipate
         h_over_dx: f64 ["-"] in 0.8..=3.0 = 1.5,
         /// artificial viscosity: linear part
         alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
         /// artificial viscosity: quadratic part
         beta: f64 ["-"] in 0.0..=20.0 = 0.0,
-        /// XSPH: share of the neighbours' mean
+        /// XSPH: weight ε of the neighbours' mean velocity
         xsph: f64 ["-"] in -0.99..=0.99 = 0.5,
         /// artificial stress: strength
         xi: f64 ["-"] in 0.0..=10.0 = 0.3,
