@@ -29,7 +29,7 @@ pub struct Breakdown {
     pub bytes_a_step: f64,
 }
 
-/// A part of the time.
+/// Time of one activity.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Part {

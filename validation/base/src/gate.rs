@@ -146,7 +146,7 @@ pub struct Cause {
     pub what: Cow<'static, str>,
     /// the remedy, a sentence
     pub mend: Cow<'static, str>,
-    /// does it state where numbers are off, and not why?
+    /// does it state where numbers are wrong, and not why?
     #[serde(default)]
     pub unexplained: bool,
 }
@@ -184,7 +184,7 @@ pub struct Gate {
     pub known: Option<Bound>,
     /// the kind of evidence behind the bound
     pub evidence: Evidence,
-    /// why the bound is where it is
+    /// the reason for the bound
     pub because: String,
     /// cause of the limitation, and source of its bound
     pub reason: Option<String>,
@@ -196,7 +196,7 @@ pub struct Gate {
     pub cause: Option<Cause>,
     /// whether the gate is a control, which must be outside its bound
     pub control: bool,
-    /// is a run that ends early the limitation or the failure that is expected?
+    /// is an early end of the run the limitation or the expected failure?
     pub may_end_early: bool,
     /// the bound for a code that does not state our own kernel, support and step, and why, if this bound
     /// rests on them

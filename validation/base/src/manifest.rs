@@ -18,7 +18,7 @@ pub struct Manifest {
     pub commit: String,
     /// did tracked files differ from the commit?
     pub dirty: Answer,
-    /// digest of the sources of solver, harness and case that the result depends on, or `unknown`
+    /// digest of the sources of solver, harness and case on which the result depends, or `unknown`
     pub sources: String,
     /// the compiler's own version line
     pub rustc: String,
@@ -26,9 +26,9 @@ pub struct Manifest {
     pub profile: String,
     /// optimisation level, which in this project is high in both profiles
     pub opt_level: String,
-    /// the triple that the program was compiled for
+    /// the target triple
     pub target: String,
-    /// instruction sets that the compiler was allowed to use, for they decide on the speed
+    /// instruction sets that the compiler was allowed to use, which determine the speed
     pub features: Vec<String>,
     /// instruction sets of the processor by which the solver or the C library choose code at run time; no
     /// bits depend on them
@@ -36,7 +36,7 @@ pub struct Manifest {
     pub cpu_features: Vec<String>,
     /// operating system
     pub os: String,
-    /// processor, as it calls itself
+    /// name of the processor
     pub cpu: String,
     /// threads that the machine can run at once
     pub cores: usize,

@@ -112,7 +112,7 @@ impl fmt::Display for Constant {
 pub struct Detect {
     /// the constant with the error
     pub of: Constant,
-    /// try only the largest error that may go undetected, in place of a bisection
+    /// try only the largest error that may go undetected, instead of a bisection
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub only_allowed: bool,
 }

@@ -104,7 +104,7 @@ pub struct Record {
     pub status: Status,
     /// measured results by name
     pub metrics: BTreeMap<String, Metric>,
-    /// results that this run gives no meaning, by name, and the reason why
+    /// results that are undefined in this run, by name, with the reason
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub absent: BTreeMap<String, Absent>,
     /// cost of the run
@@ -140,7 +140,7 @@ pub enum Status {
         particle: usize,
         /// name of the field
         field: String,
-        /// the value in words, for it may be NaN
+        /// the value as text, because it may be NaN
         value_text: String,
     },
     /// before the first step

@@ -28,7 +28,7 @@ use crate::{
     text::short,
 };
 
-/// One run, resolved: no default is left to be filled in.
+/// One run with all settings resolved.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunSpec {

@@ -68,7 +68,7 @@ pub struct Problem {
 pub struct Sealed {
     /// the seed
     pub seed: u64,
-    /// SHA-256 of the code, version, scheme, division and settings of the method as they were then
+    /// SHA-256 of the code, version, scheme, division and settings of the method at that time
     pub method: String,
 }
 

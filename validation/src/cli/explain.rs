@@ -231,10 +231,10 @@ fn words(known: &ExplainedGate) -> String {
 fn evidence(gate: &Gate) -> String {
     let words = match gate.evidence {
         Evidence::Analytic => "analytic: an exact solution of the equations",
-        Evidence::Invariant => "invariant: a law that holds whatever the solution",
+        Evidence::Invariant => "invariant: a law that holds for every solution",
         Evidence::Theory => "theory of the method",
         Evidence::Reference => "reference: an experiment or an independent computation",
-        Evidence::Regression => "regression: what this program computed before",
+        Evidence::Regression => "regression: an earlier result of this program",
     };
     let case = gate.id.split('.').next().unwrap_or_default();
     let grades = if gate.evidence == Evidence::Reference {
