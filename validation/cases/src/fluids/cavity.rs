@@ -82,8 +82,9 @@ pub static CASE: Composed<Cavity> = Composed {
     problem: "A closed box whose lid moves",
     recommended: Recommended {
         variant: RECOMMENDED,
-        because: "its velocity is the nearest at every spacing, although its densities rise and its return \
-                  flow is off by -19 %<!-- cavity.consistent; n=16; return --> with 16 spacings a side",
+        because: "its velocity is the most accurate at every spacing, although its densities rise and its \
+                  return flow error is -19 %<!-- cavity.consistent; n=16; return --> with 16 spacings a \
+                  side",
         papers: Some("seed"),
     },
     about: "The lid of a closed box drives a vortex, steady at Re 100 and 1000. The fluid starts at rest \

@@ -168,9 +168,9 @@ pub static CASE: Composed<CylinderSettings> = Composed {
     problem: "Flow between two cylinders, the inner one turning",
     recommended: Recommended {
         variant: EXTRAPOLATING,
-        because: "with 8 spacings across the gap its velocity is wrong by \
-                  0.57 %<!-- taylor_couette.extrapolating-wall; layers=8; l2 -->, that of `interface-wall` \
-                  by 0.74 %<!-- taylor_couette.interface-wall; layers=8; l2 -->, whose order is lower",
+        because: "with 8 spacings across the gap its velocity error is 0.57 \
+                  %<!-- taylor_couette.extrapolating-wall; layers=8; l2 -->, that of `interface-wall` 0.74 \
+                  %<!-- taylor_couette.interface-wall; layers=8; l2 -->, whose order is lower",
         papers: Some(INTERFACE),
     },
     about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \

@@ -286,9 +286,9 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     problem: "A free drop is strained into an ellipse",
     recommended: Recommended {
         variant: "modern",
-        because: "with 20 particles across the axes of the ellipse are wrong by \
-                  0.73 %<!-- elliptic_drop.modern; n=20; axes_rms -->, rms over time, the paper's by \
-                  1.6 %<!-- elliptic_drop.seed; n=20; axes_rms -->",
+        because: "with 20 particles across the error of the axes of the ellipse is 0.73 \
+                  %<!-- elliptic_drop.modern; n=20; axes_rms -->, rms over time, the paper's 1.6 \
+                  %<!-- elliptic_drop.seed; n=20; axes_rms -->",
         papers: Some("seed"),
     },
     about: "A free circular drop starts with a uniform strain rate and becomes an ellipse, whose semi-axes \

@@ -109,9 +109,9 @@ pub static HYDROSTATIC: Composed<HydrostaticSettings> = Composed {
     problem: "Water at rest in an open tank",
     recommended: Recommended {
         variant: "modern",
-        because: "with 20 rows its pressure is wrong by \
-                  0.76 %<!-- hydrostatic.modern; compressibility=0.01; p_l2 -->, the paper's by \
-                  1.2 %<!-- hydrostatic.seed; compressibility=0.01; p_l2 -->, for a third of the pairs",
+        because: "with 20 rows its pressure error is 0.76 \
+                  %<!-- hydrostatic.modern; compressibility=0.01; p_l2 -->, the paper's 1.2 \
+                  %<!-- hydrostatic.seed; compressibility=0.01; p_l2 -->, at a third of the pairs",
         papers: Some("seed"),
     },
     about: "Water rests in an open tank and is compressed by g H/c0^2 by its own weight. The exact \

@@ -68,7 +68,8 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
     recommended: Recommended {
         variant: "modern",
         because: "it has the smallest error of the pressure at both corners, and with 14 spacings its \
-                  pressure is wrong by 0.60 %<!-- still_wedge.modern; n=14; p_l2 --> of that at the depth H",
+                  pressure error is 0.60 %<!-- still_wedge.modern; n=14; p_l2 --> of the pressure at depth \
+                  H",
         papers: Some("seed"),
     },
     about: "Water rests in a tank over a wedge of 45 degrees, whose apex is half way to the surface. Its \

@@ -55,10 +55,10 @@ pub static COUETTE: ChannelCase = ChannelCase {
     problem: "Water between two plates, one of which starts to move",
     recommended: Recommended {
         variant: "modern",
-        because: "with 20 rows its velocity is wrong by 0.062 %<!-- couette.modern; rows=20; l2_worst -->, \
-                  the paper's by 0.78 %<!-- couette.seed; rows=20; l2_worst -->, and it stays within \
-                  1 %<!-- gate couette.modern.re50.l2_worst --> up to Re 50, while its shear stress at the \
-                  moving plate is off by -1.4 %<!-- couette.modern; rows=20; shear_upper@1 -->",
+        because: "with 20 rows its velocity error is 0.062 %<!-- couette.modern; rows=20; l2_worst -->, the \
+                  paper's 0.78 %<!-- couette.seed; rows=20; l2_worst -->, and it stays below 1 \
+                  %<!-- gate couette.modern.re50.l2_worst --> up to Re 50, while the error of its shear \
+                  stress at the moving plate is -1.4 %<!-- couette.modern; rows=20; shear_upper@1 -->",
         papers: Some("seed"),
     },
     about: "Water rests between two infinite plates, L = 1 mm apart, until the upper one starts at t = 0 \
@@ -75,10 +75,9 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
     problem: "Water between two plates, driven by a body force",
     recommended: Recommended {
         variant: "curved",
-        because: "with 20 rows its velocity is wrong by \
-                  0.081 %<!-- poiseuille.curved; rows=20; l2_worst -->, the paper's by \
-                  1.4 %<!-- poiseuille.seed; rows=20; l2_worst -->: its ghosts know the curvature at \
-                  the wall",
+        because: "with 20 rows its velocity error is 0.081 %<!-- poiseuille.curved; rows=20; l2_worst -->, \
+                  the paper's 1.4 %<!-- poiseuille.seed; rows=20; l2_worst -->: its ghosts include the \
+                  curvature at the wall",
         papers: Some("seed"),
     },
     about: "Water rests between two infinite plates, L = 1 mm apart. At t = 0 a body force F = 8 nu V/L^2 \

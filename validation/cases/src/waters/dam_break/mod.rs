@@ -127,11 +127,11 @@ pub static DAM_BREAK: Composed<DamSettings> = Composed {
     problem: "A column of water collapses on a dry floor",
     recommended: Recommended {
         variant: "modern",
-        because: "with 20 spacings a column width its front at T = 2 is \
-                  -0.058<!-- dam_break.modern; n=20; front_away@2 --> a from that of volume of fluid, the \
-                  paper's -0.28<!-- dam_break.seed; n=20; front_away@2 --> a; against the experiment as \
-                  released it is the other way round, 0.28<!-- dam_break.modern; n=20; front_rms --> and \
-                  0.08<!-- dam_break.seed; n=20; front_rms --> a rms, for the experiment starts late",
+        because: "with 20 spacings a column width its front at T = 2 differs by \
+                  -0.058<!-- dam_break.modern; n=20; front_away@2 --> a from volume of fluid, the paper's \
+                  by -0.28<!-- dam_break.seed; n=20; front_away@2 --> a; against the experiment as \
+                  released the order is reversed, 0.28<!-- dam_break.modern; n=20; front_rms --> and \
+                  0.08<!-- dam_break.seed; n=20; front_rms --> a rms, because the experiment starts late",
         papers: Some("seed"),
     },
     about: "A column of water, held by a wall on its left, is released at once and collapses on a dry \
