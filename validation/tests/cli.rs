@@ -690,7 +690,7 @@ fn a_killed_run_goes_on_to_an_equal_record() {
 
     let again = touchstone_in(folder.path(), &[&run[..], &["killed"]].concat());
     assert_eq!(again.status.code(), Some(2));
-    assert!(stderr(&again).contains("touchstone run --resume killed goes on with it"));
+    assert!(stderr(&again).contains("touchstone run --resume killed continues it"));
     let whole = fs::read(&checkpoint).unwrap();
     fs::write(&checkpoint, &whole[..whole.len() - 1]).unwrap();
     let resume = ["run", "--resume", "killed", "--threads", "1"];
@@ -710,7 +710,7 @@ fn a_killed_run_goes_on_to_an_equal_record() {
     let mut message = String::new();
     said.read_to_string(&mut message).unwrap();
     assert_eq!(child.wait().unwrap().code(), Some(130), "{message}");
-    assert!(message.contains("touchstone run --resume killed goes on with it"), "{message}");
+    assert!(message.contains("touchstone run --resume killed continues it"), "{message}");
 
     let output = touchstone_in(folder.path(), &resume);
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));

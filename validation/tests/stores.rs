@@ -207,7 +207,7 @@ fn a_submission_never_takes_the_place_of_another_in_silence() {
     other.insert("machine".into(), "another".into());
     fs::write(at.join("a/system.json"), serde_json::to_string(&other).unwrap()).unwrap();
     let (words, code) = of(at, "submit couette a --store st");
-    assert!(code == 2 && words.contains("says something else: machine"), "{words}");
+    assert!(code == 2 && words.contains("but differs: machine"), "{words}");
     assert_eq!(written(), before);
 }
 

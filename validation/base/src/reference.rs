@@ -268,8 +268,8 @@ impl Reference {
         match *worst <= 1.0 {
             true => Ok(Some(found)),
             false => refused(format!(
-                "reference {name} cannot have the grade two_codes: {of} of {second} is {worst:.2} times both \
-                 uncertainties away"
+                "reference {name} cannot have the grade two_codes: {of} of {second} differs by {worst:.2} \
+                 times both uncertainties"
             )),
         }
     }
@@ -302,7 +302,8 @@ impl Reference {
         match (&self.package.grade, self.agreement()) {
             (Grade::Exact, _) => "exact".into(),
             (Grade::TwoCodes(second), Ok(Some(Agreement { numbers, worst, .. }))) => format!(
-                "two codes: {numbers} numbers of `{second}` are at most {worst:.2} of both uncertainties away"
+                "two codes: {numbers} numbers of `{second}` differ by at most {worst:.2} of both \
+                 uncertainties"
             ),
             (Grade::TwoCodes(_) | Grade::OneCode, _) => "one code".into(),
             (Grade::Collected, _) => "collected".into(),

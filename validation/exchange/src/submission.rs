@@ -237,7 +237,7 @@ fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, Strin
     }
     if let Some((id, row)) = ids.iter().find(|(id, _)| *id as usize >= end) {
         let last = end.saturating_sub(1);
-        let what = format!("particle {id} is none of the problem, whose ids are 0 to {last}");
+        let what = format!("particle {id} is not in the problem, whose ids are 0 to {last}");
         wrong.push((*row, what));
     }
     wrong

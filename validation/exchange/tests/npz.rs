@@ -98,7 +98,7 @@ fn an_archive_is_read_whole_or_not_at_all() {
 fn damaged_arrays_are_refused_by_name() {
     let three = [0.0, 1.0, 2.0];
     for (what, changed, bytes, expected) in [
-        ("columns first", "x", array("True", "3,", &three), "order of Fortran"),
+        ("columns first", "x", array("True", "3,", &three), "Fortran order"),
         ("cut", "y", array("False", "3,", &three[..2]), "it has 2 numbers; its head says (3,)"),
         ("overflow", "u", array("False", "4294967296, 4294967296", &three), "its head says"),
         ("a row more", "v", array("False", "4,", &[0.0; 4]), "it has 4 numbers; expected 3"),

@@ -187,7 +187,7 @@ impl Composition {
 
 /// Why a metric of a run is absent whose value is not finite: the gates on it fail.
 const NO_NUMBER: &str =
-    "with these settings its formula has no finite value, as a mean over nothing";
+    "with these settings its formula has no finite value, such as a mean of no values";
 
 /// A table of compositions as a [`Case`].
 pub struct Composed<T> {

@@ -108,7 +108,7 @@ fn sorted(levels: &[Level]) -> Result<Vec<Level>, String> {
             return Err(format!("the level with spacing {spacing} has no value"));
         }
         let level = format!("a level with spacing {spacing} and value {value}");
-        return Err(format!("{level} cannot be used, for its logarithm is needed"));
+        return Err(format!("{level} cannot be used, because its logarithm is needed"));
     }
     let mut levels = levels.to_vec();
     levels.sort_by(|a, b| b.spacing.total_cmp(&a.spacing));

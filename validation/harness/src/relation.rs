@@ -271,10 +271,10 @@ fn direction(
     let normal = mirrors.first().map_or(Vector2::new(-sin(0.7), cos(0.7)), |wall| wall.normal);
     let is_along = |wall: &PlaneWall| wall.normal.perp(&normal).abs() < 1e-12;
     match mirrors.is_empty() {
-        _ if moves.contains(&false) => Err("its walls are particles, which stay where they are"),
-        false if medium.shear_modulus > 0.0 => Err("its planes hold a solid where it is"),
+        _ if moves.contains(&false) => Err("its walls are particles at rest"),
+        false if medium.shear_modulus > 0.0 => Err("its planes hold a solid at rest"),
         false if !mirrors.iter().all(is_along) => {
-            Err("its walls meet, so that none moves along all")
+            Err("its walls meet, so no velocity is along all of them")
         }
         _ => Ok(Vector2::new(normal.y, -normal.x)),
     }

@@ -227,7 +227,7 @@ pub fn sealed(
     output::print(&format!("{}\n", set.join(" ")))?;
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
     output::say(&format!(
-        "method {digest}: the draw shows who tuned only if this was published before the seed was known"
+        "method {digest}: the draw reveals tuning only if this was published before the seed was known"
     ));
     Ok(())
 }
@@ -272,8 +272,8 @@ fn keep(store: &Store, record: &Record) -> Result<PathBuf, Failure> {
             if !differ.is_empty() {
                 let path = store.path().join(Store::name(&record.spec()));
                 return Err(Failure::usage(format!(
-                    "{} has the same method and results, and says something else: {}; nothing was recorded; \
-                     remove that file to have this record in its place",
+                    "{} has the same method and results, but differs: {}; nothing was recorded; remove that \
+                     file to replace it by this record",
                     path.display(),
                     differ.join(", ")
                 )));
@@ -333,8 +333,8 @@ fn spec_of(case: &dyn Case, asked: &ProblemDocument) -> Result<RunSpec, Failure>
         return Err(Failure::usage(words));
     }
     if plain != asked.spec {
-        let words = "problem.json asks for more than a run of a variant with settings; expected the \
-                     document as it was exported";
+        let words = "problem.json has more than a run of a variant with settings; expected the document as \
+                     it was exported";
         return Err(Failure::usage(words));
     }
     Ok(case::resolved(case, plain)?)

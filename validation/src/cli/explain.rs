@@ -250,8 +250,7 @@ fn purpose(gate: &Gate) -> String {
     let Gate { known, reason, cause, .. } = gate;
     match known {
         _ if gate.control => {
-            "a control: a run of ours must lie outside; a run of another code passes inside \
-                              and fails outside"
+            "a control: our run must lie outside; a run of another code passes inside and fails outside"
                 .into()
         }
         None => "inside passes, outside fails".into(),
@@ -259,8 +258,8 @@ fn purpose(gate: &Gate) -> String {
             let cause = cause.as_ref().map(|cause| &*cause.what);
             let reasons: Vec<&str> = cause.into_iter().chain(reason.as_deref()).collect();
             format!(
-                "known limitation of our method, which may lie outside, but {known}; a run of another code \
-                 fails outside: {}",
+                "known limitation of our method, allowed {known}; a run of another code fails outside the \
+                 bound: {}",
                 reasons.join(" ")
             )
         }

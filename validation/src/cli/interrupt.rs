@@ -54,7 +54,7 @@ fn interrupt() {
             sleep(SHORT);
         }
         // On a separate thread, because standard error may be blocked.
-        let last = "touchstone: interrupted; every file that is there is whole";
+        let last = "touchstone: interrupted; every written file is complete";
         let _ = spawn(|| output::say(last));
         sleep(SHORT);
         end();

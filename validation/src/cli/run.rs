@@ -60,7 +60,7 @@ pub fn run(arguments: &arguments::Run, session: &Session) -> Outcome {
     spec.measure = arguments.metrics;
     if arguments.checkpoint_every.is_some() && arguments.out.is_none() {
         return Err(Failure::usage(
-            "--checkpoint-every needs --out DIR, the folder that the checkpoints are written into",
+            "--checkpoint-every needs --out DIR, the folder for the checkpoints",
         ));
     }
     let folder = Folder::of(arguments, case.name(), variant)?;
@@ -150,13 +150,13 @@ fn carry_out(
 /// The files of an interrupted run, and how to continue it.
 fn interrupted(folder: Option<&Folder>, has_frames: bool, step: u64, time: f64) -> Failure {
     folder.iter().for_each(|folder| folder.remove_if_new_and_empty());
-    let kept = if has_frames { "; frames so far are whole" } else { "" };
+    let kept = if has_frames { "; frames so far are complete" } else { "" };
     let goes_on = match folder.filter(|folder| folder.checkpointed().is_some()) {
         Some(folder) => {
-            format!("touchstone run --resume {} goes on with it", folder.output.path().display())
+            format!("touchstone run --resume {} continues it", folder.output.path().display())
         }
         None => "the same command begins again, and with --out DIR --checkpoint-every SECONDS an \
-                 interrupted run can go on"
+                 interrupted run can continue"
             .to_string(),
     };
     let what =
@@ -258,8 +258,8 @@ impl Folder {
         let (is_new, has_checkpoint) = (!path.exists(), path.join(CHECKPOINT).exists());
         if has_checkpoint && !arguments.overwrite {
             return Err(Failure::usage(format!(
-                "the folder {path:?} holds the checkpoint of a run that has not ended; \
-                 touchstone run --resume {} goes on with it, and --overwrite gives it up",
+                "the folder {path:?} holds the checkpoint of a run that has not ended; touchstone run \
+                 --resume {} continues it, and --overwrite discards it",
                 path.display()
             )));
         }

@@ -57,7 +57,7 @@ fn numbers(array: &mut dyn Read) -> Result<Vec<f64>, String> {
     let (head, data) = rest.split_at_checked(length).ok_or("it ends within its head")?;
     let head = String::from_utf8_lossy(head);
     if head.contains("'fortran_order': True") {
-        return Err("it is in the order of Fortran; expected that of C".into());
+        return Err("it has Fortran order; expected C order".into());
     }
     let kind = head.split("'descr':").nth(1).and_then(|rest| rest.split('\'').nth(1));
     let values = binary::numbers(binary::Kind::of_numpy(kind.unwrap_or_default())?, data)?;
