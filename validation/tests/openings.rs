@@ -135,7 +135,7 @@ fn a_challenge_takes_a_method_that_a_submission_can_have() {
         ("[]".into(), "invalid length"),
         ("<script>".into(), "expected value"),
         (whole.replace("closed", "ajar"), "unknown variant `ajar`"),
-        (whole.replace("\"touchstone\"", "\"\""), "expected 1 to 100 characters"),
+        (whole.replace("\"touchstone\"", "\"\""), "expected 1 to 100 visible characters"),
         (whole.replace("\"touchstone\"", "\"a\\u202eb\""), "\\u{202e}"),
         // Names that read as another's: a blank at an end or two in a row, Cyrillic, a mark on a letter.
         (whole.replace("\"touchstone\"", "\"touchstone \""), "single blanks between words"),

@@ -138,7 +138,7 @@ fn submissions_are_judged_where_our_own_runs_are() {
         "bad code 1, s",
         "as submitted",
         "proves nothing",
-        "not looked at the scripts",
+        "not reviewed the scripts",
     ] {
         assert!(page.contains(part), "the page lacks {part:?}");
     }
@@ -228,14 +228,14 @@ fn a_forged_record_is_refused_by_its_results() {
             |of| drop(of.metrics.insert("l3".into(), of.metrics["l2@0.1"].clone())),
             "there, not measured by the results",
         ),
-        (|of| of.cost.wall_s *= 0.5, "something else: cost;"),
-        (|of| of.cost.pair_interactions += 1, "something else: cost;"),
+        (|of| of.cost.wall_s *= 0.5, "but differs: cost;"),
+        (|of| of.cost.pair_interactions += 1, "but differs: cost;"),
         (
             |of| {
                 let (field, value_text) = ("density".into(), "NaN".into());
                 of.status = Status::Diverged { step: 0, time: 0.1, particle: 0, field, value_text }
             },
-            "something else: how the run ended;",
+            "but differs: how the run ended;",
         ),
     ];
     for (forge, says) in forgeries {

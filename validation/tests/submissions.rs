@@ -429,7 +429,7 @@ const DAMAGES: [(&str, Damage, &[&str]); 52] = [
             let with = "\"spec\": {\n    \"allow_unstable\": true,";
             edit(f, "problem.json", "\"spec\": {", with)
         },
-        &["problem.json asks for more"],
+        &["problem.json has more"],
     ),
     (
         "a dump of atoms that are not there",

@@ -242,9 +242,9 @@ pub fn section(case: &str, studies: &Studies, runs: &Runs) -> Option<Section> {
             "Particles of other codes, measured by the code that measures our own runs and judged by the \
              same gates; known limitations of our own method do not apply. A gate is not applicable if its \
              metric needs data that no file holds or that were not submitted, or if its bound follows from \
-             our own kernel, support and step. `touchstone submit` measures results again and refuses a \
-             stored record that contradicts them. Versions, seconds and steps are as submitted, because \
-             this program cannot check them.",
+             our own kernel, support and step. A record alone proves nothing: `touchstone submit` measures \
+             its results again and refuses a stored record that contradicts them. Versions, seconds and \
+             steps are as submitted, because this program cannot check them.",
         );
     let section = match &found {
         Some((accuracy, marks)) => section.block(figure(&format!("{id}-cost"), accuracy, marks)),
