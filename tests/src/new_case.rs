@@ -12,7 +12,7 @@ use touchstone_harness::{
     case::Step,
     problem::Simple,
     snapshot::Snapshot,
-    studies::{Accuracy, Budgets, Change, Spacing, StepLimit, StepLimits},
+    studies::{Accuracy, Budgets, Spacing, StepLimit, StepLimits},
     table,
 };
 use touchstone_solver::{
@@ -60,14 +60,12 @@ fn studies(tier: Tier) -> Studies {
     let mut table = table::Table::new(&DECAY, tier);
     table.over((), &["cubic", "quintic"], [&[8, 16, 32]; 2], |s, n| s.n = n);
     let spacing = Spacing::count(|s: &mut Decay| &mut s.n, "n = {}");
-    let ladders = ["cubic", "quintic"].map(|variant| table.ladder(&[()], variant, spacing)).into();
+    let ladders = table.ladders(&[()], &["cubic", "quintic"], spacing);
     let accuracy = Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") };
-    let halved = Change::new("dt/2", "time", DECAY.spec("cubic", |s| s.step *= 0.5));
-    let changes = vec![Change::new("none", "–", DECAY.spec("cubic", |_| {})), halved];
-    let budgets = Budgets::new(&accuracy, "", vec![changes]);
+    let changes = [("none", "–", (|_| {}) as fn(&mut Decay)), ("dt/2", "time", |s| s.step *= 0.5)];
+    let budgets = Budgets::new(&accuracy, "", vec![DECAY.changes("cubic", |_| {}, &changes)]);
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
-    let rules = DECAY.rules(&long).unwrap_or(Rules::REFUSED);
-    let limit = StepLimit::proportional("the wave", long, ("step", 1.0), &rules, None);
+    let limit = StepLimit::proportional(&DECAY, "the wave", long, ("step", |_| 1.0), |_| None);
     let limits = StepLimits { about: "Stable is what reaches its end.".into(), of: vec![limit] };
     Studies::default().with(accuracy).with(budgets).with(limits)
 }

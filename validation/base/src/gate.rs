@@ -40,6 +40,11 @@ pub enum Bound {
 }
 
 impl Bound {
+    /// At most this in magnitude.
+    pub const fn magnitude(most: f64) -> Self {
+        Bound::Within(-most, most)
+    }
+
     /// Is the number finite and inside?
     pub fn contains(self, value: f64) -> bool {
         let [low, high] = self.ends();

@@ -17,6 +17,7 @@ use crate::{
     method::{MediumSetting, Method},
     problem::{Posed, Problem},
     rules::state_steps,
+    studies::Change,
     study::Studies,
 };
 
@@ -243,20 +244,68 @@ impl<T: Settings> Composed<T> {
         RunSpec::new(self.name, variant, settings::to_json(settings))
     }
 
-    /// A gate on a metric of a run, called `case.run.metric`.
+    /// The gates of a run of this name.
+    pub fn gates(&self, run: impl Display) -> RunGates {
+        RunGates { name: format!("{}.{run}", self.name) }
+    }
+
+    /// Runs of a variant, each with one change of the settings that `base` sets: the change, the part of the
+    /// error that it affects, and the function that sets it.
+    pub fn changes(
+        &self,
+        variant: &str,
+        base: impl Fn(&mut T),
+        changes: &[(&str, &'static str, fn(&mut T))],
+    ) -> Vec<Change> {
+        let change = |(what, part, set): &(&str, &'static str, fn(&mut T))| {
+            let mut settings = self.chosen(variant, &base);
+            set(&mut settings);
+            Change::new(*what, part, self.spec_of(variant, &settings))
+        };
+        changes.iter().map(change).collect()
+    }
+}
+
+/// The gates of a run, called `case.run.metric`.
+pub struct RunGates {
+    /// `case.run`.
+    name: String,
+}
+
+impl RunGates {
+    /// A gate on a metric.
     ///
     /// # Panics
     /// If the gate is unsound, see [`Gate::new`].
     pub fn gate(
         &self,
-        run: impl Display,
         metric: impl Into<MetricName>,
         bound: Bound,
         evidence: Evidence,
         because: &str,
     ) -> Gate {
         let metric = String::from(metric.into());
-        Gate::new(format!("{}.{run}.{metric}", self.name), metric, bound, evidence, because)
+        Gate::new(format!("{}.{metric}", self.name), metric, bound, evidence, because)
+    }
+
+    /// A gate whose bound follows from an exact solution.
+    pub fn analytic(&self, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
+        self.gate(metric, bound, Evidence::Analytic, because)
+    }
+
+    /// A gate whose bound follows from a law that holds for every solution.
+    pub fn invariant(&self, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
+        self.gate(metric, bound, Evidence::Invariant, because)
+    }
+
+    /// A gate whose bound follows from the theory of the method.
+    pub fn theory(&self, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
+        self.gate(metric, bound, Evidence::Theory, because)
+    }
+
+    /// A gate whose bound follows from an experiment or an independent computation.
+    pub fn reference(&self, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
+        self.gate(metric, bound, Evidence::Reference, because)
     }
 }
 

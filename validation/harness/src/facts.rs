@@ -117,6 +117,18 @@ pub struct Draws {
     pub free: &'static [&'static str],
 }
 
+impl Draws {
+    /// Draws of a resolution alone, for errors of variants that change with an order.
+    pub const fn new(
+        variants: &'static [&'static str],
+        resolution: (&'static str, [f64; 2]),
+        order: f64,
+        metrics: &'static [&'static str],
+    ) -> Self {
+        Self { variants, resolution, order, metrics, set: &[], others: &[], free: &[] }
+    }
+}
+
 /// How a setting is drawn that is not the resolution.
 #[derive(Clone, Copy)]
 pub enum Drawn {

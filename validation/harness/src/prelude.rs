@@ -9,7 +9,7 @@ pub use touchstone_solver::{Domain, Particle, Stepper};
 
 pub use crate::{
     case::{Case, Recommended, Rules, RunError, Tier},
-    composed::{Composed, Compositions, Variants},
+    composed::{Composed, Compositions, RunGates, Variants},
     facts::Facts,
     method::{Medium, Method, Parts},
     problem::{Brief, Calls, OptionalOutput, Problem},

@@ -145,6 +145,17 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         ladder
     }
 
+    /// The ladders of variants over the runs of some groups; none of a variant without such runs.
+    pub fn ladders(
+        &self,
+        groups: &[G],
+        variants: &[&'static str],
+        spacing: Spacing<T>,
+    ) -> Vec<Ladder> {
+        let ladders = variants.iter().map(|variant| self.ladder(groups, variant, spacing));
+        ladders.filter(|ladder| !ladder.levels.is_empty()).collect()
+    }
+
     /// A picture of the runs that keep particles; `panels` gives the panels of one run.
     pub fn picture(
         &self,

@@ -306,9 +306,7 @@ static LAYERS: Cause = Cause::unexplained(
 );
 
 fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
-    use Evidence::{Invariant, Reference};
-    let run = format!("{variant}.re{re}.{}", s.n);
-    let of = |metric, bound, evidence, why| CASE.gate(&run, metric, bound, evidence, why);
+    let gates = CASE.gates(format!("{variant}.re{re}.{}", s.n));
     let half =
         "The position of a wall is known to within dx/2; the mean slope of the lines is U/L.";
     let control =
@@ -320,13 +318,13 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
     let weak =
         "It is too weak at any spacing; layers at Re 1000 are a third as thick as at Re 100.";
     let (half_dx, mach2) = (Bound::Below(0.5 / s.n as f64), 1.0 / (s.c0 * s.c0));
-    let inside = of(OUTSIDE, Bound::Equals(0.0), Invariant, "No particle passes a wall.");
-    let volume = of(VOLUME, Bound::Within(-mach2, mach2), Invariant, closed);
-    let strength = of(STRENGTH, Bound::Within(-0.02, mach2), Reference, driven);
+    let inside = gates.invariant(OUTSIDE, Bound::Equals(0.0), "No particle passes a wall.");
+    let volume = gates.invariant(VOLUME, Bound::magnitude(mach2), closed);
+    let strength = gates.reference(STRENGTH, Bound::Within(-0.02, mach2), driven);
     // The lid and its layer are most of the strength, which does not show that the return flow is weak.
-    let back = of(RETURN, Bound::Within(-0.02, mach2), Reference, driven);
-    let [u, v] = [U_RMS, V_RMS].map(|metric| of(metric, half_dx, Reference, half));
-    let control = of(U_RMS, half_dx, Reference, control);
+    let back = gates.reference(RETURN, Bound::Within(-0.02, mach2), driven);
+    let [u, v] = [U_RMS, V_RMS].map(|metric| gates.reference(metric, half_dx, half));
+    let control = gates.reference(U_RMS, half_dx, control);
     let limited = |gate: &Gate, low, why: &str, cause| {
         gate.clone().with_limitation(Bound::Within(low, mach2), why, cause)
     };
@@ -348,15 +346,7 @@ fn gates(Row { group: re, variant, settings: s, .. }: &Row) -> Vec<Gate> {
 }
 
 /// The reference is of Re 100 and 1000; errors at Re 100 are judged.
-const SEALED: Draws = Draws {
-    variants: &["consistent"],
-    resolution: ("n", [14.0, 28.0]),
-    order: 1.0,
-    metrics: &["u_rms", "v_rms"],
-    set: &[],
-    others: &[],
-    free: &[],
-};
+const SEALED: Draws = Draws::new(&["consistent"], ("n", [14.0, 28.0]), 1.0, &["u_rms", "v_rms"]);
 
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
@@ -365,7 +355,7 @@ fn studies(tier: Tier) -> Studies {
         about: format!(
             "The lid-driven cavity at Re {re}, steady, against finite differences of this project."
         ),
-        ladders: ["carried", RECOMMENDED].map(|of| table.ladder(&[re], of, spacing)).into(),
+        ladders: table.ladders(&[re], &["carried", RECOMMENDED], spacing),
         ..Accuracy::new(&format!("{NAME}-{re}"), U_RMS, "rms error of u on x = L/2 [U]")
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
@@ -378,7 +368,7 @@ fn studies(tier: Tier) -> Studies {
     Studies::judging(table.plan())
         .with(curves(&table))
         .with(picture)
-        .with_all(accuracy.filter(|of| !of.ladders[0].levels.is_empty()))
+        .with_all(accuracy.filter(|of| !of.ladders.is_empty()))
         .with(Sensitivity::new(tier, [coarse], [speed]))
 }
 
@@ -404,14 +394,11 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
         CurvePanel::linear(&format!("Re {re}"), axes, rows.map(line).collect(), known)
     };
     let panels = [(100.0, 0), (100.0, 1), (1000.0, 0), (1000.0, 1)].map(panel);
-    Curves {
-        id: "cavity-mid-lines".into(),
-        title: "Velocity on the mid-lines".into(),
-        caption: format!(
-            "Mean velocity with {finest} spacings a side at the places of Ghia et al., joined by lines."
-        ),
-        panels: panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect(),
-    }
+    let caption = format!(
+        "Mean velocity with {finest} spacings a side at the places of Ghia et al., joined by lines."
+    );
+    let panels = panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect();
+    Curves::new("cavity-mid-lines", "Velocity on the mid-lines", caption, panels)
 }
 
 #[cfg(test)]

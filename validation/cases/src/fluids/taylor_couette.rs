@@ -199,24 +199,16 @@ fn gates(variant: &str, layers: usize) -> Vec<Gate> {
                    Poiseuille flow, whose profile is more curved, by the row-reduced matrix of the same \
                    wall: 1.9/N^2 where it extrapolates, 0.22/N with interface particles.";
     let inside = "No particle passes a cylinder.";
-    let run = format!("{variant}.{layers}");
+    let (gates, bound) = (CASE.gates(format!("{variant}.{layers}")), Bound::Below(most));
     vec![
-        CASE.gate(&run, L2, Bound::Below(most), Evidence::Theory, because)
-            .of_others(Bound::Below(most), because),
-        CASE.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, inside),
+        gates.theory(L2, bound, because).of_others(bound, because),
+        gates.invariant(OUTSIDE, Bound::Equals(0.0), inside),
     ]
 }
 
 /// The flow is exact for any spacing.
-const SEALED: Draws = Draws {
-    variants: &["extrapolating-wall", "interface-wall"],
-    resolution: ("layers", [8.0, 32.0]),
-    order: 1.0,
-    metrics: &["l2"],
-    set: &[],
-    others: &[],
-    free: &[],
-};
+const SEALED: Draws =
+    Draws::new(&["extrapolating-wall", "interface-wall"], ("layers", [8.0, 32.0]), 1.0, &["l2"]);
 
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
@@ -279,8 +271,8 @@ fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
     let (axes, exact) = (["r/inner radius [-]", "u/V [-]"], (0..=100).map(exact).collect());
     let panel = CurvePanel::linear("", axes, lines, ("exact", exact));
     let panel = CurvePanel { symbols: true, ..panel };
-    let (id, title) = ("taylor-couette-profiles".into(), "Velocity between the cylinders".into());
-    Curves { id, title, caption, panels: vec![panel] }
+    let title = "Velocity between the cylinders";
+    Curves::new("taylor-couette-profiles", title, caption, vec![panel])
 }
 
 #[cfg(test)]

@@ -365,9 +365,6 @@ const SOFT: &str = "Until they bear the strain V/c_p, faces sink 0.7 dx into eac
     dissipates meanwhile. The bound: the result of bars of 20 to 80 spacings at this speed, and of `bare` \
     at any speed.";
 
-/// A gate of a run: metric, least and most, evidence, reason.
-type Of<'a> = &'a dyn Fn(MetricKey, [f64; 2], Evidence, &str) -> Gate;
-
 fn gates(row: &Row<BarSettings, Group>) -> Vec<Gate> {
     let (s, variant) = (&row.settings, row.variant);
     let speed = if s.speed < 0.1 { format!("{:e}", s.speed) } else { s.speed.to_string() };
@@ -377,18 +374,15 @@ fn gates(row: &Row<BarSettings, Group>) -> Vec<Gate> {
         (Group::Meeting, false) => format!("{variant}.touching{speed}"),
         (Group::Meeting, true) => format!("{variant}.apart{speed}"),
     };
-    let gate = |metric, [least, most]: [f64; 2], evidence, because: &str| {
-        ELASTIC_BAR.gate(&run, metric, Bound::Within(least, most), evidence, because)
-    };
+    let (gates, is_pulse) = (ELASTIC_BAR.gates(run), row.group == Group::Pulse);
     let opposite = "Forces of pairs are equal and opposite, so only round-off is left.";
-    let (momentum, law) = (Bound::Below(1e-12), Evidence::Invariant);
-    let mut gates = if row.group == Group::Pulse { pulse(row, &gate) } else { meeting(row, &gate) };
-    gates.push(ELASTIC_BAR.gate(&run, MOMENTUM_ERROR, momentum, law, opposite));
-    gates
+    let mut all = if is_pulse { pulse(row, &gates) } else { meeting(row, &gates) };
+    all.push(gates.invariant(MOMENTUM_ERROR, Bound::Below(1e-12), opposite));
+    all
 }
 
 /// Gates of a pulse.
-fn pulse(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
+fn pulse(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
     let group = "The centre of the velocity moves at the group speed of long waves, whatever the dispersion: \
                  1.0068 c_p on the lattice, c_p with exact gradients. The case was made to show at most 1 %.";
     let ahead = "Viscosity acts in the front of the pulse and pushes its centre ahead, by 0.16 alpha \
@@ -398,12 +392,12 @@ fn pulse(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
                    3e-4 of the pulse beyond four standard deviations.";
     let energy = "The forces derive from the stored energy. The leapfrog leaves (omega dt)^2/8 of it, at the \
                   waves of the pulse, for which omega dt is about 0.3, at most 1 %.";
-    let (most, theory) = (if row.variant == LAGRANGIAN { 0.005 } else { 0.01 }, Evidence::Theory);
-    let travel = gate(TRAVEL_ERROR, [-most, most], Evidence::Analytic, group);
+    let most = if row.variant == LAGRANGIAN { 0.005 } else { 0.01 };
+    let travel = gates.analytic(TRAVEL_ERROR, Bound::magnitude(most), group);
     let shape = "The earlier result of this program, with 5 % either way. Waves of a few spacings are slow \
                  and follow the pulse; their share falls from 52 over 20 to 5 % with 20, 40 and 80 \
                  spacings.";
-    let before = gate(PULSE_RMS, [0.19, 0.21], Evidence::Regression, shape);
+    let before = gates.gate(PULSE_RMS, Bound::Within(0.19, 0.21), Evidence::Regression, shape);
     let arrives = "A pulse that is half of its standard deviation away differs from the exact one by (2 - 2 \
                    e^(-1/16))^(1/2) = 0.35 of it, one that has not moved by 1.4.";
     let id = format!("{}.{}.pulse{}.arrives", ELASTIC_BAR.name, row.variant, row.settings.n);
@@ -414,15 +408,15 @@ fn pulse(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
         |gate: Gate| gate.with_limitation(Bound::Below(0.466), trails, &DISPERSION).fitted();
     let keeps =
         "Nothing drives the bar, so that the pulse has the energy with which it started, to 1 %.";
-    let keeps = gate(ENERGY_CHANGE, [-0.01, 0.01], theory, energy)
-        .of_others(Bound::Within(-0.01, 0.01), keeps);
+    let hundredth = Bound::magnitude(0.01);
+    let keeps = gates.theory(ENERGY_CHANGE, hundredth, energy).of_others(hundredth, keeps);
     match row.variant {
         LAGRANGIAN if row.settings.n == 40 => vec![travel, before, there, keeps],
         LAGRANGIAN => vec![travel, there, keeps],
         "bare" => vec![
             travel,
             trailing(there),
-            gate(TRAVEL_LATTICE_ERROR, [-1e-3, 1e-3], theory, lattice),
+            gates.theory(TRAVEL_LATTICE_ERROR, Bound::magnitude(1e-3), lattice),
         ],
         _ => vec![
             travel.with_limitation(Bound::Within(-0.0968, 0.01), ahead, &VISCOSITY),
@@ -432,7 +426,7 @@ fn pulse(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
 }
 
 /// Of two bars.
-fn meeting(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
+fn meeting(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
     let jump = "The jump conditions hold whatever dissipates: equal bars exchange their velocities, and \
                 meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 %.";
     let welded = "The contact pulls as soon as the first expansion returns, whose front is as wide as the \
@@ -443,11 +437,11 @@ fn meeting(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
     let steep = "Bars that are compressed by 10 % are stiffer, so that more of the front becomes short \
                  waves. The bound: the share V/c_p = 10 % of a half of the energy.";
     let (s, variant) = (&row.settings, row.variant);
-    let (most, exact) = (1.0 + LATTICE, Evidence::Analytic);
+    let most = 1.0 + LATTICE;
     let is_soft = s.gap > 0.0 && variant != LAGRANGIAN;
-    let stress = gate(STRESS_ERROR, [-LATTICE, LATTICE], exact, jump);
+    let stress = gates.analytic(STRESS_ERROR, Bound::magnitude(LATTICE), jump);
     let whole = |metric| {
-        let gate = gate(metric, [1.0 - LATTICE, most], exact, jump);
+        let gate = gates.analytic(metric, Bound::Within(1.0 - LATTICE, most), jump);
         let (least, why, cause) = match (variant, s.gap > 0.0) {
             (LAGRANGIAN, _) if s.speed > 0.05 => {
                 return gate.with_limitation(Bound::Within(0.95, most), steep, &DISPERSION);
@@ -460,29 +454,25 @@ fn meeting(row: &Row<BarSettings, Group>, gate: Of) -> Vec<Gate> {
         };
         gate.with_limitation(Bound::Within(least, most), why, cause).fitted()
     };
-    let mut gates = vec![match (is_soft, variant) {
-        (true, _) => {
-            stress.with_limitation(Bound::Within(-0.42, 0.13), SOFT, &SOFT_CONTACT).fitted()
-        }
-        (_, LAGRANGIAN) => {
-            stress.with_limitation(Bound::Within(-0.06, 0.06), swings, &DISPERSION).fitted()
-        }
+    let fitted = |known, why, cause| stress.clone().with_limitation(known, why, cause).fitted();
+    let mut all = vec![match (is_soft, variant) {
+        (true, _) => fitted(Bound::Within(-0.42, 0.13), SOFT, &SOFT_CONTACT),
+        (_, LAGRANGIAN) => fitted(Bound::magnitude(0.06), swings, &DISPERSION),
         _ => stress,
     }];
     if !is_soft {
-        let time = gate(CONTACT_TIME_ERROR, [-LATTICE, LATTICE], exact, jump);
-        gates.extend([time, whole(EXCHANGE)]);
+        let time = gates.analytic(CONTACT_TIME_ERROR, Bound::magnitude(LATTICE), jump);
+        all.extend([time, whole(EXCHANGE)]);
     }
     if s.gap > 0.0 {
-        gates.push(whole(RESTITUTION));
+        all.push(whole(RESTITUTION));
     }
-    gates
+    all
 }
 
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut BarSettings| &mut s.n, "n = {}");
-    let ladder = |variant| table.ladder(&[Group::Pulse, Group::Order], variant, spacing);
     let accuracy = Accuracy {
         about:
             "A pulse of a standard deviation of L/16 runs through a bar by 0.6 L. The error is its \
@@ -490,7 +480,7 @@ fn studies(tier: Tier) -> Studies {
                 .into(),
         spacing: "dx/L [-]",
         slope: Some(1.0),
-        ladders: ["seed", "bare"].map(ladder).into(),
+        ladders: table.ladders(&[Group::Pulse, Group::Order], &["seed", "bare"], spacing),
         ..Accuracy::new("elastic-bar", PULSE_RMS, "rms distance from the exact pulse [-]")
     };
     Studies::judging(table.plan()).with(accuracy)

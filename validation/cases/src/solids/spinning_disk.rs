@@ -293,11 +293,7 @@ fn gates(row: &Row<DiskSettings, Group>) -> Vec<Gate> {
         return Vec::new();
     }
     let (s, variant) = (&row.settings, row.variant);
-    let run = format!("{variant}.{}", s.n);
-    let gate = |metric, bound, evidence, because| {
-        SPINNING_DISK.gate(&run, metric, bound, evidence, because)
-    };
-    let law = Evidence::Invariant;
+    let gates = SPINNING_DISK.gates(format!("{variant}.{}", s.n));
     let opposite =
         "Forces of pairs are equal and opposite, central or not, so only round-off is left.";
     let no_strain = "Where gradients are exact for linear fields, a rotation has no strain. Round-off \
@@ -310,42 +306,41 @@ fn gates(row: &Row<DiskSettings, Group>) -> Vec<Gate> {
                     bound is twice this maximum.";
     let is_braked = row.group == Group::Braked;
     let [tenth, drift] = if is_braked { [1e-3, 1e-2] } else { [1e-11; 2] };
-    let tenth = gate(ANGULAR_MOMENTUM_TENTH, Bound::Within(-tenth, tenth), law, noticed);
-    let drift = gate(ANGULAR_MOMENTUM_DRIFT, Bound::Below(drift), law, noticed);
-    let stress = gate(LARGEST_STRESS, Bound::Below(0.4), Evidence::Theory, stressed);
-    let mut gates = vec![
-        gate(MOMENTUM_ERROR, Bound::Below(1e-12), law, opposite),
-        gate(INTERIOR_STRAIN, Bound::Below(1e-10), law, no_strain),
+    let tenth = gates.invariant(ANGULAR_MOMENTUM_TENTH, Bound::magnitude(tenth), noticed);
+    let drift = gates.invariant(ANGULAR_MOMENTUM_DRIFT, Bound::Below(drift), noticed);
+    let stress = gates.theory(LARGEST_STRESS, Bound::Below(0.4), stressed);
+    let mut all = vec![
+        gates.invariant(MOMENTUM_ERROR, Bound::Below(1e-12), opposite),
+        gates.invariant(INTERIOR_STRAIN, Bound::Below(1e-10), no_strain),
     ];
     if is_braked {
         let first = -if variant == "bare" { 0.08 } else { 0.53 } / s.n as f64;
-        gates.extend([
+        all.extend([
             tenth.with_limitation(Bound::Within(first, 0.001), BRAKED, &FREE_FACES).fitted(),
             drift.with_limitation(Bound::Below(2.1), REVERSED, &FREE_FACES),
             stress.with_limitation(Bound::Below(9.6), ALL_SHEAR, &FREE_FACES),
         ]);
-        return gates;
+        return all;
     }
     let energy = "The forces derive from the stored energy; the leapfrog keeps it within (omega dt)^2/8 of \
                   the share of the energy that is in waves, about 1e-3.";
-    let rim = gate(RIM_STRAIN, Bound::Below(1e-10), law, no_strain);
-    let energy = gate(ENERGY_DRIFT, Bound::Within(-1e-4, 1e-4), Evidence::Theory, energy);
-    gates.extend([tenth, drift, rim, stress, energy]);
-    gates
+    let rim = gates.invariant(RIM_STRAIN, Bound::Below(1e-10), no_strain);
+    let energy = gates.theory(ENERGY_DRIFT, Bound::magnitude(1e-4), energy);
+    all.extend([tenth, drift, rim, stress, energy]);
+    all
 }
 
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let error = ANGULAR_MOMENTUM_DRIFT;
     let spacing = Spacing::count(|s: &mut DiskSettings| &mut s.n, "n = {}");
-    let ladder = |variant| table.ladder(&[Group::Braked, Group::Order], variant, spacing);
     let accuracy = Accuracy {
         about:
             "A free disk, rim at 0.05 c0, makes one revolution; exactly, angular momentum stays."
                 .into(),
         spacing: "dx/R [-]",
         slope: None,
-        ladders: ["seed", "bare"].map(ladder).into(),
+        ladders: table.ladders(&[Group::Braked, Group::Order], &["seed", "bare"], spacing),
         ..Accuracy::new("spinning-disk", error, "change of angular momentum a revolution [-]")
     };
     let changes = ["none", "dt/4", "2 dt"].into_iter().zip(table.specs(Group::Steps));

@@ -314,8 +314,6 @@ enum Group {
 
 type Row = table::Row<DropSettings, Group>;
 
-const VARIANTS: [&str; 3] = ["seed", "modern", "plain"];
-
 /// All runs of a tier.
 fn table(tier: Tier) -> table::Table<DropSettings, Group> {
     let mut table = table::Table::new(&ELLIPTIC_DROP, tier);
@@ -336,20 +334,12 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
 }
 
 /// The ellipse is exact at any spacing.
-const SEALED: Draws = Draws {
-    variants: &["modern"],
-    resolution: ("n", [20.0, 60.0]),
-    order: 1.0,
-    metrics: &["a_error", "b_error", "velocity_rms"],
-    set: &[],
-    others: &[],
-    free: &[],
-};
+const SEALED: Draws =
+    Draws::new(&["modern"], ("n", [20.0, 60.0]), 1.0, &["a_error", "b_error", "velocity_rms"]);
 
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut DropSettings| &mut s.n, "{} across").over(|_| 2.0);
-    let ladder = |variant| table.ladder(&[Group::Judged, Group::Ladder], variant, spacing);
     let accuracy = Accuracy {
         about: "A free drop until A t = 0.8, when it is four times as long as wide. The errors of the \
                 semi-axes change their signs over the resolutions, that of a near 40 particles across; \
@@ -357,7 +347,11 @@ fn studies(tier: Tier) -> Studies {
             .into(),
         spacing: "dx/R [-]",
         slope: Some(1.0),
-        ladders: VARIANTS.map(ladder).into(),
+        ladders: table.ladders(
+            &[Group::Judged, Group::Ladder],
+            &["seed", "modern", "plain"],
+            spacing,
+        ),
         ..Accuracy::new("elliptic-drop", AXES_RMS, "error of both semi-axes, rms over time [-]")
     };
     let caption = "The drop of `modern` at the end, 40 particles across, coloured by pressure over the exact \
@@ -391,42 +385,36 @@ fn gates(row: &Row) -> Vec<Gate> {
     let noisy = "Density diffusion alone takes `modern` from 12 to 5.4 % at 20 particles across. The bound \
                  is of first order in the spacing, 16 % at 20.";
     let (variant, n) = (row.variant, row.settings.n as f64);
-    let run = match row.group {
+    let gates = ELLIPTIC_DROP.gates(match row.group {
         Group::Ladder => return Vec::new(),
         Group::Judged => format!("{variant}.{n}"),
         Group::Narrow => format!("{variant}.h{}", row.settings.water.h_over_dx),
         Group::Falling => format!("{variant}.falling"),
-    };
-    let gate = |metric, bound, evidence, because| {
-        ELLIPTIC_DROP.gate(&run, metric, bound, evidence, because)
-    };
-    let invariant =
-        |metric, most, because| gate(metric, Bound::Below(most), Evidence::Invariant, because);
-    let mut gates = vec![
-        invariant(MOMENTUM_ERROR, 1e-11, round_off),
-        invariant(CENTRE_ERROR, 1e-11, round_off),
-        invariant(ledger::ENERGY_GAP, 1e-3, closes),
+    });
+    let mut all = vec![
+        gates.invariant(MOMENTUM_ERROR, Bound::Below(1e-11), round_off),
+        gates.invariant(CENTRE_ERROR, Bound::Below(1e-11), round_off),
+        gates.invariant(ledger::ENERGY_GAP, Bound::Below(1e-3), closes),
     ];
     if row.group == Group::Judged {
         let bound = Bound::Below(0.01 * (40.0 / n).max(0.5));
         let known = [0.058_f64, 0.64 / n];
         let both = (0.5 * (known[0] * known[0] + known[1] * known[1])).sqrt();
         let of = [(A_ERROR, known[0]), (B_ERROR, known[1]), (AXES_RMS, both)];
-        gates.extend(of.map(|(metric, known)| {
-            let gate = gate(metric, bound, Evidence::Analytic, axes);
+        all.extend(of.map(|(metric, known)| {
+            let gate = gates.analytic(metric, bound, axes);
             match variant {
                 "seed" => gate.with_limitation(Bound::Below(known), short, &SHORT_KERNEL).fitted(),
                 _ => gate,
             }
         }));
-        let bound = Bound::Below(2.0_f64.sqrt() / n);
-        let velocity = gate(VELOCITY_RMS, bound, Evidence::Analytic, near);
-        gates.push(match variant {
+        let velocity = gates.analytic(VELOCITY_RMS, Bound::Below(2.0_f64.sqrt() / n), near);
+        all.push(match variant {
             "modern" => velocity,
             _ => velocity.with_limitation(Bound::Below(3.2 / n), noisy, &NOISY_DENSITY).fitted(),
         });
     }
-    gates
+    all
 }
 
 #[cfg(test)]

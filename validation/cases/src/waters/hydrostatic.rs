@@ -394,13 +394,8 @@ fn table(tier: Tier) -> table::Table<HydrostaticSettings, Group> {
 /// The error of the pressure over resolutions, and the errors that gates must detect. Water at rest is exact
 /// for any compressibility; the judged run has 20 rows.
 const SEALED: Draws = Draws {
-    variants: &["modern"],
-    resolution: ("rows", [14.0, 32.0]),
-    order: 1.0,
-    metrics: &["p_l2"],
-    set: &[],
     others: &[("compressibility", Drawn::Between(0.001, 0.05))],
-    free: &[],
+    ..Draws::new(&["modern"], ("rows", [14.0, 32.0]), 1.0, &["p_l2"])
 };
 
 fn studies(tier: Tier) -> Studies {
@@ -409,13 +404,11 @@ fn studies(tier: Tier) -> Studies {
         .beside(|s| &mut s.columns);
     let about = "Water at rest after 20 acoustic periods, g H/c0² = 0.01. Errors are rms, over the rms of \
                  the pressure.";
-    let ladders = ["seed", "ghosts", "modern"]
-        .map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
     let accuracy = Accuracy {
         about: about.into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
+        ladders: table.ladders(&[Group::Ladder], &["seed", "ghosts", "modern"], spacing),
         ..Accuracy::new("hydrostatic", P_L2, "error of the pressure [-]")
     };
     let watched = [
@@ -450,7 +443,6 @@ fn gates(row: &Row) -> Vec<Gate> {
                  water above instead of the pressure at its own depth, and the water sinks.";
     let levelled = "Control: density diffusion without the weight of the water makes its density uniform, \
                     and the column rises by 3 % of its depth.";
-    let tight = "No particle passes a wall.";
     let across = "The water fills the tank: its position is known to within half a spacing, of which \
                   columns one spacing apart take half.";
     let variant = row.variant;
@@ -463,9 +455,8 @@ fn gates(row: &Row) -> Vec<Gate> {
         (Group::Judged, 1e-4) => (format!("{variant}.1e-4"), known),
         (Group::Judged, of) => (format!("{variant}.{of}"), known),
     };
-    let exact =
-        |metric, bound, because| HYDROSTATIC.gate(&run, metric, bound, Evidence::Analytic, because);
-    let pressure = exact(P_L2, Bound::Below(0.02), because);
+    let gates = HYDROSTATIC.gates(run);
+    let pressure = gates.analytic(P_L2, Bound::Below(0.02), because);
     let pressure = match (row.group, variant) {
         (Group::Control, _) => return vec![pressure.expected_to_fail()],
         (_, "ghosts") => {
@@ -473,16 +464,18 @@ fn gates(row: &Row) -> Vec<Gate> {
         }
         _ => pressure,
     };
-    let outside = HYDROSTATIC.gate(&run, OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, tight);
-    let gap = exact(GAP, Bound::Within(-0.25, 0.25), lowest);
-    let spread = exact(SPREAD, Bound::Below(0.5), across);
-    let kinetic = exact(KINETIC, Bound::Below(2.5e-5), still);
-    let mut gates = vec![pressure, gap, kinetic, outside, spread];
+    let mut all = vec![
+        pressure,
+        gates.analytic(GAP, Bound::magnitude(0.25), lowest),
+        gates.analytic(KINETIC, Bound::Below(2.5e-5), still),
+        gates.invariant(OUTSIDE, Bound::Equals(0.0), "No particle passes a wall."),
+        gates.analytic(SPREAD, Bound::Below(0.5), across),
+    ];
     // A start with other densities or positions has another level than the column at rest.
     if row.group == Group::Judged {
-        gates.push(exact(LEVEL_DRIFT, Bound::Within(-0.005, 0.005), stays));
+        all.push(gates.analytic(LEVEL_DRIFT, Bound::magnitude(0.005), stays));
     }
-    gates
+    all
 }
 
 #[cfg(test)]

@@ -298,19 +298,17 @@ static UNWEIGHED: Cause = Cause::new(
 
 fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
     let (variant, dx) = (row.variant, 1.0 / row.settings.n as f64);
-    let run = format!("{variant}.{}", row.settings.n);
-    let of =
-        |metric, bound, because| STILL_WEDGE.gate(&run, metric, bound, Evidence::Analytic, because);
+    let gates = STILL_WEDGE.gates(format!("{variant}.{}", row.settings.n));
     let known =
         "The position of a wall is known to within half a spacing: half of the weight of a row.";
     let level =
         "The level of the water must stay within a quarter of a spacing, whose weight this is.";
     let still = "The energy that raises the surface by a tenth of a spacing, (0.1 dx/H)^2 M g H.";
-    let base = of(P_BASE, Bound::Within(-0.5 * dx, 0.5 * dx), known);
-    let apex = of(P_APEX, Bound::Within(-0.5 * dx, 0.5 * dx), known);
-    let (all, kinetic) = (of(P_L2, Bound::Below(0.25 * dx), level), (0.1 * dx).powi(2));
-    let kinetic = of(KINETIC, Bound::Below(kinetic), still);
-    let outside = of(OUTSIDE, Bound::Equals(0.0), "No particle passes a wall.");
+    let [base, apex] =
+        [P_BASE, P_APEX].map(|metric| gates.analytic(metric, Bound::magnitude(0.5 * dx), known));
+    let all = gates.analytic(P_L2, Bound::Below(0.25 * dx), level);
+    let kinetic = gates.analytic(KINETIC, Bound::Below((0.1 * dx).powi(2)), still);
+    let outside = gates.analytic(OUTSIDE, Bound::Equals(0.0), "No particle passes a wall.");
     if variant == "modern" {
         return vec![base, apex, all, kinetic, outside];
     }
@@ -320,25 +318,16 @@ fn gates(row: &table::Row<Wedge, ()>) -> Vec<Gate> {
 }
 
 /// Water at rest is exact at any spacing.
-const SEALED: Draws = Draws {
-    variants: &["modern"],
-    resolution: ("n", [10.0, 28.0]),
-    order: 1.0,
-    metrics: &["p_l2", "p_base"],
-    set: &[],
-    others: &[],
-    free: &[],
-};
+const SEALED: Draws = Draws::new(&["modern"], ("n", [10.0, 28.0]), 1.0, &["p_l2", "p_base"]);
 
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut Wedge| &mut s.n, "{} spacings deep");
-    let ladder = |variant| table.ladder(&[()], variant, spacing);
     let accuracy = Accuracy {
         about: "Water at rest over a wedge, mean over the last five of 20 acoustic periods.".into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: ["seed", "modern"].map(ladder).into(),
+        ladders: table.ladders(&[()], &["seed", "modern"], spacing),
         ..Accuracy::new("still-wedge", P_L2, "error of the pressure, rms [ρ g H]")
     };
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];

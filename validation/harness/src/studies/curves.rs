@@ -21,6 +21,18 @@ pub struct Curves {
     pub panels: Vec<CurvePanel>,
 }
 
+impl Curves {
+    /// Curves with their anchor and title.
+    pub fn new(
+        id: impl Into<String>,
+        title: &str,
+        caption: impl Into<String>,
+        panels: Vec<CurvePanel>,
+    ) -> Self {
+        Self { id: id.into(), title: title.into(), caption: caption.into(), panels }
+    }
+}
+
 /// One panel of curves.
 pub struct CurvePanel {
     /// Title of the panel.

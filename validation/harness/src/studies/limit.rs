@@ -9,6 +9,7 @@ use touchstone_report::Cell;
 use super::anchor;
 use crate::{
     bisect::STABLE,
+    case::Case,
     columns::TableColumns,
     rules::Rules,
     runs::{Judged, Planned, Runs},
@@ -43,25 +44,29 @@ pub struct StepLimit {
 }
 
 impl StepLimit {
-    /// The bisection of a setting that is the time step over its theoretical limit, or proportional to it:
-    /// the setting has the value `unit` at the limit. `rules` are the step rules of the run with its default
-    /// step. The gate judges the largest stable step over the limit.
+    /// The bisection of a setting that is the time step over its theoretical limit, or proportional to it;
+    /// `at_limit` returns the value of the setting at the limit, from the rules of the run with its default
+    /// step. `gate` judges the largest stable step over the limit, from the default step over the limit.
+    ///
+    /// Without rules of its step the run is refused, and its record states why.
     pub fn proportional(
-        scene: &str,
+        case: &dyn Case,
+        scene: impl Into<String>,
         spec: RunSpec,
-        (setting, unit): (&str, f64),
-        rules: &Rules,
-        gate: Option<Gate>,
+        (setting, at_limit): (&str, impl Fn(&Rules) -> f64),
+        gate: impl FnOnce(f64) -> Option<Gate>,
     ) -> Self {
-        let setting = setting.to_string();
+        let rules = case.rules(&spec).unwrap_or(Rules::REFUSED);
+        let (setting, unit) = (setting.to_string(), at_limit(&rules));
         let bisect = Bisect { setting, guess: 1.0, unit, resolution: 0.02, end: None };
+        let default_at = rules.dt() / rules.dt_limit();
         Self {
             scene: scene.into(),
             spec: spec.allow_unstable().bisect(bisect),
             theory_at: 1.0,
             theory: rules.dt_limit(),
-            default_at: rules.dt() / rules.dt_limit(),
-            gate,
+            default_at,
+            gate: gate(default_at),
         }
     }
 }

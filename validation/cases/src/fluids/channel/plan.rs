@@ -1,6 +1,6 @@
 //! The runs of the channel flows, stated once, and their gates.
 
-use touchstone_base::record::MetricName;
+use touchstone_base::record::{MetricKey, MetricName};
 use touchstone_harness::prelude::*;
 use touchstone_harness::table::{Row, Table};
 
@@ -80,8 +80,8 @@ fn gates(flow: Flow, row: &Row<ChannelSettings, Group>) -> Vec<Gate> {
         Group::Reynolds => {
             let because = "The settings follow from one rule, and the error must be at most 1 % at every \
                            Reynolds number of the list.";
-            let (run, bound) = (format!("{variant}.re{}", s.re), Bound::Below(0.01));
-            vec![flow.case().gate(run, L2_WORST, bound, Evidence::Analytic, because)]
+            let gates = flow.case().gates(format!("{variant}.re{}", s.re));
+            vec![gates.analytic(L2_WORST, Bound::Below(0.01), because)]
         }
         _ => Vec::new(),
     }
@@ -89,11 +89,9 @@ fn gates(flow: Flow, row: &Row<ChannelSettings, Group>) -> Vec<Gate> {
 
 /// The gates of a run of the ladder of a variant.
 fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
-    let gate = |metric: MetricName, bound, evidence, because: &str| {
-        flow.case().gate(format!("{variant}.{rows}"), metric, bound, evidence, because)
-    };
+    let gates = flow.case().gates(format!("{variant}.{rows}"));
     let error = |metric: MetricName, most, because: &str| {
-        gate(metric, Bound::Below(most), Evidence::Analytic, because)
+        gates.analytic(metric, Bound::Below(most), because)
     };
     match (flow, variant, rows) {
         (_, "seed", 20) => {
@@ -128,9 +126,9 @@ fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
             let matrices = GHOSTS.iter().filter(|(of, n, _)| (*of, *n) == (flow, rows));
             let between = |(.., [low, high]): &(Flow, usize, [f64; 2])| {
                 let bound = Bound::Within(*low, *high);
-                of_others(gate(L2.at(flow.compared_at()), bound, Evidence::Theory, because), *high)
+                of_others(gates.theory(L2.at(flow.compared_at()), bound, because), *high)
             };
-            let invariants = (rows == 20).then(|| invariants(flow, gate)).into_iter().flatten();
+            let invariants = (rows == 20).then(|| invariants(flow, &gates)).into_iter().flatten();
             matrices.map(between).chain(invariants).collect()
         }
         _ => Vec::new(),
@@ -138,34 +136,32 @@ fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
 }
 
 /// Gates of `plain` that hold for any settings.
-fn invariants(flow: Flow, gate: impl Fn(MetricName, Bound, Evidence, &str) -> Gate) -> Vec<Gate> {
-    let within = |most: f64| Bound::Within(-most, most);
+fn invariants(flow: Flow, gates: &RunGates) -> Vec<Gate> {
     let volume = "Density by the continuity equation (3) follows the volume, which may oscillate by less \
                   than Ma^2 = 1e-3.";
     let pressure = "The exact pressure is 0; the bound is in units of rho V^2.";
     let inside = "No particle passes a plate.";
-    let mut gates = vec![
-        gate(VOLUME_DRIFT.into(), within(1e-3), Evidence::Invariant, volume),
-        gate(P_RMS.into(), Bound::Below(0.1), Evidence::Analytic, pressure),
-        gate(V_RMS.into(), Bound::Below(1e-3), Evidence::Analytic, "The exact cross-flow is 0."),
-        gate(OUTSIDE.into(), Bound::Equals(0.0), Evidence::Invariant, inside),
+    let mut all = vec![
+        gates.invariant(VOLUME_DRIFT, Bound::magnitude(1e-3), volume),
+        gates.analytic(P_RMS, Bound::Below(0.1), pressure),
+        gates.analytic(V_RMS, Bound::Below(1e-3), "The exact cross-flow is 0."),
+        gates.invariant(OUTSIDE, Bound::Equals(0.0), inside),
     ];
     match flow {
         Flow::Couette => {
             let profile = "A linear profile is exact on mirrored rows, and 1e-6 of the start is left. \
                            Compressibility may add less than (V/c0)^2 = 1.3e-4.";
             let slope = "A linear profile is exact on mirrored rows, whatever the kernel.";
-            gates.push(gate(L2.at(1), Bound::Below(1e-4), Evidence::Analytic, profile));
-            gates.extend(
-                [SHEAR_LOWER, SHEAR_UPPER]
-                    .map(|metric| gate(metric.at(1), within(1e-3), Evidence::Analytic, slope)),
-            );
+            let shear =
+                |metric: MetricKey| gates.analytic(metric.at(1), Bound::magnitude(1e-3), slope);
+            all.push(gates.analytic(L2.at(1), Bound::Below(1e-4), profile));
+            all.extend([SHEAR_LOWER, SHEAR_UPPER].map(shear));
         }
         Flow::Poiseuille => {
             let because = "The scene is symmetric about the middle, so momentum across the channel stays at \
                            round-off.";
-            gates.push(gate(MOMENTUM_Y.into(), within(1e-10), Evidence::Invariant, because));
+            all.push(gates.invariant(MOMENTUM_Y, Bound::magnitude(1e-10), because));
         }
     }
-    gates
+    all
 }

@@ -64,13 +64,9 @@ pub fn facts() -> Facts {
 /// The series is exact at any Reynolds number; the judged run has 20 rows, and from there to drawn
 /// resolutions errors change with the second order of walls and kernel.
 const SEALED: Draws = Draws {
-    variants: &["modern", "curved"],
-    resolution: ("rows", [14.0, 32.0]),
-    order: 2.0,
-    metrics: &["l2_worst", "l2@1"],
-    set: &[],
     others: &[("re", Drawn::Between(0.05, 20.0))],
     free: &["end"],
+    ..Draws::new(&["modern", "curved"], ("rows", [14.0, 32.0]), 2.0, &["l2_worst", "l2@1"])
 };
 
 /// The velocities of rows across the channel: each row of particles represents one.
@@ -191,15 +187,12 @@ fn curves(flow: Flow) -> Curves {
         references: SHOWN.map(exact).into(),
         symbols: true,
     };
-    Curves {
-        id: format!("{}-profiles", flow.case().name),
-        title: "Velocity profiles".into(),
-        caption: format!(
-            "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
-             (left) and `{recommended}` (right). Symbols are means over a row, and lines the exact series."
-        ),
-        panels: vec![panel("seed"), panel(recommended)],
-    }
+    let caption = format!(
+        "Velocity u along the channel at five times, Re 0.5, 20 rows of particles, for variants `seed` \
+         (left) and `{recommended}` (right). Symbols are means over a row, and lines the exact series."
+    );
+    let panels = vec![panel("seed"), panel(recommended)];
+    Curves::new(format!("{}-profiles", flow.case().name), "Velocity profiles", caption, panels)
 }
 
 fn budgets(flow: Flow, tier: Tier, accuracy: &Accuracy) -> Budgets {

@@ -32,13 +32,9 @@ use super::{
 
 /// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.
 const SEALED: Draws = Draws {
-    variants: &["carried"],
-    resolution: ("n", [8.0, 11.0]),
-    order: 1.0,
-    metrics: &["l2_u", "force_error"],
-    set: &[],
     others: &[("re", Drawn::Judged)],
     free: &["end"],
+    ..Draws::new(&["carried"], ("n", [8.0, 11.0]), 1.0, &["l2_u", "force_error"])
 };
 
 /// The studies of a tier.
@@ -169,8 +165,8 @@ fn left_of_start(settings: &serde_json::Value) -> String {
 /// Runs from rest only: runs from the reference end before they could leave it.
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let spacing = Spacing::count(|s: &mut HillSettings| &mut s.n, "H/dx = {}");
-    let mut ladders = ["interface-wall", RECOMMENDED, "modern", "consistent"]
-        .map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
+    let variants = ["interface-wall", RECOMMENDED, "modern", "consistent"];
+    let mut ladders = table.ladders(&[Group::Ladder], &variants, spacing);
     let run = ladders[0].levels.first().map(|level| &level.run.spec.settings);
     let [re, end] =
         ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));
@@ -188,7 +184,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
         about,
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: ladders.into_iter().filter(|ladder| !ladder.levels.is_empty()).collect(),
+        ladders,
         ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
     }
 }
@@ -197,28 +193,26 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
 fn budgets(accuracy: &Accuracy) -> Budgets {
     let about = "Runs from rest at Re 50, H/dx = 10. A change smaller than that by the start is within the \
                  effect of disorder.";
-    let change = |what, part, variant, set: fn(&mut HillSettings)| {
-        let spec = CASE.spec(variant, |s| {
-            flow(s, (50.0, 10, END, false));
-            set(s);
-        });
-        Change::new(what, part, spec)
-    };
-    let mut changes = vec![
-        change("none", "none", RECOMMENDED, |_| {}),
-        change("finer spacing", "spacing", RECOMMENDED, |s| s.n = 20),
-        change("dt/2", "time", RECOMMENDED, |s| s.numerics.courant = 0.75),
-        change("c0=30", "sound speed", RECOMMENDED, |s| s.c0 = 30.0),
-        change("h_over_dx=1.2", "h/dx", RECOMMENDED, |s| s.h_over_dx = 1.2),
-        change("diffusion=0.05", "density diffusion", RECOMMENDED, |s| s.numerics.diffusion = 0.05),
-        change("shift=1.5", "shifting", RECOMMENDED, |s| s.numerics.shift = 1.5),
-        change("from the reference", "start", RECOMMENDED, |s| s.from_reference = true),
-        change("`consistent`: sums exact for linear fields", "sums", "consistent", |_| {}),
-        change("`modern`: weaker shifting, no velocities", "shifting", "modern", |_| {}),
-        change("`interface-wall` over `modern`", "wall", "interface-wall", |_| {}),
-    ];
-    // The walls are compared with `modern`, earlier in the list.
-    changes[10].against = 9;
+    let usual = |s: &mut HillSettings| flow(s, (50.0, 10, END, false));
+    let mut changes = CASE.changes(
+        RECOMMENDED,
+        usual,
+        &[
+            ("none", "none", |_| {}),
+            ("finer spacing", "spacing", |s| s.n = 20),
+            ("dt/2", "time", |s| s.numerics.courant = 0.75),
+            ("c0=30", "sound speed", |s| s.c0 = 30.0),
+            ("h_over_dx=1.2", "h/dx", |s| s.h_over_dx = 1.2),
+            ("diffusion=0.05", "density diffusion", |s| s.numerics.diffusion = 0.05),
+            ("shift=1.5", "shifting", |s| s.numerics.shift = 1.5),
+            ("from the reference", "start", |s| s.from_reference = true),
+        ],
+    );
+    let variant = |what, part, variant| Change::new(what, part, CASE.spec(variant, usual));
+    changes.push(variant("`consistent`: sums exact for linear fields", "sums", "consistent"));
+    changes.push(variant("`modern`: weaker shifting, no velocities", "shifting", "modern"));
+    let walls = variant("`interface-wall` over `modern`", "wall", "interface-wall");
+    changes.push(Change { against: changes.len() - 1, ..walls });
     Budgets::new(accuracy, about, vec![changes])
 }
 
@@ -235,8 +229,7 @@ fn profiles(table: &Table) -> Curves {
         panels.push(profile(finest, reference));
         panels.push(shear(&rows, reference));
     }
-    let (id, title) = ("periodic-hill-profiles".into(), "Profiles over finite elements".into());
-    Curves { id, title, caption: caption.into(), panels }
+    Curves::new("periodic-hill-profiles", "Profiles over finite elements", caption, panels)
 }
 
 /// The velocity along the channel, every tenth point of a station.
@@ -300,16 +293,17 @@ fn limits(tier: Tier) -> StepLimits {
 /// The bisection of a variant with its gates.
 fn limit(variant: &'static str, n: usize) -> StepLimit {
     let spec = CASE.spec(variant, |s| flow(s, (50.0, n, 3.0, true)));
-    let rules = CASE.rules(&spec).unwrap_or(Rules::REFUSED);
     // The step is proportional to the Courant number: the viscous limit is ten times as far at Re 50.
-    let default = rules.dt() / rules.dt_limit();
-    let at_limit = ("courant", HillSettings::default().numerics.courant / default);
-    let scene = format!("Re 50, H/dx = {n}");
+    let courant = HillSettings::default().numerics.courant;
+    let at_limit = |rules: &Rules| courant / (rules.dt() / rules.dt_limit());
     let theory = "The default step is stable, and disorder makes neither sound slower nor the stencil \
                   softer by a fifth.";
-    let (id, bound) = (format!("{NAME}.step.{variant}.theory"), Bound::Within(default, 1.2));
-    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, theory);
-    StepLimit::proportional(&scene, spec, at_limit, &rules, Some(gate))
+    let gate = |default| {
+        let (id, bound) = (format!("{NAME}.step.{variant}.theory"), Bound::Within(default, 1.2));
+        Some(Gate::new(id, "measured/theory", bound, Evidence::Theory, theory))
+    };
+    let scene = format!("Re 50, H/dx = {n}");
+    StepLimit::proportional(&CASE, scene, spec, ("courant", at_limit), gate)
 }
 
 const BOUNDS: &str = "The error of the method at ten spacings a hill takes up most of the bounds.";

@@ -7,7 +7,7 @@ use touchstone_base::{functions::log10, gate::Cause};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Drawn, Draws, Statement},
-    studies::{Accuracy, Budgets, Change, CurveOf, CurvePanel, Curves, Picture, Spacing},
+    studies::{Accuracy, Budgets, CurveOf, CurvePanel, Curves, Picture, Spacing},
     table,
 };
 use touchstone_report::{Axis, ColourMap};
@@ -139,20 +139,19 @@ fn table(tier: Tier) -> Table {
 
 fn gates(row: &Row) -> Vec<Gate> {
     let (variant, n, perturb) = (row.variant, row.settings.n, row.settings.perturb);
-    let run = format!("{variant}.{n}.{perturb}");
+    let gates = CASE.gates(format!("{variant}.{n}.{perturb}"));
     let pairs = "Forces of pairs are opposite and shifting changes no velocity, but for round-off.";
-    let conserved = CASE.gate(&run, MOMENTUM_ADDED, Bound::Below(1e-12), Evidence::Theory, pairs);
+    let conserved = gates.theory(MOMENTUM_ADDED, Bound::Below(1e-12), pairs);
     match row.group {
         Group::Control => {
             let because = "Control: without shifting, strings and voids form.";
-            let control = CASE.gate(&run, L2, Bound::Below(0.02), Evidence::Analytic, because);
+            let control = gates.analytic(L2, Bound::Below(0.02), because);
             vec![conserved, control.expected_to_fail()]
         }
-        _ if variant == RECOMMENDED => of_best(&run, n),
+        _ if variant == RECOMMENDED => of_best(&gates, n),
         Group::Lattice if variant == "modern" => {
             let because = "The goal of the recommended variant from the same start.";
-            let error =
-                CASE.gate(&run, L2, Bound::Below(most_error(n)), Evidence::Analytic, because);
+            let error = gates.analytic(L2, Bound::Below(most_error(n)), because);
             vec![conserved, error.with_limitation(Bound::Below(1.0), MUFFLED, &NOISE)]
         }
         _ if variant == "modern" => vec![conserved],
@@ -169,7 +168,7 @@ static NOISE: Cause = Cause::new(
 const MUFFLED: &str = "Noise only removes energy. The bound: 1 is the error of a fluid at rest.";
 
 /// The gates of the recommended variant.
-fn of_best(run: &str, n: usize) -> Vec<Gate> {
+fn of_best(gates: &RunGates, n: usize) -> Vec<Gate> {
     let goal = "The best of the codes measured has 2.2 % at 50 x 50 and 1.5 % at 100 x 100. The goal is a \
                 smaller error from either start, of second order below 50 x 50.";
     let energy = "At the end e^-3.2 of the energy is left, so 1 % of it is 0.3 % of the viscosity, if \
@@ -177,34 +176,27 @@ fn of_best(run: &str, n: usize) -> Vec<Gate> {
     let apart = "Shifting keeps particles apart, and half a spacing is far from pairing.";
     let drift =
         "Terms that are exact for linear fields may add what their error of about 1 % adds.";
-    let mut gates = vec![
-        CASE.gate(run, L2, Bound::Below(most_error(n)), Evidence::Analytic, goal),
+    let mut all = vec![
+        gates.analytic(L2, Bound::Below(most_error(n)), goal),
         // Particles that the exact flow carries come nearer, and sample its momentum and energy worse.
-        CASE.gate(run, NEAREST, Bound::Above(0.5), Evidence::Theory, apart),
-        CASE.gate(run, MOMENTUM_ADDED, Bound::Below(0.01), Evidence::Theory, drift),
+        gates.theory(NEAREST, Bound::Above(0.5), apart),
+        gates.theory(MOMENTUM_ADDED, Bound::Below(0.01), drift),
     ];
-    if n >= 50 {
-        gates.push(CASE.gate(run, ENERGY, Bound::Within(-0.01, 0.01), Evidence::Theory, energy));
-    }
-    gates
+    all.extend((n >= 50).then(|| gates.theory(ENERGY, Bound::magnitude(0.01), energy)));
+    all
 }
 
 /// The flow is exact for any disorder of the start; the bounds of both starts are equal.
 const SEALED: Draws = Draws {
-    variants: &["consistent"],
-    resolution: ("n", [24.0, 50.0]),
-    order: 2.0,
-    metrics: &["l2"],
-    set: &[],
     others: &[("perturb", Drawn::Between(0.02, 0.2)), ("seed", Drawn::Any(1.0, 1000.0))],
-    free: &[],
+    ..Draws::new(&["consistent"], ("n", [24.0, 50.0]), 2.0, &["l2"])
 };
 
 /// The declaration of a tier.
 fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut VortexSettings| &mut s.n, "{} x {}");
-    let mut ladders = LADDER.map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
+    let mut ladders = table.ladders(&[Group::Ladder], &LADDER, spacing);
     for ladder in ladders.iter_mut().filter(|of| of.variant == RECOMMENDED && tier == Tier::Full) {
         let because = "The bound is the earlier result of this program, 1.95, with 0.3 either way. Errors \
                        of the sums fall as h^2, but errors of the sound speed and the time step fall \
@@ -216,7 +208,7 @@ fn studies(tier: Tier) -> Studies {
     let accuracy = Accuracy {
         about: "Taylor-Green vortices at Re 100 from the disturbed lattice, at t = 2 L/U.".into(),
         spacing: "dx/L [-]",
-        ladders: ladders.into(),
+        ladders,
         ..Accuracy::new("taylor-green", L2, "relative L2 error of the velocity [-]")
     };
     let budgets = (tier == Tier::Full).then(|| budgets(&accuracy));
@@ -237,24 +229,23 @@ fn facts() -> Facts {
 
 /// One thing changed at a time, over the recommended variant at 50 x 50 from the disturbed lattice.
 fn budgets(accuracy: &Accuracy) -> Budgets {
-    let changed = |what: &str, part, set: fn(&mut VortexSettings)| {
-        let spec = CASE.spec(RECOMMENDED, |s| {
-            s.perturb = DISTURBED;
-            set(s);
-        });
-        Change::new(what, part, spec)
-    };
-    let pictured = CASE.spec(RECOMMENDED, |s| s.perturb = DISTURBED).keep_particles();
-    let changes = vec![
-        Change::new("none", "none", pictured),
-        changed("dx/2", "spacing", |s| s.n = 100),
-        changed("dt/3 (courant=0.5)", "time", |s| s.numerics.courant = 0.5),
-        changed("c0=20", "sound speed", |s| s.c0 = 20.0),
-        changed("h_over_dx=1.2", "h/dx", |s| s.h_over_dx = 1.2),
-        changed("diffusion=0.05", "density diffusion", |s| s.numerics.diffusion = 0.05),
-        changed("shift=2", "shifting", |s| s.numerics.shift = 2.0),
-        changed("seed=2", "disorder", |s| s.seed = 2),
-    ];
+    let disturbed = |s: &mut VortexSettings| s.perturb = DISTURBED;
+    let mut changes = CASE.changes(
+        RECOMMENDED,
+        disturbed,
+        &[
+            ("none", "none", |_| {}),
+            ("dx/2", "spacing", |s| s.n = 100),
+            ("dt/3 (courant=0.5)", "time", |s| s.numerics.courant = 0.5),
+            ("c0=20", "sound speed", |s| s.c0 = 20.0),
+            ("h_over_dx=1.2", "h/dx", |s| s.h_over_dx = 1.2),
+            ("diffusion=0.05", "density diffusion", |s| s.numerics.diffusion = 0.05),
+            ("shift=2", "shifting", |s| s.numerics.shift = 2.0),
+            ("seed=2", "disorder", |s| s.seed = 2),
+        ],
+    );
+    // The picture shows the unchanged run.
+    changes[0].spec.keep.particles = true;
     let about = "Runs have 50 x 50 particles from the disturbed lattice at Re 100, to t = 2 L/U. The last \
                  row, with another disturbance, shows what is chance. A shorter step, faster sound and less \
                  diffusion all raise the error, because their parts have the sign opposite to that of the \
@@ -282,8 +273,7 @@ fn histories(tier: Tier, table: &Table) -> Curves {
     let bound = (name.as_str(), vec![(1.8, most), (2.0, most)]);
     let panel = CurvePanel::linear("", axes, shown.map(line).collect(), bound);
     let panel = CurvePanel { y: Axis::log(axes[1]), ..panel };
-    let (id, title) = ("taylor-green-histories".into(), "Error through time".into());
-    Curves { id, title, caption: caption.into(), panels: vec![panel] }
+    Curves::new("taylor-green-histories", "Error through time", caption, vec![panel])
 }
 
 /// The error over time, without the start, at which there is none.

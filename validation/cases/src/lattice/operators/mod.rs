@@ -187,13 +187,9 @@ fn variants() -> Compositions<OperatorSettings> {
 
 /// On a lattice the gain of an operator follows from theory for any number of particles.
 const SEALED: Draws = Draws {
-    variants: &[],
-    resolution: ("n", [24.0, 96.0]),
-    order: 0.0,
-    metrics: &["symbol_error"],
     set: &["disorder=0"],
     others: &[("h_over_dx", Drawn::Judged)],
-    free: &[],
+    ..Draws::new(&[], ("n", [24.0, 96.0]), 0.0, &["symbol_error"])
 };
 
 /// Operators on particles.

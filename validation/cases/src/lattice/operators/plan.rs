@@ -1,7 +1,6 @@
 //! The runs of the case and the gates of each.
 
-use touchstone_base::gate::{Bound, Evidence};
-use touchstone_harness::{case::Tier, table};
+use touchstone_harness::{prelude::*, table};
 
 use super::{
     OPERATORS, OperatorSettings, QUINTIC,
@@ -64,14 +63,14 @@ pub(super) fn judged(tier: Tier) -> Table {
         let summed = "The sum over the pairs of the same particles, added one after another, is the \
                       operator. On a lattice a pressure of one side has the same sum as one of both. Steps \
                       of 1e-6 h/c0 change it by less than 1e-5 of itself.";
-        let (run, bound) = (format!("{}.{}", row.variant, row.settings.n), Bound::Below(1e-5));
+        let gates = OPERATORS.gates(format!("{}.{}", row.variant, row.settings.n));
         let is_plain = subjects().any(|of| of.name == row.variant && !of.is_corrected);
         let of = match row.group {
             Group::Lattice => Some((SYMBOL_ERROR, exact)),
             Group::Resolution => is_plain.then_some((SUM_ERROR, summed)),
             _ => None,
         };
-        let gate = |(metric, why)| OPERATORS.gate(run, metric, bound, Evidence::Theory, why);
+        let gate = |(metric, why)| gates.theory(metric, Bound::Below(1e-5), why);
         of.map(gate).into_iter().collect()
     });
     table

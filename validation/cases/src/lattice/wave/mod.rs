@@ -282,9 +282,9 @@ fn gates(
         true => (MOMENTUM, Evidence::Invariant),
         false => (TOLERANCE, Evidence::Theory),
     };
-    let run = format!("{variant}.h{}.{what}", s.h_over_dx);
+    let gates = case.gates(format!("{variant}.h{}.{what}", s.h_over_dx));
     let gate = |(metric, because): &(MetricKey, &str)| {
-        case.gate(&run, *metric, Bound::Below(most), evidence, because)
+        gates.gate(*metric, Bound::Below(most), evidence, because)
     };
     judged.iter().map(gate).collect()
 }

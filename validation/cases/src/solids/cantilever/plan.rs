@@ -53,28 +53,21 @@ fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
     let usual = CantileverSettings::default();
     let load = if gravity == usual.gravity { String::new() } else { format!(".g{gravity}") };
     let time = if end == usual.end { String::new() } else { format!(".end{end}") };
-    let run = format!("{}.{n}{load}{time}", row.variant);
-    let gate =
-        |metric, bound, evidence, because| CANTILEVER.gate(&run, metric, bound, evidence, because);
+    let gates = CANTILEVER.gates(format!("{}.{n}{load}{time}", row.variant));
     let reach = "The bounds are the goal of the project with 10 layers, wider with fewer layers as for an \
                  error of second order. Finite elements are uncertain by 0.5 % along, by 0.24 % across the \
                  bar and by 0.13 % of the frequency.";
     let wider = if n < 10 { (10.0 / n as f64).powi(2) } else { 1.0 };
-    let near = |metric, most: f64| {
-        let most = most * wider;
-        gate(metric, Bound::Within(-most, most), Evidence::Reference, reach)
-    };
+    let near = |metric, most: f64| gates.reference(metric, Bound::magnitude(most * wider), reach);
     // One uncertainty is the finite elements', and one is for the clamp and for large rotations.
     let theory = "A bar that bends as finite elements do, with the stiffness of its layers by theory. The \
                   bound is the uncertainty of finite elements, and as much again for the clamp and for large \
                   rotations.";
-    let bending = |metric, doubt: f64| {
-        gate(metric, Bound::Within(-2.0 * doubt, 2.0 * doubt), Evidence::Theory, theory)
-    };
+    let bending = |metric, doubt: f64| gates.theory(metric, Bound::magnitude(2.0 * doubt), theory);
     let stored = "The forces derive from the stored energy and from that of the weight. The leapfrog keeps \
                   the sum within (omega dt)^2/8 of the energy of each mode, 8e-7 in the second, which has \
                   some per cent.";
-    let energy = || gate(ENERGY_CHANGE, Bound::Within(-1e-6, 1e-6), Evidence::Theory, stored);
+    let energy = || gates.theory(ENERGY_CHANGE, Bound::magnitude(1e-6), stored);
     let fall = || near(FIRST_LEAST_Y_ERROR, 0.01);
     match row.group {
         Whole | Light => vec![
@@ -94,8 +87,7 @@ fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
                 "Nothing elastic dissipates, and the weight has a potential, so all energy stays.";
             let loses = "Artificial viscosity damps the swing. The bound: a bar at rest, at half of the \
                          largest deflection, has lost the largest kinetic energy of an undamped swing.";
-            let energy =
-                gate(ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, nothing);
+            let energy = gates.invariant(ENERGY_CHANGE, Bound::magnitude(0.01), nothing);
             vec![
                 faces::soft(fall(), Bound::Within(-0.01, longer * longer - 1.0)),
                 energy.with_limitation(Bound::Within(-1.0, 0.01), loses, &VISCOSITY),
@@ -105,15 +97,12 @@ fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
 }
 
 /// The finite elements are of the bar of any number of layers.
-const SEALED: Draws = Draws {
-    variants: &["lagrangian", "lagrangian-saint-venant"],
-    resolution: ("n", [5.0, 10.0]),
-    order: 2.0,
-    metrics: &["frequency_error"],
-    set: &[],
-    others: &[],
-    free: &[],
-};
+const SEALED: Draws = Draws::new(
+    &["lagrangian", "lagrangian-saint-venant"],
+    ("n", [5.0, 10.0]),
+    2.0,
+    &["frequency_error"],
+);
 
 /// The accuracy of the path, and in the full tier the errors of constants that the gates detect.
 pub fn studies(tier: Tier) -> Studies {

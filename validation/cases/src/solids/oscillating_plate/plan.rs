@@ -1,7 +1,6 @@
 //! The runs of the plate, their gates, and its part of the report.
 
 use Group::{Damped, Elements as Three, Fast, Locked, Order, Paper};
-use touchstone_base::record::MetricKey;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::Statement,
@@ -65,21 +64,14 @@ pub fn table(tier: Tier) -> Table<PlateSettings, Group> {
     table
 }
 
-/// A gate of a run.
-fn gate(
-    row: &Row<PlateSettings, Group>,
-    metric: MetricKey,
-    bound: Bound,
-    evidence: Evidence,
-    because: &str,
-) -> Gate {
+/// The gates of a run.
+fn of(row: &Row<PlateSettings, Group>) -> RunGates {
     let (s, variant) = (&row.settings, row.variant);
-    let run = match row.group {
+    OSCILLATING_PLATE.gates(match row.group {
         Damped | Locked => format!("{variant}.{}.poisson{}", s.n, s.solid.poisson),
         Fast => format!("{variant}.{}.speed{}", s.n, s.speed),
         _ => format!("{variant}.{}", s.n),
-    };
-    OSCILLATING_PLATE.gate(run, metric, bound, evidence, because)
+    })
 }
 
 fn gates(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
@@ -98,7 +90,7 @@ fn period(row: &Row<PlateSettings, Group>) -> Gate {
     let published = "Published SPH of this plate has periods that are 7 to 12 % too long; shear and rotary \
                      inertia lengthen the period by some per cent.";
     let s = &row.settings;
-    let gate = gate(row, PERIOD_EXCESS, Bound::Within(0.0, 0.15), Evidence::Reference, published);
+    let gate = of(row).reference(PERIOD_EXCESS, Bound::Within(0.0, 0.15), published);
     if s.n >= 20 {
         return gate;
     }
@@ -111,7 +103,7 @@ fn amplitude(row: &Row<PlateSettings, Group>) -> Gate {
     let theory = "A plate whose tip starts at the speed v swings to v T/(2 pi). It may swing 2 % farther, by \
                   which the first mode differs, and 10 % less far, a loss of a fifth of the energy.";
     let swing = Bound::Within(0.9, 1.02);
-    let gate = gate(row, AMPLITUDE_RATIO, swing, Evidence::Theory, theory).of_others(swing, theory);
+    let gate = of(row).theory(AMPLITUDE_RATIO, swing, theory).of_others(swing, theory);
     if row.group != Damped {
         return gate;
     }
@@ -125,7 +117,7 @@ fn amplitude(row: &Row<PlateSettings, Group>) -> Gate {
 /// Gate on the energy of a swing by the equations of the paper.
 fn energy(row: &Row<PlateSettings, Group>) -> Gate {
     let stays = "Nothing drives the plate and nothing elastic dissipates, so its energy stays.";
-    let gate = gate(row, ENERGY_CHANGE, Bound::Within(-0.01, 0.01), Evidence::Invariant, stays);
+    let gate = of(row).invariant(ENERGY_CHANGE, Bound::magnitude(0.01), stays);
     let loses = "The plate loses 8.2 % of its energy with 5 particles through the thickness and 2.4 % with \
                  10. The bound: 8.5 % with 4 particles (--set n=4).";
     let gains = "Artificial stress adds more energy than viscosity takes. The bound: it takes at most the \
@@ -144,7 +136,7 @@ fn energy(row: &Row<PlateSettings, Group>) -> Gate {
 fn stored(row: &Row<PlateSettings, Group>) -> Gate {
     let because = "The forces derive from the stored energy, however large the swing. The leapfrog keeps it \
                    within (omega dt)^2/8 of the share that is in waves through the thickness, below 1e-3.";
-    gate(row, ENERGY_CHANGE, Bound::Within(-1e-3, 1e-3), Evidence::Theory, because)
+    of(row).theory(ENERGY_CHANGE, Bound::magnitude(1e-3), because)
 }
 
 /// Three swings of a total Lagrangian plate.
@@ -163,12 +155,12 @@ fn of_elements(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
     let theory = "With the stiffness of its layers by theory, what is left is the clamp, whose plane lies \
                   between two rows of particles, and shear, 1 %, in which the lattice is little wrong.";
     let rms = 6.0 * std::f64::consts::PI / 6.0_f64.sqrt() * period;
-    let within = |most: f64| Bound::Within(-most, most);
+    let gates = of(row);
     vec![
-        gate(row, PERIOD_ERROR, within(period), Evidence::Reference, exact),
-        gate(row, AMPLITUDE_ERROR, within(0.005), Evidence::Reference, far),
-        gate(row, PATH_RMS, Bound::Below(rms), Evidence::Reference, path),
-        gate(row, BENDING_PERIOD_ERROR, within(0.002), Evidence::Theory, theory),
+        gates.reference(PERIOD_ERROR, Bound::magnitude(period), exact),
+        gates.reference(AMPLITUDE_ERROR, Bound::magnitude(0.005), far),
+        gates.reference(PATH_RMS, Bound::Below(rms), path),
+        gates.theory(BENDING_PERIOD_ERROR, Bound::magnitude(0.002), theory),
     ]
 }
 
@@ -185,7 +177,7 @@ fn locked(row: &Row<PlateSettings, Group>) -> Gate {
     let [least, most] = [-0.005, 0.014];
     let error = if n < 10 { 0.03 } else { 0.01 };
     let near = Bound::Within(least - error, most + error);
-    let period = gate(row, PERIOD_EXCESS, near, Evidence::Theory, thin).of_others(near, thin);
+    let period = of(row).theory(PERIOD_EXCESS, near, thin).of_others(near, thin);
     let locked = 1.0 / lagrangian::bending(n, poisson).sqrt() - 1.0;
     if locked >= -error {
         return period;
@@ -197,7 +189,7 @@ fn locked(row: &Row<PlateSettings, Group>) -> Gate {
 pub fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut PlateSettings| &mut s.n, "{} layers");
-    let ladder = |variant| table.ladder(&[Paper, Order, Three], variant, spacing);
+    let variants = ["seed", "bare", PLAIN, LAGRANGIAN];
     let label = "difference of the period from finite elements [-]";
     let accuracy = || {
         Accuracy {
@@ -207,7 +199,7 @@ pub fn studies(tier: Tier) -> Studies {
             .into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: ["seed", "bare", PLAIN, LAGRANGIAN].map(ladder).into(),
+        ladders: table.ladders(&[Paper, Order, Three], &variants, spacing),
         ..Accuracy::new("oscillating-plate", PERIOD_ERROR, label)
     }
     };

@@ -2,7 +2,7 @@
 
 use touchstone_base::{functions::exp, record::MetricName};
 use touchstone_harness::prelude::*;
-use touchstone_harness::table::{self};
+use touchstone_harness::table;
 
 use super::{
     COMPONENTWISE, CORRECTED, MOST_ENERGY_GAINED, RUBBER_RINGS, RingSettings,
@@ -84,37 +84,34 @@ fn gates(row: &Row) -> Vec<Gate> {
     if row.group == Group::Coarse {
         return Vec::new();
     }
-    let (id, s, is_lagrangian) = (&id(row), &row.settings, row.variant == LAGRANGIAN);
+    let (gates, s, is_lagrangian) = (gates_of(row), &row.settings, row.variant == LAGRANGIAN);
     let is_compared = row.variant != COMPONENTWISE && row.group != Group::Unstressed;
-    let always =
-        |metric, bound, because| RUBBER_RINGS.gate(id, metric, bound, Evidence::Invariant, because);
-    let mut gates = vec![
-        always(MOMENTUM, Bound::Below(1e-12), "Forces of pairs are opposite up to round-off."),
-        always(ENERGY_GAINED, Bound::Below(MOST_ENERGY_GAINED), GAINED),
+    let opposite = "Forces of pairs are opposite up to round-off.";
+    let mut all = vec![
+        gates.invariant(MOMENTUM, Bound::Below(1e-12), opposite),
+        gates.invariant(ENERGY_GAINED, Bound::Below(MOST_ENERGY_GAINED), GAINED),
     ];
     if is_lagrangian {
-        gates.push(always(ENERGY_LOST, Bound::Within(-0.01, 0.01), NOTHING_DISSIPATES));
+        all.push(gates.invariant(ENERGY_LOST, Bound::magnitude(0.01), NOTHING_DISSIPATES));
     }
-    gates.extend(of_wholeness(row, id));
-    let Some(exact) = RingReference::of(row.variant, s).filter(|_| is_compared) else {
-        return gates;
-    };
-    let distances = Distances { row, id, exact, allowed: 0.5 * s.spacing };
-    gates.push(distances.of_stretch());
-    gates.extend(if is_lagrangian { distances.of_lagrangian() } else { distances.of_extremes() });
+    all.extend(of_wholeness(row, &gates));
+    let Some(exact) = RingReference::of(row.variant, s).filter(|_| is_compared) else { return all };
+    let distances = Distances { row, gates, exact, allowed: 0.5 * s.spacing };
+    all.push(distances.of_stretch());
+    all.extend(if is_lagrangian { distances.of_lagrangian() } else { distances.of_extremes() });
     if row.group == Group::Paper {
-        gates.extend(distances.of_contact());
+        all.extend(distances.of_contact());
     }
-    gates
+    all
 }
 
-/// The middle part of the names of the gates of a run.
-fn id(row: &Row) -> String {
+/// The gates of a run are called by what differs from the collision at the paper's speed.
+fn gates_of(row: &Row) -> RunGates {
     let RingSettings { spacing, speed, .. } = row.settings;
     let xi = row.settings.stabilisation.xi;
     let speed = if speed == SPEED { String::new() } else { format!(".v{speed}") };
     let xi = if row.group == Group::Unstressed { format!(".xi{xi}") } else { String::new() };
-    format!("{}.s{spacing}{speed}{xi}", row.variant)
+    RUBBER_RINGS.gates(format!("{}.s{spacing}{speed}{xi}", row.variant))
 }
 
 const GAINED: &str = "Nothing drives the rings, and artificial stress gives less energy than viscosity \
@@ -122,14 +119,9 @@ const GAINED: &str = "Nothing drives the rings, and artificial stress gives less
 const NOTHING_DISSIPATES: &str = "Nothing dissipates. Contacts that open and close within a step leave some \
     tenths of a per cent.";
 
-/// A gate on a result of finite elements.
-fn reference(id: &str, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
-    RUBBER_RINGS.gate(id, metric, bound, Evidence::Reference, because)
-}
-
 /// Gates on rings that stay whole: no piece comes off, and each stays closed around its hole. A ring that is
 /// cut through once is one piece still.
-fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
+fn of_wholeness(row: &Row, gates: &RunGates) -> Vec<Gate> {
     const WHOLE: &str = "Rubber does not break at strains like those in finite elements, nor at any speed \
         below a fifth of the speed of sound. The paper claims that artificial stress ensures this (claim \
         M2). A total Lagrangian body cannot tear, because its neighbours stay.";
@@ -139,7 +131,7 @@ fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
         hole.";
     let RingSettings { spacing, speed, .. } = row.settings;
     let [pieces, holes] = [(PIECES_MOST, 2.0), (HOLES_LEAST, 1.0)]
-        .map(|(metric, count)| reference(id, metric, Bound::Equals(count), WHOLE));
+        .map(|(metric, count)| gates.reference(metric, Bound::Equals(count), WHOLE));
     let is_fine = spacing < 0.15;
     let is_cut = match (row.group, row.variant) {
         // M2: without artificial stress the tensile instability tears them.
@@ -159,7 +151,7 @@ fn of_wholeness(row: &Row, id: &str) -> Vec<Gate> {
 /// Gates on the distances of a run from finite elements.
 struct Distances<'a> {
     row: &'a Row,
-    id: &'a str,
+    gates: RunGates,
     exact: RingReference,
     /// The deviation from 1 that first order allows.
     allowed: f64,
@@ -171,7 +163,7 @@ impl Distances<'_> {
         const FIRST_ORDER: &str = "The surface of a body of particles is known to about a spacing, and sums \
             lack neighbours there. The error is therefore of first order in dx/thickness, for which the \
             bound has a factor of a half.";
-        reference(self.id, metric, Bound::Within(-allowed, allowed), FIRST_ORDER)
+        self.gates.reference(metric, Bound::magnitude(allowed), FIRST_ORDER)
     }
 
     /// Period of bending over the period of an elastic ring, minus 1, as far as it is known.
@@ -213,22 +205,19 @@ impl Distances<'_> {
     fn of_contact(&self) -> Vec<Gate> {
         let twice =
             "In finite elements the rings touch twice, and fly freely for 15 L/c0 in between.";
-        let phases = reference(self.id, PHASES, Bound::Equals(2.0), twice);
+        let phases = self.gates.reference(PHASES, Bound::Equals(2.0), twice);
         let end = CONTACT_END_ERROR.at(phase(1));
         let spacing = self.row.settings.spacing;
         if self.row.variant == LAGRANGIAN {
-            let end = reference(self.id, end, Bound::Within(-3.0, 3.0), GOAL);
-            let late = Bound::Within(-3.0, 8.3);
-            let is_fine = spacing <= 0.051;
-            return vec![
-                phases,
-                if is_fine { end } else { end.with_limitation(late, LIGHT_TOUCH, &FOLDS) },
-            ];
+            let end = self.gates.reference(end, Bound::magnitude(3.0), GOAL);
+            let late =
+                |end: Gate| end.with_limitation(Bound::Within(-3.0, 8.3), LIGHT_TOUCH, &FOLDS);
+            return vec![phases, if spacing <= 0.051 { end } else { late(end) }];
         }
         let ([touch, last], doubt) = (self.contact(), self.exact.doubt);
         let late = self.allowed * (last - touch) + doubt;
         let after = self.exact.leaves(spacing) - last;
-        let end = reference(self.id, end, Bound::Within(-late, after + late), REACH);
+        let end = self.gates.reference(end, Bound::Within(-late, after + late), REACH);
         if spacing > 0.1 {
             let one = phases.with_limitation(Bound::Within(1.0, 2.0), NO_GAP, &SOFT_CONTACT);
             let later = after + self.softer() * (last - touch) + doubt;
@@ -247,7 +236,7 @@ impl Distances<'_> {
         let because = "Neighbours at the start are at most 1.2 dx apart, and no line becomes longer than \
                        by the largest principal strain in finite elements.";
         let most = Bound::Below(NEIGHBOURS * exp(self.exact.strain));
-        let gate = reference(self.id, STRETCH_MOST, most, because);
+        let gate = self.gates.reference(STRETCH_MOST, most, because);
         let RingSettings { spacing, h_over_dx, .. } = self.row.settings;
         let tears_below = match self.row.variant {
             LAGRANGIAN => 0.0,
@@ -264,11 +253,12 @@ impl Distances<'_> {
         let spacing = self.row.settings.spacing;
         let small = 0.1 * spacing;
         let [restitution, width, height] = [RESTITUTION_ERROR, WIDTH_MIN_ERROR, HEIGHT_MAX_ERROR]
-            .map(|metric| reference(self.id, metric, Bound::Within(-small, small), GOAL));
+            .map(|metric| self.gates.reference(metric, Bound::magnitude(small), GOAL));
         let known = Bound::Within(-small, if spacing > 0.051 { 0.041 } else { 0.01 });
         let restitution = restitution.with_limitation(known, SENSITIVE, &FOLDS);
         let half = Bound::Below(0.25 * spacing / self.row.settings.outer);
-        vec![reference(self.id, HISTORIES, half, HALF_A_SPACING), restitution, width, height]
+        let histories = self.gates.reference(HISTORIES, half, HALF_A_SPACING);
+        vec![histories, restitution, width, height]
     }
 }
 

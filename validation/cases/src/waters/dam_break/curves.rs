@@ -70,12 +70,8 @@ fn column(tier: Tier) -> Curves {
                    of width a = 57.15 mm and height 2a. Black is the experiment of Martin & Moyce 1952, \
                    whose fronts are digitised within 0.1 a, and grey volume of fluid, which solves the same \
                    model. No clock is shifted.";
-    Curves {
-        id: "dam-break-martin-moyce".into(),
-        title: "Martin & Moyce 1952: front and height".into(),
-        caption: caption.into(),
-        panels: vec![fronts, heights],
-    }
+    let title = "Martin & Moyce 1952: front and height";
+    Curves::new("dam-break-martin-moyce", title, caption, vec![fronts, heights])
 }
 
 fn tank(tier: Tier) -> Curves {
@@ -119,10 +115,6 @@ fn tank(tier: Tier) -> Curves {
                    al. 2014 (levels: the mean of two series), and grey volume of fluid and a second sensor \
                    at the height of P2. Peaks of the pressure scatter and are cut at 3.5 ρ g H; impulses are \
                    judged instead. The clock of pressures begins when the wave arrives at P1.";
-    Curves {
-        id: "dam-break-lobovsky".into(),
-        title: "Lobovsky et al. 2014: front, levels, pressures".into(),
-        caption: caption.into(),
-        panels,
-    }
+    let title = "Lobovsky et al. 2014: front, levels, pressures";
+    Curves::new("dam-break-lobovsky", title, caption, panels)
 }

@@ -83,38 +83,25 @@ pub fn table(tier: Tier) -> table::Table<DamSettings, Group> {
 
 /// The gates of a run.
 fn gates(row: &Row) -> Vec<Gate> {
-    let (variant, n) = (row.variant, row.settings.n);
-    let dx = row.settings.width.min(row.settings.height) / (n as f64 * row.settings.height);
-    let gates = match row.group {
-        Group::Free => {
-            let run = format!("martin-moyce.{variant}.{n}");
-            match variant {
-                "modern" => {
-                    [invariants(&run, dx), free_references(&run), free_model(&run, n)].concat()
-                }
-                "seed" => [
-                    invariants(&run, dx),
-                    free_references(&run),
-                    vec![potential(&run, FREE_POTENTIAL)],
-                ]
-                .concat(),
-                // Which of its jets hit a wall between two samples of the force is chance.
-                "ghosts" => {
-                    let momentum = String::from(MOMENTUM_GAP);
-                    invariants(&run, dx)
-                        .into_iter()
-                        .filter(|gate| gate.metric != momentum)
-                        .collect()
-                }
-                _ => invariants(&run, dx),
-            }
-        }
-        Group::Tank => {
-            let run = format!("lobovsky.{variant}.{n}");
-            [invariants(&run, dx), tank_references(&run), tank_model(&run)].concat()
-        }
-        Group::Ladder | Group::Ensemble => Vec::new(),
+    let DamSettings { width, height, n, .. } = row.settings;
+    let scene = match row.group {
+        Group::Free => "martin-moyce",
+        Group::Tank => "lobovsky",
+        Group::Ladder | Group::Ensemble => return Vec::new(),
     };
+    let gates = &DAM_BREAK.gates(format!("{scene}.{}.{n}", row.variant));
+    let mut all = invariants(gates, width.min(height) / (n as f64 * height));
+    match (row.group, row.variant) {
+        (Group::Tank, _) => all.extend([tank_references(gates), tank_model(gates)].concat()),
+        (_, "modern") => all.extend([free_references(gates), free_model(gates, n)].concat()),
+        (_, "seed") => {
+            all.extend(free_references(gates));
+            all.push(potential(gates, FREE_POTENTIAL));
+        }
+        // Which of its jets hit a wall between two samples of the force is chance.
+        (_, "ghosts") => all.retain(|gate| gate.metric != String::from(MOMENTUM_GAP)),
+        _ => {}
+    }
     let known = known(row);
     let limited = |gate: Gate| match known.iter().find(|known| known.0.name == gate.metric) {
         Some((_, to, (cause, reason))) => {
@@ -126,7 +113,7 @@ fn gates(row: &Row) -> Vec<Gate> {
         }
         None => gate,
     };
-    gates.into_iter().map(limited).collect()
+    all.into_iter().map(limited).collect()
 }
 
 /// A bound that reaches to a value outside of it.
@@ -139,14 +126,9 @@ fn widened(bound: Bound, to: f64) -> Bound {
     }
 }
 
-/// A gate that compares with a reference.
-fn against(run: &str, metric: impl Into<MetricName>, bound: Bound, because: &str) -> Gate {
-    DAM_BREAK.gate(run, metric, bound, Evidence::Reference, because)
-}
-
 /// Gates that hold for any motion of the water. Walls made only of images with other velocities have no other
 /// gates: neither is the wall of the experiment.
-fn invariants(run: &str, dx: f64) -> Vec<Gate> {
+fn invariants(gates: &RunGates, dx: f64) -> Vec<Gate> {
     let tight = "No particle may pass a wall, whose surface lies half a spacing before its first particles.";
     let kept = "Particles keep their masses, and none is added or removed.";
     let closes =
@@ -160,27 +142,23 @@ fn invariants(run: &str, dx: f64) -> Vec<Gate> {
     let ends = "A run that ends early has no later results.";
     let filled = "The column is H high, so its centre is at H/2. Its lowest row is half a spacing to a whole \
                   one above the wall, which is dx/2 or nothing of difference.";
-    let released = Bound::Within(-dx, dx);
-    [
-        (RELEASED, released, Evidence::Theory, filled),
-        (REACHED, Bound::Above(1.0), Evidence::Invariant, ends),
-        (WORK_WALLS, Bound::Within(-0.05, 0.05), Evidence::Invariant, still),
-        (OUTSIDE, Bound::Equals(0.0), Evidence::Invariant, tight),
-        (MASS_ERROR, Bound::Equals(0.0), Evidence::Invariant, kept),
-        (ENERGY_GAP, Bound::Below(1e-3), Evidence::Invariant, closes),
-        (MOMENTUM_GAP, Bound::Below(0.01), Evidence::Invariant, momentum),
-        (MACH, Bound::Below(0.3), Evidence::Theory, slow),
+    // The small compressibility of water is not a theory of a method.
+    let of_water =
+        |metric, bound, because| gates.theory(metric, bound, because).of_others(bound, because);
+    vec![
+        of_water(RELEASED, Bound::magnitude(dx), filled),
+        gates.invariant(REACHED, Bound::Above(1.0), ends),
+        gates.invariant(WORK_WALLS, Bound::magnitude(0.05), still),
+        gates.invariant(OUTSIDE, Bound::Equals(0.0), tight),
+        gates.invariant(MASS_ERROR, Bound::Equals(0.0), kept),
+        gates.invariant(ENERGY_GAP, Bound::Below(1e-3), closes),
+        gates.invariant(MOMENTUM_GAP, Bound::Below(0.01), momentum),
+        of_water(MACH, Bound::Below(0.3), slow),
     ]
-    .map(|(metric, bound, evidence, because)| {
-        let gate = DAM_BREAK.gate(run, metric, bound, evidence, because);
-        // The small compressibility of water is not a theory of a method.
-        if evidence == Evidence::Theory { gate.of_others(bound, because) } else { gate }
-    })
-    .into()
 }
 
 /// Gates of a column that runs out freely: Martin & Moyce and other codes.
-fn free_references(run: &str) -> Vec<Gate> {
+fn free_references(gates: &RunGates) -> Vec<Gate> {
     let peers = "Three other codes agree within 0.04 on this place. The bound adds 0.1, the spread of \
                  digitised curves of the experiment, which is slower.";
     let front = "The spread of digitised curves of the experiment is 0.1 a.";
@@ -190,51 +168,55 @@ fn free_references(run: &str) -> Vec<Gate> {
     let clock =
         "A diaphragm that takes time to open can only delay the height, as it delays the front.";
     let place = |(t, low, high): (f64, f64, f64)| {
-        against(run, Z.at(t), Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD), peers)
+        gates.reference(Z.at(t), Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD), peers)
     };
-    let of_experiment = [
-        against(run, FRONT.rms_shifted, Bound::Below(FRONT_SPREAD), front),
-        against(run, FRONT.shift, Bound::Within(0.0, 0.4), late),
-        against(run, HEIGHT.rms_shifted, Bound::Below(1.0 / 18.0), height),
-        against(run, HEIGHT.shift, Bound::Above(0.0), clock),
-    ];
-    PEERS.map(place).into_iter().chain(of_experiment).chain([runs_out(run)]).collect()
+    let [second, third] = PEERS.map(place);
+    vec![
+        second,
+        third,
+        gates.reference(FRONT.rms_shifted, Bound::Below(FRONT_SPREAD), front),
+        gates.reference(FRONT.shift, Bound::Within(0.0, 0.4), late),
+        gates.reference(HEIGHT.rms_shifted, Bound::Below(1.0 / 18.0), height),
+        gates.reference(HEIGHT.shift, Bound::Above(0.0), clock),
+        runs_out(gates),
+    ]
 }
 
 /// The gate on a front that falls back.
-fn runs_out(run: &str) -> Gate {
+fn runs_out(gates: &RunGates) -> Gate {
     let because = "Water that spreads over a dry floor never flows back. The bound of 0.1 a is the spread \
                    of digitised curves of a front.";
-    DAM_BREAK.gate(run, FRONT_BACK, Bound::Below(FRONT_SPREAD), Evidence::Invariant, because)
+    gates.invariant(FRONT_BACK, Bound::Below(FRONT_SPREAD), because)
 }
 
 /// Bound of the potential energy of the column of Martin & Moyce \[M g H/2\].
 const FREE_POTENTIAL: f64 = 0.003;
 
 /// The gate on the potential energy, which depends on heights and gravity.
-fn potential(run: &str, most: f64) -> Gate {
+fn potential(gates: &RunGates, most: f64) -> Gate {
     let because = "By the slope of the curve by volume of fluid, which is known to 0.003 M g H/2, in the \
                    tank to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The \
                    bound is half of this, \
                    so that either sign of it is outside.";
-    against(run, POTENTIAL_AWAY, Bound::Below(most), because)
+    gates.reference(POTENTIAL_AWAY, Bound::Below(most), because)
 }
 
 /// Gates of the method on the column of Martin & Moyce: the same model by volume of fluid.
-fn free_model(run: &str, n: usize) -> Vec<Gate> {
+fn free_model(gates: &RunGates, n: usize) -> Vec<Gate> {
     let front =
         "By volume of fluid the front is known to 0.008 a, a being the width of the column.";
     let height =
         "The bound is 1 % of the column. By volume of fluid the height is known to 0.003 H.";
-    let place =
-        (n >= 40).then(|| against(run, FRONT_AWAY.at(2), Bound::Within(-0.02, 0.02), front));
-    let always =
-        [against(run, HEIGHT_AWAY, Bound::Below(0.01), height), potential(run, FREE_POTENTIAL)];
-    always.into_iter().chain(place).collect()
+    let height = gates.reference(HEIGHT_AWAY, Bound::Below(0.01), height);
+    let mut all = vec![height, potential(gates, FREE_POTENTIAL)];
+    if n >= 40 {
+        all.push(gates.reference(FRONT_AWAY.at(2), Bound::magnitude(0.02), front));
+    }
+    all
 }
 
 /// Gates of a column in the tank: Lobovsky et al.
-fn tank_references(run: &str) -> Vec<Gate> {
+fn tank_references(gates: &RunGates) -> Vec<Gate> {
     let front = "Water arrives up to 0.038 √(H/g) apart in two series of the experiment, which is √2 times \
                  the standard uncertainty of one. Twice this at the measured speed of 1.515 √(g H) is 0.08 \
                  H.";
@@ -245,23 +227,19 @@ fn tank_references(run: &str) -> Vec<Gate> {
     let model = "By volume of fluid this model differs from the experiment by 26, 17, -7 and -60 % at P1 to \
                  P4. The bound adds, either way, 10 % of that impulse, 9 % at P2, and its uncertainty, which \
                  is 3, 3, 2 and 18 %.";
-    let spread = 2.0 * IMPULSE_SPREAD;
     let of_model = [(0.257, 0.13), (0.173, 0.12), (-0.074, 0.12), (-0.600, 0.28)];
     let impulses = IMPULSE.into_iter().zip(of_model).map(|(sensor, (away, share))| {
+        let gate = gates.reference(sensor.at(1), Bound::magnitude(2.0 * IMPULSE_SPREAD), impulse);
         let of = |share: f64| (1.0 + away) * (1.0 + share) - 1.0;
-        against(run, sensor.at(1), Bound::Within(-spread, spread), impulse).with_limitation(
-            Bound::Within(of(-share), of(share)),
-            model,
-            &TWO_DIMENSIONS,
-        )
+        gate.with_limitation(Bound::Within(of(-share), of(share)), model, &TWO_DIMENSIONS)
     });
-    let front = against(run, FRONT.rms_shifted, Bound::Below(0.08), front);
-    let levels = against(run, LEVELS.rms_shifted, Bound::Below(0.05), levels);
-    [front, levels, runs_out(run)].into_iter().chain(impulses).collect()
+    let front = gates.reference(FRONT.rms_shifted, Bound::Below(0.08), front);
+    let levels = gates.reference(LEVELS.rms_shifted, Bound::Below(0.05), levels);
+    [front, levels, runs_out(gates)].into_iter().chain(impulses).collect()
 }
 
 /// Gates of the method on the column of Lobovsky et al.: the same model by volume of fluid.
-fn tank_model(run: &str) -> Vec<Gate> {
+fn tank_model(gates: &RunGates) -> Vec<Gate> {
     let level = "The bound is 1 % of the column. By volume of fluid these levels differ by 0.003 to 0.006 \
                  H, rms, between cells of 5 and 2.5 mm.";
     let impulse = "The bound is 10 % of the impulse. By volume of fluid it is known to 3, 3, 2 and 18 % at \
@@ -269,18 +247,21 @@ fn tank_model(run: &str) -> Vec<Gate> {
     let uncertain = "The impulse by volume of fluid is 0.116 ± 0.021 ρ g H √(H/g), 0.131 with twice the \
                      step, of first order 0.101 without a step. These runs have 0.104, 0.103 and 0.102 at \
                      H/dx 30, 60 and 120. The bound adds this uncertainty, 18 %, to 10 %.";
-    let mut gates: Vec<Gate> =
-        LEVEL_AWAY.map(|away| against(run, away, Bound::Below(0.01), level)).into();
-    for window in WINDOWS {
-        let tenth = Bound::Within(-0.1, 0.1);
-        gates.extend(IMPULSE_AWAY.map(|away| against(run, away.at(window), tenth, impulse)));
+    let mut all: Vec<Gate> =
+        LEVEL_AWAY.map(|away| gates.reference(away, Bound::Below(0.01), level)).into();
+    for (window, k) in WINDOWS.into_iter().flat_map(|window| (0..4).map(move |k| (window, k))) {
+        let tenth = Bound::magnitude(0.1);
+        let gate = gates.reference(IMPULSE_AWAY[k].at(window), tenth, impulse);
+        all.push(match (window, k) {
+            // Only a thin jet reaches the uppermost sensor during the first window.
+            (1.0, 3) => {
+                gate.with_limitation(Bound::magnitude(0.28), uncertain, &UNCERTAIN_REFERENCE)
+            }
+            _ => gate,
+        });
     }
-    gates.push(potential(run, 0.0019));
-    // Only a thin jet reaches the uppermost sensor during the first window.
-    let thin = &mut gates[LEVEL_AWAY.len() + 3];
-    let known = Bound::Within(-0.28, 0.28);
-    *thin = thin.clone().with_limitation(known, uncertain, &UNCERTAIN_REFERENCE);
-    gates
+    all.push(potential(gates, 0.0019));
+    all
 }
 
 /// Why a gate has a wider bound, and where that comes from.

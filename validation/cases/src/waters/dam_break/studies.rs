@@ -13,7 +13,7 @@ use touchstone_harness::{
     case::{Draws, Statement, SubmittedCurve},
     pictures::Film,
     studies::{
-        Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, Picture, PicturePanel,
+        Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, Picture, PicturePanel,
         Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
         causes::{NOT_MEASURED, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
     },
@@ -41,15 +41,8 @@ pub fn is_stable(record: &Record) -> bool {
 
 /// The experiment does not depend on the spacing, and the distance between it and the model does not fall
 /// with the spacing.
-const SEALED: Draws = Draws {
-    variants: &["modern"],
-    resolution: ("n", [14.0, 40.0]),
-    order: 0.0,
-    metrics: &["front_rms_shifted", "height_rms_shifted"],
-    set: &[],
-    others: &[],
-    free: &[],
-};
+const SEALED: Draws =
+    Draws::new(&["modern"], ("n", [14.0, 40.0]), 0.0, &["front_rms_shifted", "height_rms_shifted"]);
 
 /// The studies of a tier.
 pub fn studies(tier: Tier) -> Studies {
@@ -270,8 +263,7 @@ fn compared(
 
 fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let spacing = Spacing::count(|s: &mut DamSettings| &mut s.n, "a/dx {}");
-    let mut ladders =
-        ["seed", "modern"].map(|variant| table.ladder(&[Group::Ladder], variant, spacing));
+    let mut ladders = table.ladders(&[Group::Ladder], &["seed", "modern"], spacing);
     if tier == Tier::Full {
         let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
                        order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \
@@ -287,7 +279,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
             .into(),
         spacing: "dx/a [-]",
         slope: Some(1.0),
-        ladders: ladders.into(),
+        ladders,
         ..Accuracy::new("dam-break", FRONT_AWAY.at(1), "error of the front at T = 1 [a]")
     }
 }
@@ -301,7 +293,7 @@ fn in_the_tank(table: &Table) -> Accuracy {
             .into(),
         spacing: "dx/H [-]",
         slope: Some(1.0),
-        ladders: vec![table.ladder(&[Group::Tank], "modern", spacing)],
+        ladders: table.ladders(&[Group::Tank], &["modern"], spacing),
         ..Accuracy::new("dam-break-tank", FRONT_AWAY.at(2), "error of the front at t = 2 [H]")
     }
 }
@@ -309,17 +301,21 @@ fn in_the_tank(table: &Table) -> Accuracy {
 /// A change of the settings.
 type Set = fn(&mut DamSettings);
 
-/// The change, the affected part of the error, the function that sets it, and the only variant with it.
-const CHANGES: [(&str, &str, Set, Option<&str>); 9] = [
-    ("none", "all", |_| (), None),
-    ("dt/2", "time", |s| s.water.courant *= 0.5, None),
-    ("dx/2", "spacing", |s| s.n *= 2, None),
-    ("2 c0", "compressibility", |s| s.c0 *= 2.0, None),
-    ("alpha/2", "artificial viscosity", |s| s.water.alpha *= 0.5, None),
-    ("h/dx 2", "smoothing", |s| s.water.h_over_dx = 2.0, None),
-    ("delta/2", "density diffusion", |s| s.water.diffusion *= 0.5, Some("modern")),
-    ("no artificial stress", "artificial stress", |s| s.water.xi = 0.0, Some("seed")),
-    ("no XSPH", "XSPH", |s| s.water.xsph = 0.0, Some("seed")),
+/// The change, the affected part of the error, and the function that sets it.
+const CHANGES: [(&str, &str, Set); 6] = [
+    ("none", "all", |_| ()),
+    ("dt/2", "time", |s| s.water.courant *= 0.5),
+    ("dx/2", "spacing", |s| s.n *= 2),
+    ("2 c0", "compressibility", |s| s.c0 *= 2.0),
+    ("alpha/2", "artificial viscosity", |s| s.water.alpha *= 0.5),
+    ("h/dx 2", "smoothing", |s| s.water.h_over_dx = 2.0),
+];
+/// Changes of terms that `modern` has alone, and of terms that `seed` has alone.
+const OF_MODERN: [(&str, &str, Set); 1] =
+    [("delta/2", "density diffusion", |s| s.water.diffusion *= 0.5)];
+const OF_SEED: [(&str, &str, Set); 2] = [
+    ("no artificial stress", "artificial stress", |s| s.water.xi = 0.0),
+    ("no XSPH", "XSPH", |s| s.water.xsph = 0.0),
 ];
 
 fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
@@ -328,17 +324,13 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
         _ => (20, &["modern", "seed"]),
     };
     let of = |variant: &&'static str| {
-        let has = CHANGES.iter().filter(|change| change.3.is_none_or(|of| of == *variant));
-        let change = |&(what, part, set, _): &(&str, &'static str, Set, _)| {
-            let spec = DAM_BREAK.spec(variant, |s| {
-                s.n = n;
-                set(s);
-            });
+        let own = if *variant == "modern" { &OF_MODERN[..] } else { &OF_SEED };
+        let mut all = DAM_BREAK.changes(variant, |s| s.n = n, &[&CHANGES, own].concat());
+        for change in all.iter_mut().filter(|of| !["all", "spacing"].contains(&of.part)) {
             // Other changes may ask more of the time step than the variant's own settings do.
-            let is_ladder = ["all", "spacing"].contains(&part);
-            Change::new(what, part, if is_ladder { spec } else { spec.allow_unstable() })
-        };
-        has.map(change).collect()
+            change.spec.allow_unstable = true;
+        }
+        all
     };
     Budgets::new(accuracy, accuracy.about.clone(), variants.iter().map(of).collect())
 }
@@ -353,18 +345,17 @@ fn limits(tier: Tier) -> StepLimits {
 fn limit(variant: &'static str) -> StepLimit {
     // A run is stable if it keeps its energy.
     let spec = DAM_BREAK.spec(variant, |s| s.n = 15).measure_all();
-    let rules = DAM_BREAK.rules(&spec).unwrap_or(Rules::REFUSED);
     let because = "Theory is the limit of a lattice at rest. Moving, disordered water is expected at 0.7 \
                    to 1.0 of it, and the step of the case must be below what is measured. A run that holds \
                    at 1.2 would measure another limit, because the stiffest mode of leapfrog grows \
                    3.5-fold a step there.";
-    let default_at = rules.dt() / rules.dt_limit();
-    let bound = Bound::Within(default_at, 1.2);
-    let id = format!("{NAME}.limit.{variant}.Martin");
-    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
+    let gate = |default| {
+        let (id, bound) = (format!("{NAME}.limit.{variant}.Martin"), Bound::Within(default, 1.2));
+        Some(Gate::new(id, "measured/theory", bound, Evidence::Theory, because))
+    };
     // The limit as the record's dt and dt/limit state it.
-    let setting = ("dt", rules.dt() / default_at);
-    StepLimit::proportional("Martin & Moyce", spec, setting, &rules, Some(gate))
+    let at_limit = |rules: &Rules| rules.dt() / (rules.dt() / rules.dt_limit());
+    StepLimit::proportional(&DAM_BREAK, "Martin & Moyce", spec, ("dt", at_limit), gate)
 }
 
 const DENSITY: &str = "Times and lengths of a collapse do not depend on the density. Water at rest \
