@@ -234,30 +234,6 @@ pub fn read(settings: &mut dyn Values, json: &serde_json::Value) -> Result<(), S
     given.iter().try_for_each(|(key, value)| set(settings, key, &text(value)))
 }
 
-/// Settings in a document of another format, for `#[serde(with = "…")]`: as their JSON.
-pub mod as_json {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
-
-    use super::Settings;
-
-    /// Serialises all settings.
-    ///
-    /// # Errors
-    /// Errors of `to`.
-    pub fn serialize<T: Settings, S: Serializer>(settings: &T, to: S) -> Result<S::Ok, S::Error> {
-        super::to_json(settings).to_string().serialize(to)
-    }
-
-    /// Deserialises all settings.
-    ///
-    /// # Errors
-    /// Errors of `from`; unknown settings and settings out of range.
-    pub fn deserialize<'a, T: Settings, D: Deserializer<'a>>(from: D) -> Result<T, D::Error> {
-        let json = serde_json::from_str(&String::deserialize(from)?).map_err(D::Error::custom)?;
-        super::of_json(&json).map_err(D::Error::custom)
-    }
-}
-
 /// A value as it is written in `key=value`.
 pub fn text(json: &serde_json::Value) -> String {
     match json.as_str() {

@@ -8,7 +8,7 @@ pub use touchstone_base::{
 pub use touchstone_solver::{Domain, Particle, Stepper};
 
 pub use crate::{
-    case::{Case, Recommended, Rules, RunError, Tier},
+    case::{Recommended, Rules, RunError, Tier},
     composed::{Composed, Compositions, RunGates, Variants},
     facts::Facts,
     method::{Medium, Method, Parts},

@@ -278,6 +278,7 @@ mod tests {
     use touchstone_harness::runs::Judged;
 
     use super::*;
+    use touchstone_harness::case::Case;
 
     /// The force would follow a viscosity that is wrong, and its solution with it.
     #[test]

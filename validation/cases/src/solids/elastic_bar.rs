@@ -182,15 +182,13 @@ impl Body for BarSettings {
         let all = scene.all();
         let of_points = || Energy::of_points(all.iter().copied(), scene, &self.material());
         let energy = Energy::known(start).map_or_else(of_points, Ok);
-        Motion::new(self, &all, energy.map(|energy| energy.total()))
+        Motion::new(&all, energy.map(|energy| energy.total()))
     }
 }
 
 /// The motion of the bars, step by step.
 #[derive(Serialize, Deserialize)]
 pub struct Motion {
-    #[serde(with = "touchstone_base::settings::as_json")]
-    settings: BarSettings,
     /// Σ m v and Σ m |v| at the start \[kg/s\].
     momentum: Vector2<f64>,
     total: f64,
@@ -221,10 +219,33 @@ fn row(time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 4] 
     [time, first / (momentum[0] + momentum[1]), mean[0], mean[1]]
 }
 
+/// Mean −σˣˣ within L/2 of the contact \[Pa\].
+///
+/// # Errors
+/// Without densities or stresses.
+fn contact_stress(s: &BarSettings, now: &Snapshot<Symmetric>) -> Result<f64, Absent> {
+    let (eos, density, stress) = (s.material().eos(), now.density()?, now.stress()?);
+    let near = now.stored().filter(|p| p.position.x.abs() < 0.5 * s.length);
+    let (count, sum) = near.fold((0.0, 0.0), |(count, sum), p| {
+        (count + 1.0, sum + eos.pressure(density.of(&p)) - stress.of(&p).xx)
+    });
+    Ok(sum / count)
+}
+
+/// How far the pulse is from the exact one, from masses, places and velocities along x at a time.
+fn pulse_rms(s: &BarSettings, time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> f64 {
+    let run = s.wave() * time;
+    let exact = |x: f64| s.pulse(x - run) + s.pulse(2.0 * s.length - x - run);
+    let (wrong, all) = particles.fold((0.0, 0.0), |(wrong, all), (m, x, v)| {
+        let exact = exact(x);
+        (wrong + m * (v - exact).powi(2), all + m * exact * exact)
+    });
+    (wrong / all).sqrt()
+}
+
 impl Motion {
-    fn new(s: &BarSettings, start: &[Point], energy: Result<f64, Absent>) -> Self {
+    fn new(start: &[Point], energy: Result<f64, Absent>) -> Self {
         Self {
-            settings: s.clone(),
             momentum: start.iter().map(|p| p.velocity * p.mass).sum(),
             total: start.iter().map(|p| p.velocity.norm() * p.mass).sum(),
             energy,
@@ -233,23 +254,12 @@ impl Motion {
         }
     }
 
-    fn contact_stress(&self, now: &Snapshot<Symmetric>) -> Result<f64, Absent> {
-        let (eos, reach) = (self.settings.material().eos(), 0.5 * self.settings.length);
-        let (density, stress) = (now.density()?, now.stress()?);
-        let near = now.stored().filter(|p| p.position.x.abs() < reach);
-        let (count, sum) = near.fold((0.0, 0.0), |(count, sum), p| {
-            (count + 1.0, sum + eos.pressure(density.of(&p)) - stress.of(&p).xx)
-        });
-        Ok(sum / count)
-    }
-
     /// When column `k` of the series first passes a value, between two steps \[s\].
     fn passes(&self, k: usize, value: f64) -> f64 {
         passes(&self.series, k, value).next().map_or(f64::NAN, |(time, _)| time)
     }
 
-    fn pulse_metrics(&self, record: &mut Record) {
-        let s = &self.settings;
+    fn pulse_metrics(&self, s: &BarSettings, record: &mut Record) {
         let [from, to] = STATIONS.map(|x| self.passes(1, x * s.length));
         let span = (STATIONS[1] - STATIONS[0]) * s.length / s.wave();
         let lattice = SquareLattice::of::<CubicSpline>(s.solid.h_over_dx, 0.01);
@@ -260,20 +270,8 @@ impl Motion {
         record.put_or(TRAVEL_LATTICE_ERROR, time.map(|time| time * factor - 1.0), lacks);
     }
 
-    /// How far the pulse is from the exact one, from masses, places and velocities along x at a time.
-    fn pulse_rms(&self, time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> f64 {
-        let s = &self.settings;
-        let run = s.wave() * time;
-        let exact = |x: f64| s.pulse(x - run) + s.pulse(2.0 * s.length - x - run);
-        let (wrong, all) = particles.fold((0.0, 0.0), |(wrong, all), (m, x, v)| {
-            let exact = exact(x);
-            (wrong + m * (v - exact).powi(2), all + m * exact * exact)
-        });
-        (wrong / all).sqrt()
-    }
-
-    fn impact_metrics(&self, record: &mut Record) {
-        let (s, speed) = (&self.settings, self.settings.speed());
+    fn impact_metrics(&self, s: &BarSettings, record: &mut Record) {
+        let speed = s.speed();
         let Material { density, bulk, shear } = s.material();
         let exact = Impact::new(bulk, shear, density, speed);
         let [from, to] = EXCHANGED.map(|share| self.passes(2, (1.0 - 2.0 * share) * speed));
@@ -290,33 +288,32 @@ impl Motion {
     }
 }
 
-impl Watch for Motion {
-    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
+impl Watch<BarSettings> for Motion {
+    fn after_step(&mut self, s: &BarSettings, now: &Snapshot<Symmetric>) {
         let row = row(now.time(), now.stored().map(along));
         self.series.push(row);
-        if self.settings.collide && self.stress.is_none() && row[2] <= 0.0 {
-            self.stress = self.contact_stress(now).ok();
+        if s.collide && self.stress.is_none() && row[2] <= 0.0 {
+            self.stress = contact_stress(s, now).ok();
         }
     }
 
-    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
-        match self.settings.collide {
-            true => self.impact_metrics(record),
+    fn measure(self, s: &BarSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
+        match s.collide {
+            true => self.impact_metrics(s, record),
             false => {
-                self.pulse_metrics(record);
-                let rms = self.pulse_rms(end.time(), end.stored().map(along));
-                record.put(PULSE_RMS, rms);
+                self.pulse_metrics(s, record);
+                record.put(PULSE_RMS, pulse_rms(s, end.time(), end.stored().map(along)));
             }
         }
         let momentum = momentum(&end.all()) - self.momentum;
         record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
-        let after = Energy::of(end, &self.settings.material());
+        let after = Energy::of(end, &s.material());
         let change = after.and_then(|after| Ok(after.total() / self.energy.clone()? - 1.0));
         record.put_or_absent(ENERGY_CHANGE, change);
         let column = |k: usize| self.series.iter().map(|row| row[k]).collect();
         let time = Profile::default().with("t", "s", column(0));
         // Bars that collide have no momentum together, and so no centre of it; a pulse has one side.
-        let profile = if self.settings.collide {
+        let profile = if s.collide {
             let left = time.with("left mean velocity", "m/s", column(2));
             left.with("right mean velocity", "m/s", column(3))
         } else {
@@ -503,8 +500,8 @@ mod tests {
     };
 
     /// Motion that was written down, not stepped.
-    fn motion(settings: &BarSettings, series: Vec<[f64; 4]>, stress: Option<f64>) -> Motion {
-        Motion { series, stress, ..Motion::new(settings, &[], Ok(0.0)) }
+    fn motion(series: Vec<[f64; 4]>, stress: Option<f64>) -> Motion {
+        Motion { series, stress, ..Motion::new(&[], Ok(0.0)) }
     }
 
     fn record() -> Record {
@@ -545,7 +542,7 @@ mod tests {
             [time, 0.25 * s.length + 0.97 * s.wave() * time, 0.0, 0.0]
         };
         let mut record = record();
-        motion(&s, (0..100).map(row).collect(), None).pulse_metrics(&mut record);
+        motion((0..100).map(row).collect(), None).pulse_metrics(&s, &mut record);
         close(&record, TRAVEL_ERROR, 1.0 / 0.97 - 1.0);
         close(&record, TRAVEL_LATTICE_ERROR, 1.006_724_5 / 0.97 - 1.0);
     }
@@ -554,7 +551,6 @@ mod tests {
     #[test]
     fn the_distance_from_the_exact_pulse_is_that_of_made_up_velocities() {
         let s = BarSettings::default();
-        let motion = motion(&s, Vec::new(), None);
         let time = 0.5 * s.length / s.wave();
         let of = |factor: f64| {
             let place = move |k: i32| (0.01 * f64::from(k) + 0.005) * 0.1;
@@ -568,7 +564,7 @@ mod tests {
         };
         let scaled = |factor: f64| {
             let all = of(factor).map(|(m, x, v)| (m, x, v * s.wave()));
-            motion.pulse_rms(time, all.collect::<Vec<_>>().into_iter())
+            pulse_rms(&s, time, all.collect::<Vec<_>>().into_iter())
         };
         assert_relative_eq!(scaled(1.03), 0.03, max_relative = 1e-9);
         assert_relative_eq!(scaled(0.0), 1.0, max_relative = 1e-9);
@@ -588,14 +584,14 @@ mod tests {
         };
         let mut found = record();
         let series: Vec<[f64; 4]> = (0..=100).map(row).collect();
-        motion(&s, series.clone(), Some(1.02 * exact.stress)).impact_metrics(&mut found);
+        motion(series.clone(), Some(1.02 * exact.stress)).impact_metrics(&s, &mut found);
         close(&found, CONTACT_TIME_ERROR, 0.05);
         close(&found, STRESS_ERROR, 0.02);
         close(&found, EXCHANGE, 0.96);
         close(&found, RESTITUTION, 0.93);
         let touching = BarSettings { gap: 0.0, ..s };
         let mut found = record();
-        motion(&touching, series[..40].to_vec(), None).impact_metrics(&mut found);
+        motion(series[..40].to_vec(), None).impact_metrics(&touching, &mut found);
         let absent = [STRESS_ERROR, CONTACT_TIME_ERROR, RESTITUTION];
         for metric in absent.map(String::from) {
             assert!(found.absent.contains_key(&metric), "{metric}");
@@ -614,8 +610,8 @@ mod tests {
             p.velocity.x = if p.position.x < 0.0 { -0.2 } else { 0.5 };
         }
         let now = Snapshot::of(0.0, &particles);
-        let mut watch = Motion::new(&s, &now.all(), Ok(0.0));
-        watch.after_step(&now);
+        let mut watch = Motion::new(&now.all(), Ok(0.0));
+        watch.after_step(&s, &now);
         let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));
         let stress = watch.stress.expect("the left bar flies back");
         assert_relative_eq!(stress, bulk * 0.002 + 1000.0, max_relative = 1e-9);

@@ -115,8 +115,6 @@ impl Body for DiskSettings {
 /// History of the disk.
 #[derive(Serialize, Deserialize)]
 pub struct History {
-    #[serde(with = "touchstone_base::settings::as_json")]
-    settings: DiskSettings,
     /// \[kg/m\].
     mass: f64,
     until: f64,
@@ -135,10 +133,10 @@ impl History {
         let energy = Energy::of_points(start.into_iter(), scene, &s.material());
         let mut series = Series::default();
         series.push([Ok(0.0), Ok(spin), energy.map(|energy| energy.total()), Ok(0.0)]);
-        Self { settings: s.clone(), mass, until, series, first: None }
+        Self { mass, until, series, first: None }
     }
 
-    fn sample(&mut self, now: &Snapshot<Symmetric>) {
+    fn sample(&mut self, s: &DiskSettings, now: &Snapshot<Symmetric>) {
         let mean = now.stress().map(|stress| {
             let (mut mass, mut sum) = (0.0, 0.0);
             for p in now.stored() {
@@ -147,7 +145,7 @@ impl History {
             }
             sum / mass
         });
-        let energy = Energy::of(now, &self.settings.material()).map(|energy| energy.total());
+        let energy = Energy::of(now, &s.material()).map(|energy| energy.total());
         let spin = angular_momentum(now);
         // A sample after the last step, when the velocities of a leapfrog lag, is replaced by the
         // synchronised one.
@@ -178,9 +176,8 @@ fn mistaken(now: &Snapshot<Symmetric>, radius: f64) -> Result<[f64; 2], Absent> 
     Ok([inside, rim / count])
 }
 
-impl Watch for History {
-    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
-        let s = &self.settings;
+impl Watch<DiskSettings> for History {
+    fn after_step(&mut self, s: &DiskSettings, now: &Snapshot<Symmetric>) {
         if let (None, Ok(simulation)) = (self.first, now.simulation()) {
             // One support for the gradient, one for the neighbours that XSPH has moved before it.
             let interior = s.radius - 4.0 * (s.solid.h_over_dx * s.dx()) - s.dx();
@@ -189,24 +186,22 @@ impl Watch for History {
         }
         if now.time() >= self.until {
             self.until += s.end() / SAMPLES;
-            self.sample(now);
+            self.sample(s, now);
         }
     }
 
-    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
-        self.sample(end);
-        let (material, speed) = (self.settings.material(), self.settings.speed());
+    fn measure(mut self, s: &DiskSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
+        self.sample(s, end);
+        let (material, speed) = (s.material(), s.speed());
         let scale = material.density * speed * speed;
-        metrics(&self.series, self.settings.end, scale, record);
-        let time = TENTH / self.settings.end * self.settings.end();
-        let short = || Err("the run is not longer than a tenth of a revolution".into());
-        let tenth = match self.settings.end > TENTH {
-            true => momentum_at(&self.series, time),
-            false => short(),
+        metrics(&self.series, s.end, scale, record);
+        let tenth = match s.end > TENTH {
+            true => momentum_at(&self.series, TENTH / s.end * s.end()),
+            false => Err("the run is not longer than a tenth of a revolution".into()),
         };
         record.put_or_absent(ANGULAR_MOMENTUM_TENTH, tenth);
         let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
-        let scale = 2.0 * material.shear * speed / self.settings.radius;
+        let scale = 2.0 * material.shear * speed / s.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
         let momentum = momentum(&end.all()).norm();

@@ -455,7 +455,7 @@ mod tests {
 
     #[test]
     fn a_drop_falls_freely_and_keeps_its_momentum() {
-        for variant in VARIANTS {
+        for variant in ["seed", "modern", "plain"] {
             let ran = |gravity: f64| {
                 run(variant, |s| (s.n, s.end, s.gravity) = (12, 0.2, gravity)).expect("a run")
             };

@@ -11,7 +11,7 @@ use touchstone_base::{
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    case::{Drawn, Draws, Statement, SubmittedCurve},
+    case::{Case, Drawn, Draws, Statement, SubmittedCurve},
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
         Curves, Ladder, Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,

@@ -26,9 +26,6 @@ pub const LEAST_POINTS: usize = 400;
 /// The motion of the end.
 #[derive(Serialize, Deserialize)]
 pub struct End {
-    /// Settings of the bar.
-    #[serde(with = "touchstone_base::settings::as_json")]
-    pub settings: CantileverSettings,
     /// When it is sampled next \[s\].
     pub until: f64,
     /// t \[s\], displacement of the end along x and y \[m\].
@@ -38,47 +35,46 @@ pub struct End {
 }
 
 impl End {
-    fn sample(&mut self, now: &Snapshot<Symmetric>) {
-        let all = now.all();
-        let columns = self.settings.columns();
+    fn sample(&mut self, s: &CantileverSettings, now: &Snapshot<Symmetric>) {
+        let (all, columns) = (now.all(), s.columns());
         let middle = |column: usize| {
-            let rows = (0..self.settings.n).map(|row| all[row * columns + column].position);
-            rows.fold(Vector2::zeros(), |sum, x| sum + x) / self.settings.n as f64
+            let rows = (0..s.n).map(|row| all[row * columns + column].position);
+            rows.fold(Vector2::zeros(), |sum, x| sum + x) / s.n as f64
         };
         // The line through the last two columns, continued by half a spacing: the end has no curvature.
         let end = 1.5 * middle(columns - 1) - 0.5 * middle(columns - 2);
-        self.path.push([now.time(), end.x - self.settings.length, end.y]);
+        self.path.push([now.time(), end.x - s.length, end.y]);
         if self.path.len().is_multiple_of(ENERGY_EVERY) {
-            self.energies.push(self.energy(now));
+            self.energies.push(energy(s, now));
         }
-    }
-
-    /// A row of the energies. The energy of the weight is 0 at the start, because the bar is along y = 0.
-    fn energy(&self, now: &Snapshot<Symmetric>) -> [Result<f64, Absent>; 3] {
-        if let Some(known) = Energy::known(now) {
-            return [now.time(), known.kinetic, known.total()].map(Ok);
-        }
-        let of_points = Energy::of_points(now.stored(), now, &self.settings.material());
-        let total = of_points.map(|mut found| {
-            let height = |p: Point| p.mass * p.position.y;
-            let height = now.stored().map(height).fold(0.0, |sum, one| sum + one);
-            found.compression += self.settings.gravity * height;
-            found.total()
-        });
-        [Ok(now.time()), Ok(solid::kinetic(now.stored())), total]
     }
 }
 
-impl Watch for End {
-    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
+/// A row of the energies. The energy of the weight is 0 at the start, because the bar is along y = 0.
+fn energy(s: &CantileverSettings, now: &Snapshot<Symmetric>) -> [Result<f64, Absent>; 3] {
+    if let Some(known) = Energy::known(now) {
+        return [now.time(), known.kinetic, known.total()].map(Ok);
+    }
+    let of_points = Energy::of_points(now.stored(), now, &s.material());
+    let total = of_points.map(|mut found| {
+        let height = |p: Point| p.mass * p.position.y;
+        let height = now.stored().map(height).fold(0.0, |sum, one| sum + one);
+        found.compression += s.gravity * height;
+        found.total()
+    });
+    [Ok(now.time()), Ok(solid::kinetic(now.stored())), total]
+}
+
+impl Watch<CantileverSettings> for End {
+    fn after_step(&mut self, s: &CantileverSettings, now: &Snapshot<Symmetric>) {
         if now.time() >= self.until {
-            self.until = now.time() + self.settings.end / SAMPLES;
-            self.sample(now);
+            self.until = now.time() + s.end / SAMPLES;
+            self.sample(s, now);
         }
     }
 
-    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
-        self.energies.push(self.energy(end));
+    fn measure(mut self, s: &CantileverSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
+        self.energies.push(energy(s, end));
         let most = |k: usize| -> Result<f64, Absent> {
             let larger = |a: f64, b: &f64| if b.abs() > a.abs() || b.is_nan() { *b } else { a };
             Ok(self.energies.column(k)?.iter().fold(0.0, larger))
@@ -87,7 +83,7 @@ impl Watch for End {
         record.put_or_absent(ENERGY_CHANGE, change);
         let energies = self.energies.profile(&[("t", "s"), ("kinetic", "J/m"), ("change", "J/m")]);
         record.profiles.insert("energy".into(), energies);
-        let path = Path(std::mem::take(&mut self.path));
+        let path = Path(self.path);
         let columns = [("t", "s"), ("x", "m"), ("y", "m")];
         record.profiles.insert("end".into(), Profile::of_rows(&columns, &path.0));
         if path.0.len() < LEAST_POINTS {
@@ -100,7 +96,7 @@ impl Watch for End {
         for (metric, value) in path::measure(&path) {
             record.put_or(metric, value, "the run is too short for it");
         }
-        let (s, exact) = (&self.settings, elements(&record.run.variant, &self.settings));
+        let exact = elements(&record.run.variant, s);
         // All but the first swing was measured over 4 s.
         let is_whole = s.end == CantileverSettings::default().end;
         let (whole, first) = COMPARED.split_at(if is_whole { 0 } else { COMPARED.len() - 1 });
@@ -166,8 +162,8 @@ mod tests {
         let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
         lagrangian::displace(&mut *simulation, place);
         let (path, energies) = (vec![[0.0; 3]], Series::default());
-        let mut end = End { settings: s, until: 0.0, path, energies };
-        end.sample(&Snapshot::ours(&*simulation));
+        let mut end = End { until: 0.0, path, energies };
+        end.sample(&s, &Snapshot::ours(&*simulation));
         let [_, x, y] = end.path[1];
         assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);
         assert_relative_eq!(y, -0.2 * 0.35, max_relative = 1e-9);

@@ -185,8 +185,7 @@ impl Body for CantileverSettings {
     }
 
     fn watch(&self, _: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> End {
-        let (path, energies) = (vec![[0.0; 3]], Series::from(vec![[0.0; 3]]));
-        End { settings: self.clone(), until: 0.0, path, energies }
+        End { until: 0.0, path: vec![[0.0; 3]], energies: Series::from(vec![[0.0; 3]]) }
     }
 }
 

@@ -143,15 +143,14 @@ impl Body for PlateSettings {
     }
 
     fn watch(&self, scene: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> Tip {
-        Tip::new(self, scene)
+        let energy = solid::kinetic(scene.all().into_iter());
+        Tip { until: 0, energy, series: vec![[0.0; 3]] }
     }
 }
 
 /// The motion of the tip.
 #[derive(Serialize, Deserialize)]
 pub struct Tip {
-    #[serde(with = "touchstone_base::settings::as_json")]
-    settings: PlateSettings,
     until: u64,
     /// Energy at the start \[J/m\].
     energy: f64,
@@ -160,11 +159,6 @@ pub struct Tip {
 }
 
 impl Tip {
-    fn new(s: &PlateSettings, start: &Snapshot<Symmetric>) -> Self {
-        let energy = solid::kinetic(start.all().into_iter());
-        Self { settings: s.clone(), until: 0, energy, series: vec![[0.0; 3]] }
-    }
-
     /// Times at which the tip passes its height of rest \[s\].
     fn passes(&self) -> Vec<f64> {
         passes(&self.series, 2, 0.0).map(|(time, _)| time).collect()
@@ -179,11 +173,11 @@ impl Tip {
         }
     }
 
-    fn measure_swing(&self, record: &mut Record) {
+    fn measure_swing(&self, s: &PlateSettings, record: &mut Record) {
         let first = self.passes().first().copied().unwrap_or(f64::INFINITY);
         let swing = self.series.iter().take_while(|row| row[0] <= first);
         let highest = swing.map(|row| row[2]).fold(f64::NEG_INFINITY, f64::max);
-        let (thin, speed) = (thin_plate_period(&self.settings), self.settings.speed());
+        let (thin, speed) = (thin_plate_period(s), s.speed());
         let period = self.period();
         let never = "the tip does not pass its height of rest again";
         record.put_or(PERIOD, period, never);
@@ -193,26 +187,26 @@ impl Tip {
     }
 }
 
-impl Watch for Tip {
-    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
+impl Watch<PlateSettings> for Tip {
+    fn after_step(&mut self, s: &PlateSettings, now: &Snapshot<Symmetric>) {
         if self.until > 0 {
             self.until -= 1;
             return;
         }
         self.until = EVERY - 1;
-        let (all, s, columns) = (now.all(), &self.settings, self.settings.columns());
+        let (all, columns) = (now.all(), s.columns());
         let tip = (1..=s.n).map(|row| all[row * columns - 1].position);
         let mean = tip.fold(Vector2::zeros(), |sum, x| sum + x) / s.n as f64;
         let rest = (columns as f64 - 0.5) * s.dx();
         self.series.push([now.time(), mean.x - rest, mean.y]);
     }
 
-    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
-        self.measure_swing(record);
-        let after = Energy::of(end, &self.settings.material());
+    fn measure(self, s: &PlateSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
+        self.measure_swing(s, record);
+        let after = Energy::of(end, &s.material());
         let change = after.map(|after| after.total() / self.energy - 1.0);
         record.put_or_absent(ENERGY_CHANGE, change);
-        let (s, path) = (&self.settings, Path(std::mem::take(&mut self.series)));
+        let path = Path(self.series);
         let errors = [(PERIOD, PERIOD_ERROR), (AMPLITUDE_RATIO, AMPLITUDE_ERROR)];
         let exact = elements(&record.run.variant, s);
         let lacks = "the run is too short, or finite elements have no such plate: they have 0.2 m and 0.02 \
@@ -262,7 +256,7 @@ mod tests {
         };
         let series = (0..).map(row).take_while(|row| row[0] < periods * period).collect();
         let mut record = Record::new("oscillating_plate", "made-up", serde_json::Value::Null, 1);
-        Tip { series, ..Tip::new(s, &Snapshot::of(0.0, &[])) }.measure_swing(&mut record);
+        Tip { until: 0, energy: 0.0, series }.measure_swing(s, &mut record);
         record
     }
 
@@ -292,8 +286,8 @@ mod tests {
             p.position.y = 1.5 * p.position.y + 0.001;
         }
         let now = Snapshot::of(0.0, &particles);
-        let mut tip = Tip::new(&s, &now);
-        tip.after_step(&now);
+        let mut tip = s.watch(&now, &now);
+        tip.after_step(&s, &now);
         assert!(tip.series[1][1].abs() < 1e-15);
         assert_relative_eq!(tip.series[1][2], 0.001, max_relative = 1e-9);
     }

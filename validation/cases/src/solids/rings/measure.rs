@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::hypot,
-    record::{MetricKey, Profile, Record, Status},
+    record::{Profile, Record, Status},
 };
 use touchstone_harness::{
     pictures,
@@ -75,11 +75,44 @@ pub fn halves<T>(particles: &[T]) -> [&[T]; 2] {
     [left, right]
 }
 
+/// The energies of particles of a snapshot unless the method knows them.
+fn energies_of(
+    s: &RingSettings,
+    known: Option<Energy>,
+    all: &[Point],
+    now: &Snapshot<Symmetric>,
+) -> [Result<f64, Absent>; 3] {
+    let of_points = || Energy::each(all.iter().copied(), now, &s.material());
+    let each = |known: Energy| [known.kinetic, known.compression, known.shear].map(Ok);
+    known.map_or_else(of_points, each)
+}
+
+/// Pieces of both rings, and the fewest holes of one.
+fn count(s: &RingSettings, particles: &[Point]) -> [f64; 2] {
+    let least_hole = Topology::least_hole_of_ring(s.inner, s.outer);
+    let found = halves(particles).map(|ring| Topology::of(&places(ring), s.dx(), least_hole));
+    let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
+    [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
+}
+
+/// Metrics of contact; `restitution` is for rings that have separated.
+fn put_contact(phases: &[Phase], restitution: f64, record: &mut Record) {
+    record.put(PHASES, phases.len() as f64);
+    let parted = phases.last().filter(|last| last.is_over).map(|_| restitution);
+    let never = phases.is_empty();
+    let why = if never { "the rings never touch" } else { "the rings still touch at the end" };
+    record.put_or(RESTITUTION, parted, why);
+    for (k, Phase { impulse, times: [early, late], is_over }) in phases.iter().enumerate().take(2) {
+        for (metric, value) in [(IMPULSE, impulse), (T_IMPULSE_1, early), (T_IMPULSE_99, late)] {
+            let why = "the phase lasts until the end of the run";
+            record.put_or(metric.at(phase(k)), is_over.then_some(*value), why);
+        }
+    }
+}
+
 /// Watches a run.
 #[derive(Serialize, Deserialize)]
 pub struct Series {
-    #[serde(with = "touchstone_base::settings::as_json")]
-    settings: RingSettings,
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
     next: f64,
@@ -111,57 +144,35 @@ const NAMES: [(&str, &str); COLUMNS + 3] = [
 
 impl Series {
     /// A series over a run with this start.
-    pub fn new(
-        settings: &RingSettings,
-        scene: &Snapshot<Symmetric>,
-        start: &Snapshot<Symmetric>,
-    ) -> Self {
-        let next = settings.end() / SAMPLES;
-        let all = along_flight(settings, scene.all());
-        let bonds = halves(&all).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * settings.dx()));
+    pub fn new(s: &RingSettings, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Self {
+        let all = along_flight(s, scene.all());
+        let bonds = halves(&all).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * s.dx()));
         let (rows, energies) = (Vec::new(), Columns::default());
-        let mut this = Self { settings: settings.clone(), bonds, next, rows, energies };
-        let known = Energy::known(start);
-        this.add(0.0, &all, this.energies(known, &all, scene));
+        let mut this = Self { bonds, next: s.end() / SAMPLES, rows, energies };
+        this.add(s, (0.0, &all), energies_of(s, Energy::known(start), &all, scene));
         this
     }
 
-    /// The energies of particles of a snapshot unless the method knows them.
-    fn energies(
-        &self,
-        known: Option<Energy>,
-        all: &[Point],
-        now: &Snapshot<Symmetric>,
-    ) -> [Result<f64, Absent>; 3] {
-        let of_points = || Energy::each(all.iter().copied(), now, &self.settings.material());
-        let each = |known: Energy| [known.kinetic, known.compression, known.shear].map(Ok);
-        known.map_or_else(of_points, each)
-    }
-
-    /// Pieces of both rings, and the fewest holes of one.
-    fn count(&self, particles: &[Point]) -> [f64; 2] {
-        let least_hole = Topology::least_hole_of_ring(self.settings.inner, self.settings.outer);
-        let found = halves(particles)
-            .map(|ring| Topology::of(&places(ring), self.settings.dx(), least_hole));
-        let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
-        [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
-    }
-
     /// Takes a sample.
-    pub fn sample(&mut self, now: &Snapshot<Symmetric>) {
-        let all = along_flight(&self.settings, now.all());
-        self.add(now.time(), &all, self.energies(Energy::known(now), &all, now));
+    pub fn sample(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>) {
+        let all = along_flight(s, now.all());
+        self.add(s, (now.time(), &all), energies_of(s, Energy::known(now), &all, now));
     }
 
-    /// Adds a row: the ring on the right, whose centre has x > 0.
-    fn add(&mut self, time: f64, particles: &[Point], energies: [Result<f64, Absent>; 3]) {
-        let (c0, dx) = (self.settings.c0(), self.settings.dx());
+    /// Adds a row of particles at a time: the ring on the right, whose centre has x > 0.
+    fn add(
+        &mut self,
+        s: &RingSettings,
+        (time, particles): (f64, &[Point]),
+        energies: [Result<f64, Absent>; 3],
+    ) {
+        let (c0, dx) = (s.c0(), s.dx());
         let [left, right] = halves(particles);
         let [pieces, holes] = match self.rows.last() {
             Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => {
                 [last[PIECES], last[HOLES]]
             }
-            _ => self.count(particles),
+            _ => count(s, particles),
         };
         let [centre, velocity, extent] = side(right, dx);
         let bonds = self.bonds.iter().zip([left, right]);
@@ -205,7 +216,7 @@ impl Series {
     }
 
     /// Metrics of the whole run, and the distances of a variant from finite elements.
-    pub fn put(&self, record: &mut Record) {
+    pub fn put(&self, s: &RingSettings, record: &mut Record) {
         let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return };
         let column = |k: usize| self.rows.iter().map(move |row| row[k]);
         let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
@@ -221,8 +232,7 @@ impl Series {
         record.put(STRETCH_MOST, largest(column(STRETCH)));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
-        let speed = self.settings.speed;
-        let energy = match speed > 0.0 {
+        let energy = match s.speed > 0.0 {
             true => self.energy(),
             false => Err("the rings are at rest at the start".into()),
         };
@@ -230,36 +240,18 @@ impl Series {
         let gained = |all: &Vec<f64>| all.iter().copied().fold(0.0, f64::max) / all[0] - 1.0;
         record.put_or_absent(ENERGY_LOST, energy.as_ref().map(lost).map_err(Absent::clone));
         record.put_or_absent(ENERGY_GAINED, energy.as_ref().map(gained).map_err(Absent::clone));
-        self.put_contact(last[2] / speed, record);
+        let phases = self.phases(s);
+        put_contact(&phases, last[2] / s.speed, record);
         let columns = [1, 2, 3, 4].map(|k| self.points(k));
-        reference::compare(&self.settings, &self.phases(), &columns, record);
-    }
-
-    /// Metrics of contact; `restitution` is for rings that have separated.
-    fn put_contact(&self, restitution: f64, record: &mut Record) {
-        let phases = self.phases();
-        record.put(PHASES, phases.len() as f64);
-        let parted = phases.last().filter(|last| last.is_over).map(|_| restitution);
-        let never = phases.is_empty();
-        let why = if never { "the rings never touch" } else { "the rings still touch at the end" };
-        record.put_or(RESTITUTION, parted, why);
-        const METRICS: [MetricKey; 3] = [IMPULSE, T_IMPULSE_1, T_IMPULSE_99];
-        for (k, Phase { impulse, times: [early, late], is_over }) in
-            phases.into_iter().enumerate().take(2)
-        {
-            for (metric, value) in METRICS.into_iter().zip([impulse, early, late]) {
-                let why = "the phase lasts until the end of the run";
-                record.put_or(metric.at(phase(k)), is_over.then_some(value), why);
-            }
-        }
+        reference::compare(s, &phases, &columns, record);
     }
 
     /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
     /// than 5 L/c0 bridged, as in `references/rubber_rings`.
-    fn phases(&self) -> Vec<Phase> {
+    fn phases(&self, s: &RingSettings) -> Vec<Phase> {
         let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
         let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
-        let round_off = ROUND_OFF * self.settings.speed;
+        let round_off = ROUND_OFF * s.speed;
         let least = (TOUCH * forces.iter().copied().fold(0.0, f64::max)).max(round_off);
         let mut spans: Vec<[usize; 2]> = Vec::new();
         for k in (0..forces.len()).filter(|&k| forces[k] > least) {
@@ -268,12 +260,11 @@ impl Series {
                 _ => spans.push([k, k + 1]),
             }
         }
-        spans.into_iter().map(|span| self.phase(span)).collect()
+        spans.into_iter().map(|span| self.phase(s, span)).collect()
     }
 
-    fn phase(&self, [start, end]: [usize; 2]) -> Phase {
+    fn phase(&self, s: &RingSettings, [start, end]: [usize; 2]) -> Phase {
         let rows = &self.rows[start..=end];
-        let s = &self.settings;
         let mass = std::f64::consts::PI * (s.outer * s.outer - s.inner * s.inner);
         let (first, last) = (rows[0][2], rows[rows.len() - 1][2]);
         let times = SHARES.map(|share| {
@@ -297,17 +288,16 @@ const PAUSE: f64 = 5.0;
 /// Force of round-off, over mass and speed of a ring \[c₀/L\].
 const ROUND_OFF: f64 = 1e-9;
 
-impl Watch for Series {
-    fn after_step(&mut self, now: &Snapshot<Symmetric>) {
+impl Watch<RingSettings> for Series {
+    fn after_step(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>) {
         if now.time() >= self.next {
-            self.next += self.settings.end() / SAMPLES;
-            self.sample(now);
+            self.next += s.end() / SAMPLES;
+            self.sample(s, now);
         }
     }
 
     /// x, y and the largest principal stress of the ring on the right, for pictures.
-    fn keep(&self, now: &Snapshot<Symmetric>, stop: usize, record: &mut Record) {
-        let s = &self.settings;
+    fn keep(s: &RingSettings, now: &Snapshot<Symmetric>, stop: usize, record: &mut Record) {
         let share = (stop + 1) as f64 / s.samples as f64;
         let (Ok(density), Ok(stress)) = (now.density(), now.stress()) else { return };
         let is_frame = ((stop + 1) * pictures::FRAMES).is_multiple_of(s.samples);
@@ -330,16 +320,15 @@ impl Watch for Series {
         }
     }
 
-    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record) {
+    fn measure(mut self, s: &RingSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
         if record.status == Status::Completed {
-            let last = self.rows.last();
-            if last.is_some_and(|row| row[0] < end.time() * self.settings.c0()) {
-                self.sample(end);
+            if self.rows.last().is_some_and(|row| row[0] < end.time() * s.c0()) {
+                self.sample(s, end);
             }
-            self.put(record);
-            let particles = along_flight(&self.settings, end.all());
+            self.put(s, record);
+            let particles = along_flight(s, end.all());
             let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
-            let of_ring = 0.5 * mass * self.settings.speed().max(f64::MIN_POSITIVE);
+            let of_ring = 0.5 * mass * s.speed().max(f64::MIN_POSITIVE);
             record.put(MOMENTUM, momentum(&particles).norm() / of_ring);
         }
         record.profiles.insert("series".into(), self.profile());
@@ -373,10 +362,10 @@ mod tests {
             let time = f64::from(k);
             let mut particles = settings.particles();
             particles.iter_mut().for_each(|p| change(time, p));
-            series.sample(&Snapshot::of(time, &particles));
+            series.sample(&settings, &Snapshot::of(time, &particles));
         }
         let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
-        series.put(&mut record);
+        series.put(&settings, &mut record);
         (record, series.points(HOLES))
     }
 

@@ -43,10 +43,10 @@ fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record
             p.position.y *= stretch[1];
             p.velocity.x = side * v;
         }
-        series.sample(&Snapshot::of(time / settings.c0(), &particles));
+        series.sample(settings, &Snapshot::of(time / settings.c0(), &particles));
     }
     let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
-    series.put(&mut record);
+    series.put(settings, &mut record);
     record
 }
 

@@ -58,9 +58,9 @@ pub struct Scales {
 }
 
 /// Elastic bodies, stated by the settings of a case: the differences between cases of solids.
-pub trait Body: Values {
+pub trait Body: Values + Sized {
     /// Measures a run.
-    type Watch: Watch;
+    type Watch: Watch<Self>;
     /// Material, h/dx and time step.
     fn common(&self) -> Common;
     /// The material.
@@ -108,14 +108,14 @@ pub trait Body: Values {
     }
 }
 
-/// Observes every step of a run and measures it.
-pub trait Watch: Serialize + DeserializeOwned {
+/// Observes every step of a run of a body and measures it.
+pub trait Watch<B>: Serialize + DeserializeOwned {
     /// Called after every step.
-    fn after_step(&mut self, now: &Snapshot<Symmetric>);
+    fn after_step(&mut self, body: &B, now: &Snapshot<Symmetric>);
     /// Keeps the particles at a stop, if the run keeps particles; velocities may be half a step old.
-    fn keep(&self, _: &Snapshot<Symmetric>, _stop: usize, _: &mut Record) {}
+    fn keep(_: &B, _: &Snapshot<Symmetric>, _stop: usize, _: &mut Record) {}
     /// Puts metrics and profiles at the end.
-    fn measure(&mut self, end: &Snapshot<Symmetric>, record: &mut Record);
+    fn measure(self, body: &B, end: &Snapshot<Symmetric>, record: &mut Record);
 }
 
 /// Variants of a problem.
@@ -247,18 +247,18 @@ impl<B: Body> Problem for Solid<B> {
 
     fn calls(&self, calls: Calls<Self>, output: OptionalOutput) -> Calls<Self> {
         calls
-            .after_step("measurements", |_, watch, now| {
-                watch.after_step(now);
+            .after_step("measurements", |solid, watch, now| {
+                watch.after_step(&solid.body, now);
                 ControlFlow::Continue(())
             })
             .when(output.particles, |calls| {
-                calls.at_positions("particles", |_, watch, now, stop, record| {
-                    watch.keep(now, stop, record);
+                calls.at_positions("particles", |solid, _, now, stop, record| {
+                    B::Watch::keep(&solid.body, now, stop, record);
                 })
             })
     }
 
-    fn measure(&self, mut watch: Self::Watch, end: &Snapshot<Symmetric>, record: &mut Record) {
-        watch.measure(end, record);
+    fn measure(&self, watch: Self::Watch, end: &Snapshot<Symmetric>, record: &mut Record) {
+        watch.measure(&self.body, end, record);
     }
 }
