@@ -15,7 +15,9 @@ use crate::{
     neighbours::{BLOCK, Lists, Neighbours},
     numbers::{Numbers, Symmetric},
     parallel,
-    particle_data::{BlockExtrema, Checkpoint, Counts, InvalidState, ParticleData, Phase, Stepped},
+    particle_data::{
+        BlockExtrema, Checkpoint, InvalidState, ParticleData, Phase, RoleCounts, Stepped,
+    },
     particles::{Common, Constants, Rate, Role, State, SweptParticle},
     physics::{Derived, Particles, Physics},
     sweep::{self, BlockUpdate, PairSweep, Sweep},
@@ -87,7 +89,7 @@ impl<X: Numbers> ParticleData<X> {
         positions: &mut dyn Iterator<Item = Vector2<f64>>,
     ) {
         self.enter(Phase::Search);
-        let Counts { fluid, walls } = self.counts;
+        let RoleCounts { fluid, walls } = self.counts;
         self.neighbours.place(positions);
         self.neighbours.build(fluid, walls, self.extrapolates, self.parallel);
         self.progress.work.list_builds += 1;
@@ -104,7 +106,7 @@ impl<X: Numbers> ParticleData<X> {
         state: &[State<X>],
     ) -> Result<BlockExtrema, InvalidState> {
         self.enter(Phase::Refresh);
-        let Counts { fluid, walls } = self.counts;
+        let RoleCounts { fluid, walls } = self.counts;
         let filled = if self.buffers.still.is_some() { fluid } else { state.len() };
         let count = filled.div_ceil(BLOCK);
         let mut extents = take(&mut self.buffers.extents);
@@ -440,7 +442,7 @@ impl<P: Physics> Engine<P> {
     /// Number of particles with rates, which are the first ones of a state: fluid particles, and wall
     /// particles if the walls have terms.
     pub(crate) fn swept(&self) -> usize {
-        let Counts { fluid, walls } = self.data.counts;
+        let RoleCounts { fluid, walls } = self.data.counts;
         let is_empty = <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
         if is_empty { fluid } else { fluid + walls }
     }

@@ -41,7 +41,7 @@ const TILE: usize = 32;
 
 /// The lists of up to [`BLOCK`] particles.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Block {
+pub(crate) struct ListBlock {
     /// The list of group g of the block is `columns[starts[g]..starts[g + 1]]`.
     starts: Vec<u32>,
     columns: Vec<u32>,
@@ -57,7 +57,7 @@ pub(crate) struct Block {
 /// do not depend on the processor.
 pub const GROUP: usize = MOST;
 
-impl Block {
+impl ListBlock {
     /// The list of a group of the block.
     #[inline(always)]
     pub fn list(&self, group: usize) -> &[u32] {
@@ -76,7 +76,7 @@ pub(crate) struct Lists {
     pub of: Range<usize>,
     /// Whether blocks are worth spreading over threads.
     pub parallel: bool,
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<ListBlock>,
 }
 
 /// A grid of cells no smaller than the list radius.
@@ -194,7 +194,7 @@ impl Neighbours {
         self.blocks().map(|b| b.pairs).sum()
     }
 
-    fn blocks(&self) -> impl Iterator<Item = &Block> {
+    fn blocks(&self) -> impl Iterator<Item = &ListBlock> {
         self.lists.blocks.iter().chain(&self.wall_lists.blocks)
     }
 
@@ -209,7 +209,7 @@ impl Neighbours {
         let points =
             [&self.feet, &self.built_at, &self.points, &self.cell_points].map(Vec::capacity);
         let numbers = [&self.cell_starts, &self.cell_columns].map(Vec::capacity);
-        self.blocks().map(Block::bytes).sum::<usize>()
+        self.blocks().map(ListBlock::bytes).sum::<usize>()
             + self.images.capacity() * size_of::<Image>()
             + points.into_iter().sum::<usize>() * size_of::<Vector2<f64>>()
             + numbers.into_iter().sum::<usize>() * size_of::<u32>()
@@ -322,7 +322,7 @@ impl Neighbours {
 
     /// The lists of particles `of`, which list columns of the particles before `up_to` alone.
     fn fill(&self, mut lists: Lists, of: Range<usize>, up_to: usize, parallel: bool) -> Lists {
-        lists.blocks.resize_with(of.len().div_ceil(BLOCK), Block::default);
+        lists.blocks.resize_with(of.len().div_ceil(BLOCK), ListBlock::default);
         parallel::for_each(lists.blocks.iter_mut().enumerate(), parallel, &|(b, block)| {
             let start = of.start + b * BLOCK;
             let of = start..(start + BLOCK).min(of.end);
@@ -368,7 +368,7 @@ impl Neighbours {
 /// Builds the lists of one block.
 struct FillLists<'a> {
     neighbours: &'a Neighbours,
-    block: &'a mut Block,
+    block: &'a mut ListBlock,
     of: Range<usize>,
     up_to: usize,
 }
@@ -422,7 +422,7 @@ impl OnLanes for FillLists<'_> {
     fn run<V: Lane>(self) {
         let Self { neighbours, block, of, up_to } = self;
         let points = &neighbours.points;
-        let Block { starts, columns, found, beyond, .. } = block;
+        let ListBlock { starts, columns, found, beyond, .. } = block;
         starts.clear();
         starts.push(0);
         columns.clear();
@@ -522,7 +522,7 @@ mod tests {
     /// The neighbours of particle `own`, number k of these blocks, and of its group.
     fn listed(
         neighbours: &Neighbours,
-        blocks: &[Block],
+        blocks: &[ListBlock],
         k: usize,
         points: &[Vector2<f64>],
         own: usize,
@@ -622,7 +622,7 @@ mod tests {
         let [fluid, wall] =
             [&neighbours.lists, &neighbours.wall_lists].map(|lists| &lists.blocks[..]);
         for (built, of, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
-            let [mut portable, mut widest] = [Block::default(), Block::default()];
+            let [mut portable, mut widest] = [ListBlock::default(), ListBlock::default()];
             let of_block =
                 |block| FillLists { neighbours: &neighbours, block, of: of.clone(), up_to };
             of_block(&mut portable).run::<Portable>();

@@ -172,7 +172,7 @@ impl<X: Numbers> Checkpoint<X> {
 
 /// Numbers of particles, which are stored in this order; interface particles follow them.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Counts {
+pub(crate) struct RoleCounts {
     pub fluid: usize,
     pub walls: usize,
 }
@@ -243,7 +243,7 @@ pub struct ParticleData<X = ()> {
     /// Empty during a step, which owns the state.
     pub(crate) state: Vec<State<X>>,
     pub(crate) fixed: Vec<Constants>,
-    pub(crate) counts: Counts,
+    pub(crate) counts: RoleCounts,
     /// [`crate::Walls::SLIPS`].
     pub(crate) slips: bool,
     /// Whether [`crate::Walls::Extrapolation`] is not `()`.
@@ -277,7 +277,7 @@ impl<X: Numbers> ParticleData<X> {
             |(id, p): &(u32, Particle<X>)| Constants { mass: p.mass, id: *id, role: p.role };
         self.state = particles.iter().map(evolved).collect();
         self.fixed = particles.iter().map(fixed).collect();
-        self.counts = Counts { fluid: count(Role::Fluid), walls: count(Role::Wall) };
+        self.counts = RoleCounts { fluid: count(Role::Fluid), walls: count(Role::Wall) };
     }
 
     /// Number of fluid particles.

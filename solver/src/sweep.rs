@@ -14,7 +14,7 @@ use touchstone_lanes::{Lane, OnLanes, on_widest};
 
 use crate::{
     kernel::{Kernel, Smoothing},
-    neighbours::{BLOCK, Block, GROUP, Lists},
+    neighbours::{BLOCK, GROUP, ListBlock, Lists},
     numbers::{Buffer, In, MANY, Numbers},
     parallel,
     particles::{Common, Rate, State, SweptParticle},
@@ -43,7 +43,7 @@ type Receive<'a, T, O> = dyn Fn(usize, &mut [T], &[O]) + Sync + 'a;
 pub(crate) trait PairSweep<O>: Sync {
     /// Passes on the results of the particles in these columns, a few at a time, with the column of the
     /// first. `block` has their neighbour lists.
-    fn results(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O]));
+    fn results(&self, block: &ListBlock, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O]));
 }
 
 /// Updates `targets`, which begin with the particles of these lists.
@@ -95,7 +95,7 @@ impl<K, T, S> Sweep<'_, K, T, S> {
     fn results_by<O: Copy + Default>(
         &self,
         on_lanes: impl Fn(Particles<K, T, S, O>),
-        block: &Block,
+        block: &ListBlock,
         of: Range<usize>,
         pass: &mut dyn FnMut(usize, &[O]),
     ) where
@@ -130,7 +130,7 @@ impl<K, T, S> Sweep<'_, K, T, S> {
 impl<O: Copy + Default, K: Kernel, T: PairSum<S, O>, S: Numbers> PairSweep<O>
     for Sweep<'_, K, T, S>
 {
-    fn results(&self, block: &Block, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O])) {
+    fn results(&self, block: &ListBlock, of: Range<usize>, pass: &mut dyn FnMut(usize, &[O])) {
         self.results_by(|particles| on_widest(particles), block, of, pass);
     }
 }
@@ -144,7 +144,7 @@ type Inputs<D> = (Vector2<f64>, Vector2<f64>, (f64, f64, f64), D);
 /// is inlined into its caller.
 struct Particles<'a, K, T: PairSum<S, O>, S, O> {
     sweep: &'a Sweep<'a, K, T, S>,
-    block: &'a Block,
+    block: &'a ListBlock,
     list: usize,
     of: Range<usize>,
     own: &'a In<Inputs<T::Derived>, Buffer>,

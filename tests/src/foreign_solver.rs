@@ -5,7 +5,7 @@ use serde_json::Map;
 use touchstone_base::submission::Division;
 use touchstone_exchange::{
     library::Solver,
-    problem::Problem,
+    problem::ExportedProblem,
     submission::{Method, System},
 };
 use touchstone_harness::foreign::ForeignParticle;
@@ -28,7 +28,11 @@ impl Solver for FiniteDifferences {
         }
     }
 
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System {
+    fn solve(
+        &self,
+        problem: &ExportedProblem,
+        tell: &mut dyn FnMut(f64, Vec<ForeignParticle>),
+    ) -> System {
         let outline = &problem.outline;
         let [low, high] = [0, 1].map(|k| &outline.mirrors[k]);
         let dy = (high.point.y - low.point.y) / self.cells as f64;

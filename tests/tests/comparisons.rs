@@ -21,7 +21,7 @@ use serde_json::{Value, json};
 use touchstone_base::record::Record;
 use touchstone_base::spec::RunSpec;
 use touchstone_harness::case::Tier;
-use touchstone_harness::convergence::{Level, convergence};
+use touchstone_harness::convergence::{ErrorLevel, convergence};
 use touchstone_harness::studies::validation::{Comparison, Comparisons, Numerical, numerical};
 
 /// The setting that is refined, and its value in the finer run.
@@ -52,13 +52,13 @@ fn declared(tier: Tier) -> Vec<(&'static str, Comparison)> {
 /// A ladder of the file.
 struct Ladder {
     what: [String; 3],
-    levels: Vec<Level>,
-    finer: Level,
+    levels: Vec<ErrorLevel>,
+    finer: ErrorLevel,
 }
 
-fn level(of: &Value) -> Level {
+fn level(of: &Value) -> ErrorLevel {
     let number = |key: &str| of[key].as_f64().expect("a number");
-    Level { spacing: number("spacing"), value: number("value") }
+    ErrorLevel { spacing: number("spacing"), value: number("value") }
 }
 
 fn ladders() -> Vec<Ladder> {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use touchstone_base::gate::{Bound, Gate};
 use touchstone_harness::{
     case::{Case, Tier},
-    convergence::{Convergence, Level, convergence},
+    convergence::{Convergence, ErrorLevel, convergence},
     plan,
     studies::validation::numerical,
 };
@@ -207,9 +207,9 @@ fn ladder_says(kind: &str, comment: &str) -> Option<Vec<f64>> {
     let level = |run: &str| {
         let resolution: f64 = run.split(['=', ' ']).nth(1)?.parse().ok()?;
         let value = *kept.get(&(variant.into(), run.into()))?.get(metric)?;
-        Some(Level { spacing: 1.0 / resolution, value })
+        Some(ErrorLevel { spacing: 1.0 / resolution, value })
     };
-    let levels: Vec<Level> = runs.split(", ").map(level).collect::<Option<_>>()?;
+    let levels: Vec<ErrorLevel> = runs.split(", ").map(level).collect::<Option<_>>()?;
     match kind {
         "U_num" => Some(vec![numerical(&levels).expanded]),
         "limit" => Some(vec![numerical(&levels).limit]),

@@ -3,7 +3,7 @@
 use serde_json::json;
 use touchstone_exchange::{
     library::Solver,
-    problem::Problem,
+    problem::ExportedProblem,
     submission::{Method, System},
 };
 use touchstone_harness::{
@@ -53,10 +53,10 @@ struct Other {
 }
 
 impl Other {
-    fn problem(&self) -> Problem {
+    fn problem(&self) -> ExportedProblem {
         let case = touchstone_cases::find(self.case).unwrap();
         let of = spec(case, "plain", &["rows=20".into()]).unwrap();
-        Problem::of(case, of).unwrap_or_else(|error| panic!("{error}"))
+        ExportedProblem::of(case, of).unwrap_or_else(|error| panic!("{error}"))
     }
 
     /// The verdict of the gate on the error, none if it does not apply.
@@ -86,7 +86,11 @@ impl Solver for Other {
         method
     }
 
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System {
+    fn solve(
+        &self,
+        problem: &ExportedProblem,
+        tell: &mut dyn FnMut(f64, Vec<ForeignParticle>),
+    ) -> System {
         let mut other = self.problem();
         assert_eq!(other.outline.times, problem.outline.times);
         other.outline.medium.nu *= self.viscosity;
@@ -125,7 +129,11 @@ impl Solver for Twice {
         FiniteDifferences { cells: 8 }.method()
     }
 
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System {
+    fn solve(
+        &self,
+        problem: &ExportedProblem,
+        tell: &mut dyn FnMut(f64, Vec<ForeignParticle>),
+    ) -> System {
         FiniteDifferences { cells: 8 }.solve(problem, &mut |time, mut placed| {
             placed.extend(placed.last().copied());
             tell(time, placed);

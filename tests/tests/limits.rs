@@ -7,17 +7,17 @@ use touchstone_base::{
     mutation::{Constant, Mutation},
     spec::RunSpec,
 };
-use touchstone_cases::stiffness::Row;
+use touchstone_cases::stiffness::StiffnessRow;
 use touchstone_harness::{
     case::{self, Case, PLANNED_DT},
-    context::{Context, Progress},
+    context::{Context, RunProgress},
     limits::{ADVISED_SHARE, Mechanism},
 };
 
 /// The step that a stopped run was driven with, the step in its record, and the first step that it made.
 fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, Option<f64>, f64) {
     let (driven, stop) = (Mutex::new(f64::NAN), AtomicBool::new(true));
-    let show = |progress: Progress| {
+    let show = |progress: RunProgress| {
         if progress.particle_steps == 0 {
             *driven.lock().unwrap() = progress.dt;
         }
@@ -32,7 +32,7 @@ fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, 
     (driven.into_inner().unwrap(), planned, record.cost.largest_dt_s)
 }
 
-fn check(case: &dyn Case, row: &Row) {
+fn check(case: &dyn Case, row: &StiffnessRow) {
     let name = format!("{} {}", row.case, row.variant);
     let (dt, limits) = (row.rules.dt(), &row.rules.limits);
     let (driven, planned, taken) = first_step(case, row.variant, None);
@@ -55,8 +55,8 @@ fn check(case: &dyn Case, row: &Row) {
 /// Every variant of every case: the step of the table is the one with which its run is driven.
 #[test]
 fn the_step_of_the_table_is_that_of_the_run() {
-    let rows = |case: &&'static dyn Case| -> Vec<(&'static dyn Case, Row)> {
-        Row::of(*case).unwrap().into_iter().map(|row| (*case, row)).collect()
+    let rows = |case: &&'static dyn Case| -> Vec<(&'static dyn Case, StiffnessRow)> {
+        StiffnessRow::of(*case).unwrap().into_iter().map(|row| (*case, row)).collect()
     };
     let all: Vec<_> = touchstone_cases::CASES.iter().flat_map(rows).collect();
     all.par_iter().for_each(|(case, row)| check(*case, row));
@@ -72,7 +72,7 @@ fn the_step_of_the_table_is_that_of_the_run() {
 fn a_run_with_another_step_is_seen() {
     let case = touchstone_cases::find("taylor_green").unwrap();
     let longer = Mutation { of: Constant::TimeStep, factor: 1.01 };
-    for row in Row::of(case).unwrap() {
+    for row in StiffnessRow::of(case).unwrap() {
         let (driven, planned, _) = first_step(case, row.variant, Some(longer));
         assert_eq!(planned, Some(row.rules.dt()));
         assert_ne!(driven, row.rules.dt(), "{}", row.variant);

@@ -96,12 +96,12 @@ pub struct BetweenFaces {
     stiffness: f64,
     kernel: Smoothing<WendlandC2>,
     /// A row at the distance of one size.
-    row: Row,
+    row: StraightRow,
 }
 
 /// A straight row of particles, in units of their size.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct StraightRow {
     /// Ψ(d).
     density: f64,
     /// −Ψ'(d).
@@ -120,7 +120,7 @@ struct Contact {
     size: f64,
 }
 
-impl Row {
+impl StraightRow {
     /// The row at the distance d.
     fn at(d: f64, kernel: &Smoothing<WendlandC2>) -> Self {
         // The mean over positions along the row, by a sum that is exact to 1e-6: the kernel has two
@@ -139,13 +139,13 @@ impl BetweenFaces {
     /// Contact of this stiffness \[Pa\], see [`contact_stiffness`].
     pub fn new(stiffness: f64) -> Self {
         let kernel = Smoothing::<WendlandC2>::new(1.0);
-        Self { stiffness, kernel, row: Row::at(1.0, &kernel) }
+        Self { stiffness, kernel, row: StraightRow::at(1.0, &kernel) }
     }
 
     /// The pressure of two straight faces whose outermost particles are this many sizes apart \[Pa\]:
     /// −dU/dd over the size.
     pub fn pressure(&self, distance: f64) -> f64 {
-        let Row { density, slope } = Row::at(distance, &self.kernel);
+        let StraightRow { density, slope } = StraightRow::at(distance, &self.kernel);
         let e = (density / self.row.density - 1.0).max(0.0);
         2.0 * self.scale(1.0) * (e + 0.5 * e * e) * slope / self.row.density
     }
@@ -166,7 +166,7 @@ impl BetweenFaces {
         };
         let [near, far] = (0..40).fold([0.4, 1.0], halve);
         let d = 0.5 * (near + far);
-        let e = (Row::at(d, &self.kernel).density / self.row.density - 1.0).max(0.0);
+        let e = (StraightRow::at(d, &self.kernel).density / self.row.density - 1.0).max(0.0);
         let of = |aside: f64| {
             let seen = (-3..=3).map(|k| Vector2::new(f64::from(k) + aside, d));
             let [mut sum, mut sizes, mut curved] = [0.0; 3];

@@ -12,7 +12,7 @@ use touchstone_solver::{
 
 /// An image of a particle or of an earlier image: mirrored at a wall, or a period away.
 #[derive(Clone, Copy, Debug)]
-pub struct Image {
+pub struct ReferenceImage {
     /// The particle or earlier image that it copies.
     pub source: usize,
     /// Q, so that its displacement is Q u.
@@ -21,7 +21,7 @@ pub struct Image {
     pub mirrored: Matrix2<f64>,
 }
 
-impl Image {
+impl ReferenceImage {
     /// At a wall that holds the body the displacement is odd, u' = −u, and so 0 on the wall. Along a wall
     /// with slip the displacement is mirrored like the place.
     fn new(source: usize, map: &Map, slips: bool) -> Self {
@@ -72,7 +72,7 @@ pub struct ReferenceConfiguration {
     /// M⁻¹ of the particles \[1/m²\].
     pub inverse: Vec<Matrix2<f64>>,
     /// The images.
-    pub images: Vec<Image>,
+    pub images: Vec<ReferenceImage>,
     /// The neighbours of particle k are `fours[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
     fours: Vec<Four>,
@@ -100,7 +100,7 @@ impl ReferenceConfiguration {
         }
         for (source, map) in data.images() {
             this.places.push(map.place(this.places[source]));
-            this.images.push(Image::new(source, map, slips));
+            this.images.push(ReferenceImage::new(source, map, slips));
             particle.push(particle[source]);
         }
         for (i, list) in data.lists().enumerate() {

@@ -139,7 +139,7 @@ pub struct Resource {
 #[serde(deny_unknown_fields, rename_all = "camelCase")]
 pub struct Schema {
     /// in the order of the header
-    pub fields: Vec<Field>,
+    pub fields: Vec<TableField>,
     /// form of a gap: only the empty cell
     #[serde(default)]
     pub missing_values: Vec<String>,
@@ -148,7 +148,7 @@ pub struct Schema {
 /// One column.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Field {
+pub struct TableField {
     /// as in the header
     pub name: String,
     /// number, integer or string
@@ -189,7 +189,7 @@ pub struct Table {
     /// as in the package
     pub name: String,
     /// the columns in order
-    pub fields: Vec<Field>,
+    pub fields: Vec<TableField>,
     /// the cells
     pub rows: Vec<Vec<String>>,
 }
@@ -469,7 +469,7 @@ fn check_cells(file: &str, table: &Table) -> Result<(), ReferenceError> {
                 FieldKind::Integer => text.is_empty() || text.parse::<i64>().is_ok(),
             };
             if !is_valid {
-                let Field { name: column, kind, .. } = field;
+                let TableField { name: column, kind, .. } = field;
                 let place = format!("row {row}, column {column} of reference {file}");
                 return refused(format!("{place} is {text:?}, not of type {kind:?}"));
             }

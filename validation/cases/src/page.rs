@@ -220,7 +220,7 @@ fn provenance(made_by: &Manifest) -> String {
 }
 
 /// A gate, its verdict, and the numbers of the reasons.
-struct Row<'a> {
+struct GateRow<'a> {
     of: JudgedOf<'a>,
     reasons: String,
 }
@@ -230,12 +230,12 @@ fn verdicts(suite: &Suite) -> Section {
     let mut notes = Notes::default();
     let mut rows = Vec::new();
     for of in suite.judged() {
-        rows.push(Row { of, reasons: reasons(of.judged, &mut notes).join(" ") });
+        rows.push(GateRow { of, reasons: reasons(of.judged, &mut notes).join(" ") });
     }
     rows.sort_by_key(|row| std::cmp::Reverse(row.of.judged.judgement.verdict));
     let value = |value: Option<f64>| value.map_or(Cell::text("not measured"), measured);
     let margin = |margin: Option<f64>| margin.map_or(Cell::text("–"), |m| Cell::percent(m, 2));
-    let gates = TableColumns::<Row>::default()
+    let gates = TableColumns::<GateRow>::default()
         .with(TableColumn::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
         .text("gate", |row| row.of.judged.gate.id.clone())
         .marked("run or study", judged_on)
@@ -281,7 +281,7 @@ fn reasons<'a>(judged: &'a Judged, notes: &mut Notes<'a>) -> Vec<String> {
 }
 
 /// The run or the study that is judged.
-fn judged_on(row: &Row) -> String {
+fn judged_on(row: &GateRow) -> String {
     match row.of.of {
         Of::Run(run) => {
             let spec = &run.planned.spec;

@@ -9,7 +9,7 @@ use touchstone_harness::{
 use touchstone_report::{Block, Cell, Section, Table};
 
 /// A variant at its default settings.
-pub struct Row {
+pub struct StiffnessRow {
     /// Name of the case.
     pub case: &'static str,
     /// Name of the variant.
@@ -18,7 +18,7 @@ pub struct Row {
     pub rules: Rules,
 }
 
-impl Row {
+impl StiffnessRow {
     /// The variants of a case whose rules state a step before the run.
     ///
     /// # Errors
@@ -63,8 +63,8 @@ pub const READING: &str = "Limits of the time step at default settings, each ove
     stages of super-time-stepping.";
 
 /// The table of these rows.
-pub fn table(rows: &[Row]) -> Table {
-    let columns = TableColumns::<Row>::default()
+pub fn table(rows: &[StiffnessRow]) -> Table {
+    let columns = TableColumns::<StiffnessRow>::default()
         .code("variant", |row| format!("{} {}", row.case, row.variant))
         .num(["step", "s"], |row| Cell::sci(row.rules.dt(), 3))
         .text("set by", |row| {
@@ -79,7 +79,9 @@ pub fn table(rows: &[Row]) -> Table {
     let limit = |value: f64| Cell::num(value, 3);
     let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, mechanism| {
         // Infinite if the scene lacks it.
-        let headroom = move |Row { rules, .. }: &Row| rules.limits.alone(mechanism) / rules.dt();
+        let headroom = move |StiffnessRow { rules, .. }: &StiffnessRow| {
+            rules.limits.alone(mechanism) / rules.dt()
+        };
         columns.of([mechanism.name(), ""], headroom, limit)
     });
     mechanisms
@@ -94,8 +96,8 @@ pub fn table(rows: &[Row]) -> Table {
 
 /// The table of all cases.
 pub fn section(suite: &Suite) -> Section {
-    let of_case = |results: &CaseResults| Row::of(results.case).unwrap_or_default();
-    let rows: Vec<Row> = suite.cases.iter().flat_map(of_case).collect();
+    let of_case = |results: &CaseResults| StiffnessRow::of(results.case).unwrap_or_default();
+    let rows: Vec<StiffnessRow> = suite.cases.iter().flat_map(of_case).collect();
     let summary = format!("The limits of {} variants", rows.len());
     let note = "`touchstone stability --theory` prints the table without any run. Each case compares the \
                 longest stable step by bisection with *together*; on lattices at rest the two agree within \

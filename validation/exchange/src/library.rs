@@ -8,7 +8,7 @@ use touchstone_harness::{
 
 use crate::{
     flaw,
-    problem::Problem,
+    problem::ExportedProblem,
     read::Results,
     submission::{Entry, Method, System},
 };
@@ -19,7 +19,11 @@ pub trait Solver {
     fn method(&self) -> Method;
     /// Solves the problem, and passes the moving particles at each of its times, ascending, to `tell`;
     /// returns the machine and the cost.
-    fn solve(&self, problem: &Problem, tell: &mut dyn FnMut(f64, Vec<ForeignParticle>)) -> System;
+    fn solve(
+        &self,
+        problem: &ExportedProblem,
+        tell: &mut dyn FnMut(f64, Vec<ForeignParticle>),
+    ) -> System;
 }
 
 /// The record of a solver for a run of a case. Put into
@@ -28,7 +32,7 @@ pub trait Solver {
 /// # Errors
 /// If the case refuses the run, or the results of the solver do not fit: each flaw in a line.
 pub fn record(case: &dyn Case, spec: &RunSpec, solver: &dyn Solver) -> Result<Record, RunError> {
-    let problem = Problem::of(case, spec.clone())?;
+    let problem = ExportedProblem::of(case, spec.clone())?;
     let mut results = Results::default();
     let system = solver.solve(&problem, &mut |time, particles| {
         results.places.push((format!("frame at t = {time} s"), 0));

@@ -35,7 +35,7 @@ const JUDGED_BY: &str = "judged_by";
 pub const PARTICLES: &str = "particles.csv";
 
 /// A problem and the run of ours that it is taken from.
-pub struct Problem {
+pub struct ExportedProblem {
     /// The run.
     pub spec: RunSpec,
     /// The problem in words.
@@ -109,7 +109,7 @@ impl ProblemDocument {
     ///
     /// # Errors
     /// The first field that differs.
-    pub fn agrees(&self, problem: &Problem) -> Result<(), Flaw> {
+    pub fn agrees(&self, problem: &ExportedProblem) -> Result<(), Flaw> {
         let ours = problem.to_json();
         let both = self.rest.iter().filter_map(|(key, stated)| Some((key, stated, ours.get(key)?)));
         let (gates, facts): (Vec<_>, Vec<_>) = both.partition(|(key, ..)| *key == JUDGED_BY);
@@ -189,7 +189,7 @@ fn with_unit(value: impl Serialize, unit: &str) -> Value {
     json!({ "value": value, "unit": unit })
 }
 
-impl Problem {
+impl ExportedProblem {
     /// The problem of a run.
     ///
     /// # Errors
@@ -201,7 +201,7 @@ impl Problem {
     /// The problem at a few early times in the frame of another observer, if there is a relation.
     ///
     /// # Errors
-    /// As [`Problem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the
+    /// As [`ExportedProblem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the
     /// problem.
     pub fn seen(
         case: &dyn Case,

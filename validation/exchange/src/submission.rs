@@ -30,7 +30,7 @@ use touchstone_solver::{Domain, Role};
 use crate::{
     digits::{self, ROUND_OFF},
     flaw::Flaw,
-    problem::{CURVE, PROBLEM, Problem, ProblemDocument, SCHEMA},
+    problem::{CURVE, ExportedProblem, PROBLEM, ProblemDocument, SCHEMA},
     read::{self, RESULTS, Renamed, Results, SAME_MASS, curve},
 };
 
@@ -252,7 +252,7 @@ fn hole(record: &Record) -> Option<String> {
 }
 
 /// A particle with a coordinate beyond this is lost \[m\].
-fn reach(problem: &Problem) -> f64 {
+fn reach(problem: &ExportedProblem) -> f64 {
     let Outline { particles, medium, .. } = &problem.outline;
     let places = ["x", "y"].into_iter().flat_map(|axis| particles.column(axis));
     FAR * places.fold(problem.outline.method.support * medium.h, |most, x| most.max(x.abs()))
@@ -261,7 +261,7 @@ fn reach(problem: &Problem) -> f64 {
 /// Bounds beyond which a run of the problem has diverged: 30 % of the density for a fluid, a half for a
 /// solid, and twice the sum of the sound speed, the largest initial speed and the speed of a fall until the
 /// end.
-fn limits(problem: &Problem) -> touchstone_solver::DivergenceBounds {
+fn limits(problem: &ExportedProblem) -> touchstone_solver::DivergenceBounds {
     let Outline { particles, medium, times, .. } = &problem.outline;
     let share = if problem.is_solid() { 0.5 } else { 0.7 };
     let start = particles.column("density").iter().copied();
@@ -323,7 +323,11 @@ impl Entry {
     ///
     /// # Errors
     /// If the case measures none, or everything that is wrong with the table.
-    pub fn stand_for(&mut self, case: &dyn Case, problem: &Problem) -> Result<(), Vec<Flaw>> {
+    pub fn stand_for(
+        &mut self,
+        case: &dyn Case,
+        problem: &ExportedProblem,
+    ) -> Result<(), Vec<Flaw>> {
         let Some((text, renamed)) = &self.curve else { return Ok(()) };
         let Some(curve) = case.facts().curve else {
             let what = format!("{} is measured of particles alone; expected these", case.name());
@@ -338,13 +342,17 @@ impl Entry {
     /// its times.
     ///
     /// # Errors
-    /// As [`Problem::of`].
-    pub fn scene(&self, case: &dyn Case, problem: &Problem) -> Result<Option<Problem>, RunError> {
+    /// As [`ExportedProblem::of`].
+    pub fn scene(
+        &self,
+        case: &dyn Case,
+        problem: &ExportedProblem,
+    ) -> Result<Option<ExportedProblem>, RunError> {
         let curve = self.curve.as_ref().and_then(|_| case.facts().curve);
         let Some(coarsen) = curve.and_then(|curve| curve.coarsen) else { return Ok(None) };
         let mut spec = problem.spec.clone();
         coarsen(&mut spec.settings);
-        Problem::of(case, spec).map(Some)
+        ExportedProblem::of(case, spec).map(Some)
     }
 
     /// The measured particles: for a curve the problem's.
@@ -354,7 +362,7 @@ impl Entry {
 
     /// For a profile or series, removes metrics that need particles. Their number is known in the closed
     /// division, where it is the problem's.
-    fn only_of_curve(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
+    fn only_of_curve(&self, case: &dyn Case, problem: &ExportedProblem, record: &mut Record) {
         let Some(curve) = case.facts().curve.filter(|_| self.curve.is_some()) else {
             return;
         };
@@ -387,7 +395,7 @@ impl Entry {
     ///
     /// # Errors
     /// Everything that does not.
-    pub fn check(&self, problem: &Problem) -> Result<(), Vec<Flaw>> {
+    pub fn check(&self, problem: &ExportedProblem) -> Result<(), Vec<Flaw>> {
         let mut flaws = Vec::new();
         let Results { frames, places, .. } = &self.results;
         let file = places.first().map_or("results", |(file, _)| file.as_str());
@@ -426,7 +434,10 @@ impl Entry {
     }
 
     /// Mass and role that the files state, where the problem has others.
-    fn contradictions<'a>(&'a self, problem: &'a Problem) -> impl Iterator<Item = Flaw> + 'a {
+    fn contradictions<'a>(
+        &'a self,
+        problem: &'a ExportedProblem,
+    ) -> impl Iterator<Item = Flaw> + 'a {
         let Results { stated, places, .. } = &self.results;
         let file = places.first().map_or("results", |(file, _)| file.as_str());
         let is_closed = self.particles() == Division::Closed;
@@ -451,7 +462,7 @@ impl Entry {
     }
 
     /// The ids of the particles of a code with its own particles, and the flaws of its start.
-    fn own_ids(&self, problem: &Problem, flaws: &mut Vec<Flaw>) -> Vec<u32> {
+    fn own_ids(&self, problem: &ExportedProblem, flaws: &mut Vec<Flaw>) -> Vec<u32> {
         let Results { frames, own, places, .. } = &self.results;
         let (file, line) = &places[0];
         let mut flaw = |column, what| flaws.push(Flaw::of(file, what).at(*line).in_column(column));
@@ -490,7 +501,7 @@ impl Entry {
     }
 
     /// Code of the run.
-    fn submission(&self, problem: &Problem) -> Submission {
+    fn submission(&self, problem: &ExportedProblem) -> Submission {
         let Method { code, version, scheme, division, .. } = self.method.clone();
         let sealed = self.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
         let (method, seed) = (self.digest.clone(), sealed.map(|sealed| sealed.seed));
@@ -521,7 +532,7 @@ impl Entry {
     }
 
     /// The frames, with the particles of the code itself in the open division.
-    fn foreign(&self, problem: &Problem) -> Foreign<'_> {
+    fn foreign(&self, problem: &ExportedProblem) -> Foreign<'_> {
         let mut own = match self.particles() {
             Division::Open => self.results.own.clone(),
             Division::Closed => Vec::new(),
@@ -540,7 +551,7 @@ impl Entry {
         &self,
         case: &dyn Case,
         scene: &RunSpec,
-        problem: &Problem,
+        problem: &ExportedProblem,
     ) -> Result<Record, RunError> {
         let ours = RunSpec { measure: Measure::Headline, submission: None, ..scene.clone() };
         let mut record = case.pose(&ours)?.measure_frames(&ours, &self.foreign(problem))?;
@@ -563,7 +574,7 @@ impl Entry {
 
     /// The digits that were not submitted, in words, if there are few: rounding of a file is no flaw of a
     /// method.
-    pub fn few_digits(&self, problem: &Problem) -> Option<String> {
+    pub fn few_digits(&self, problem: &ExportedProblem) -> Option<String> {
         let Results { frames, own, .. } = &self.results;
         let (last, particles) = (frames.last()?, &problem.outline.particles);
         let own: BTreeMap<u32, [f64; 5]> = match self.particles() {
@@ -583,7 +594,7 @@ impl Entry {
 
     /// Removes metrics that rounded numbers do not determine: measurements over a very short time, and
     /// comparisons with round-off.
-    fn leave_out_rounded(&self, case: &dyn Case, problem: &Problem, record: &mut Record) {
+    fn leave_out_rounded(&self, case: &dyn Case, problem: &ExportedProblem, record: &mut Record) {
         let Some(few) = self.few_digits(problem) else { return };
         let rates = case.facts().of_all_digits;
         let is_of_round_off =
@@ -597,7 +608,7 @@ impl Entry {
     }
 
     /// Whether the method states our kernel, support and step, and made the corresponding number of steps.
-    fn states_our_method(&self, problem: &Problem) -> bool {
+    fn states_our_method(&self, problem: &ExportedProblem) -> bool {
         let Outline { medium, times, dt, .. } = &problem.outline;
         let is = |name: &str, expected: f64| {
             let stated = self.method.settings.get(name).and_then(Value::as_f64);

@@ -145,7 +145,7 @@ impl<'a> Batch<'a> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
         let begun = self.making.store.map(|store| store.begin(spec));
         let is_one = spec.is_simulation();
-        let show = |progress: context::Progress| {
+        let show = |progress: context::RunProgress| {
             begun.iter().for_each(RunLease::beat);
             if !is_one {
                 return; // of a bisection nobody knows how many simulations are left

@@ -18,7 +18,7 @@ touchstone_base::metrics! {
 
 /// Why a search by many simulations ended early: one of them was interrupted, or cannot be made for another
 /// reason than its settings.
-pub type Ended = Result<Status, RunError>;
+pub type SearchEnd = Result<Status, RunError>;
 
 /// Bisects a setting of a run. The record has the settings of the run, the cost of all runs together, and
 /// the bracket as its metrics, which are missing if there is no limit within a factor of 16 of the guess.
@@ -57,7 +57,7 @@ pub fn simulate(
     spec: &RunSpec,
     context: &Context,
     cost: &mut Cost,
-) -> Result<Record, Ended> {
+) -> Result<Record, SearchEnd> {
     let one = case::record_of(case, spec, context).map_err(Err)?;
     add(cost, &one.cost);
     match one.status {
@@ -104,8 +104,8 @@ const FARTHEST: f64 = 16.0;
 fn largest_stable(
     guess: f64,
     resolution: f64,
-    mut is_stable: impl FnMut(f64) -> Result<bool, Ended>,
-) -> Result<Option<[f64; 2]>, Ended> {
+    mut is_stable: impl FnMut(f64) -> Result<bool, SearchEnd>,
+) -> Result<Option<[f64; 2]>, SearchEnd> {
     let (mut width, mut longest, mut shortest) = (FIRST_WIDTH, None, None);
     let mut step = guess * (1.0 - width);
     let [mut stable, mut unstable] = loop {

@@ -26,7 +26,7 @@ use crate::error::RunError;
 /// name no fields.
 #[derive(Serialize, Deserialize)]
 struct Stored {
-    state: State,
+    state: StoredState,
     stage: Stage,
     /// The watch of the case with its record, as bytes.
     seen: Vec<u8>,
@@ -50,7 +50,7 @@ pub(crate) struct Stage {
 /// The state of a simulation: a [`Checkpoint`], of which particles keep deviatoric stresses alone of their
 /// extra fields.
 #[derive(Serialize, Deserialize)]
-struct State {
+struct StoredState {
     #[serde(with = "ProgressFields")]
     progress: Progress,
     lag: f64,
@@ -138,7 +138,7 @@ impl StoredParticle {
     }
 }
 
-impl State {
+impl StoredState {
     fn of<X: Numbers>(checkpoint: &Checkpoint<X>) -> Self {
         let Checkpoint { progress, lag, particles, built_at, past } = checkpoint;
         let particles = particles.iter().zip(built_at);
@@ -207,7 +207,7 @@ pub(crate) fn save<X: Numbers>(
             "particles with other extra fields than a deviatoric stress",
         ));
     }
-    let state = State::of(&simulation.checkpoint());
+    let state = StoredState::of(&simulation.checkpoint());
     Ok(postcard::to_allocvec(&Stored { state, stage, seen })?)
 }
 

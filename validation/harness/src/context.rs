@@ -17,7 +17,7 @@ use crate::{
 
 /// Content of a progress bar.
 #[derive(Clone, Copy, Debug)]
-pub struct Progress {
+pub struct RunProgress {
     /// Simulated time \[s\].
     pub time: f64,
     /// Time of the end \[s\].
@@ -44,7 +44,7 @@ pub struct Context<'a> {
     /// Receives the estimated cost of the run before its first step.
     pub estimate: Option<&'a (dyn Fn(&Size) + Sync)>,
     /// Called with the progress of the run.
-    pub progress: Option<&'a (dyn Fn(Progress) + Sync)>,
+    pub progress: Option<&'a (dyn Fn(RunProgress) + Sync)>,
     /// Find out where the time goes.
     pub profile: bool,
     /// Called for a frame or a checkpoint that could not be written; the run continues.

@@ -26,7 +26,7 @@ pub const SLOWEST: f64 = 0.5;
 
 /// One resolution: spacing h \[any unit\] and its error or value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
+pub struct ErrorLevel {
     /// Spacing or time step.
     pub spacing: f64,
     /// Error (≥ 0).
@@ -83,7 +83,7 @@ pub struct Convergence {
 ///
 /// # Errors
 /// Why there is none, in words; an error of exactly 0 has no order and is refused.
-pub fn convergence(levels: &[Level], formal: Option<f64>) -> Result<Convergence, String> {
+pub fn convergence(levels: &[ErrorLevel], formal: Option<f64>) -> Result<Convergence, String> {
     let levels = sorted(levels)?;
     let x: Vec<f64> = levels.iter().map(|level| ln(level.spacing)).collect();
     let y: Vec<f64> = levels.iter().map(|level| ln(level.value)).collect();
@@ -97,13 +97,13 @@ pub fn convergence(levels: &[Level], formal: Option<f64>) -> Result<Convergence,
 }
 
 /// The levels, coarse to fine.
-fn sorted(levels: &[Level]) -> Result<Vec<Level>, String> {
+fn sorted(levels: &[ErrorLevel]) -> Result<Vec<ErrorLevel>, String> {
     if levels.len() < 3 {
         return Err(format!("there are {} levels, but at least 3 are needed", levels.len()));
     }
     let is_usable = |number: f64| number > 0.0 && number.is_finite();
-    let usable = |level: &&Level| is_usable(level.spacing) && is_usable(level.value);
-    if let Some(Level { spacing, value }) = levels.iter().find(|level| !usable(level)) {
+    let usable = |level: &&ErrorLevel| is_usable(level.spacing) && is_usable(level.value);
+    if let Some(ErrorLevel { spacing, value }) = levels.iter().find(|level| !usable(level)) {
         if value.is_nan() {
             return Err(format!("the level with spacing {spacing} has no value"));
         }
@@ -166,8 +166,8 @@ mod tests {
     /// Spacings whose ratios are 1.5, 1.6 and 2.
     const SPACINGS: [f64; 4] = [0.12, 0.08, 0.05, 0.025];
 
-    fn levels<const N: usize>(spacings: [f64; N], value: impl Fn(f64) -> f64) -> [Level; N] {
-        spacings.map(|spacing| Level { spacing, value: value(spacing) })
+    fn levels<const N: usize>(spacings: [f64; N], value: impl Fn(f64) -> f64) -> [ErrorLevel; N] {
+        spacings.map(|spacing| ErrorLevel { spacing, value: value(spacing) })
     }
 
     #[test]
@@ -185,9 +185,11 @@ mod tests {
     #[test]
     fn the_prototype_is_of_second_order() {
         let errors = [(10.0, 1.78e-2), (20.0, 4.4e-3), (40.0, 1.09e-3)];
-        let found =
-            convergence(&errors.map(|(n, value)| Level { spacing: 1.0 / n, value }), Some(2.0))
-                .unwrap();
+        let found = convergence(
+            &errors.map(|(n, value)| ErrorLevel { spacing: 1.0 / n, value }),
+            Some(2.0),
+        )
+        .unwrap();
         assert!((found.order - 2.015).abs() < 1e-3);
         // 2 is outside the narrow interval 2.005 … 2.025.
         assert_eq!(found.label, Label::OrdersAgree);
@@ -214,7 +216,7 @@ mod tests {
     #[test]
     fn an_order_has_the_interval_of_its_standard_error() {
         let errors = [(1.0, 1.0), (0.5, 0.5), (0.25, 0.5), (0.125, 0.125)];
-        let levels = errors.map(|(spacing, value)| Level { spacing, value });
+        let levels = errors.map(|(spacing, value)| ErrorLevel { spacing, value });
         let found = convergence(&levels, Some(2.0)).expect("usable");
         assert_relative_eq!(found.order, 0.9, max_relative = 1e-12);
         for (local, expected) in found.local_orders.iter().zip([1.0, 0.0, 2.0]) {
@@ -247,8 +249,11 @@ mod tests {
     fn lattice_floors_of_the_channel_are_seen() {
         let rows = [0.1, 0.05, 0.025, 0.0125];
         let label = |errors: [f64; 4]| {
-            let levels: Vec<_> =
-                rows.iter().zip(errors).map(|(h, value)| Level { spacing: *h, value }).collect();
+            let levels: Vec<_> = rows
+                .iter()
+                .zip(errors)
+                .map(|(h, value)| ErrorLevel { spacing: *h, value })
+                .collect();
             convergence(&levels, Some(2.0)).expect("usable").label
         };
         for errors in

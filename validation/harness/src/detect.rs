@@ -8,7 +8,7 @@ use touchstone_base::{
 };
 
 use crate::{
-    bisect::{self, Ended},
+    bisect::{self, SearchEnd},
     case::RunError,
     context::Context,
     gates::GateIndex,
@@ -84,8 +84,8 @@ type Detection = (f64, Vec<String>);
 /// The smallest detected error, and the largest smaller one that is not detected.
 fn smallest(
     detect: &Detect,
-    mut failed_at: impl FnMut(f64) -> Result<Vec<String>, Ended>,
-) -> Result<(Option<Detection>, Option<f64>), Ended> {
+    mut failed_at: impl FnMut(f64) -> Result<Vec<String>, SearchEnd>,
+) -> Result<(Option<Detection>, Option<f64>), SearchEnd> {
     let allowed = detect.of.allowed();
     let mut middle = ERRORS.iter().position(|error| *error >= allowed).unwrap_or_default();
     let (mut low, mut high) = match detect.only_allowed {
@@ -110,8 +110,8 @@ fn smallest(
 /// passes all of them with one sign.
 fn failed(
     error: f64,
-    mut failed_at: impl FnMut(f64) -> Result<Vec<String>, Ended>,
-) -> Result<Vec<String>, Ended> {
+    mut failed_at: impl FnMut(f64) -> Result<Vec<String>, SearchEnd>,
+) -> Result<Vec<String>, SearchEnd> {
     let more = failed_at(1.0 + error)?;
     if more.is_empty() {
         return Ok(more);

@@ -22,7 +22,7 @@ pub struct Job {
 }
 
 /// Called before the first run, a few times a second during the runs, and after each run.
-pub type Progress<'a> = dyn Fn(Done) + Sync + 'a;
+pub type OnProgress<'a> = dyn Fn(Done) + Sync + 'a;
 
 /// Called each time that all runs of a case have ended, with the results so far.
 pub type Finished<'a> = dyn Fn(BatchResult) + Sync + 'a;
@@ -43,7 +43,7 @@ pub struct BatchOptions<'a> {
     /// Whether runs may be long; refused runs are then tried again.
     pub allow_long: bool,
     /// Progress callback.
-    pub progress: Option<&'a Progress<'a>>,
+    pub progress: Option<&'a OnProgress<'a>>,
     /// Called when a case is complete, the first one early.
     pub finished: Option<&'a Finished<'a>>,
     /// Set by another thread to stop.

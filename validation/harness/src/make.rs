@@ -8,7 +8,7 @@ use touchstone_base::{
     record::{Record, Status},
 };
 
-pub use crate::jobs::{BatchOptions, BatchResult, Finished, Job, Progress, jobs};
+pub use crate::jobs::{BatchOptions, BatchResult, Finished, Job, OnProgress, jobs};
 use crate::{
     batch::Batch,
     runs::{Tier, entry},
@@ -258,7 +258,7 @@ mod tests {
         made(&jobs, &making);
         let (stop, fresh) = (AtomicBool::new(false), true);
         let progress = |done: Done| stop.store(done.runs > 0, Ordering::Relaxed);
-        let (interrupt, progress): (_, Option<&Progress>) = (Some(&stop), Some(&progress));
+        let (interrupt, progress): (_, Option<&OnProgress>) = (Some(&stop), Some(&progress));
         let cut = made(&jobs, &BatchOptions { interrupt, progress, fresh, ..making });
         assert!(cut.interrupted && (1..50).contains(&cut.records.len()), "{}", cut.records.len());
         assert_eq!(Store::all(store.path()).unwrap().len(), 50);
@@ -319,7 +319,7 @@ mod tests {
         let jobs = [planned("1", 1.0), planned("2", 7.0), planned("3", 2.0)];
         let shares = Mutex::new(Vec::new());
         let progress = |done: Done| shares.lock().unwrap().push(done.share);
-        let progress: Option<&Progress> = Some(&progress);
+        let progress: Option<&OnProgress> = Some(&progress);
         let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         one.install(|| {
             made(&jobs, &BatchOptions { progress, ..BatchOptions::new(Tier::Quick, &sources) })

@@ -8,7 +8,7 @@ use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 
 use crate::{
     columns::TableColumns,
-    convergence::{Convergence, Level, convergence},
+    convergence::{Convergence, ErrorLevel, convergence},
     section::Section,
 };
 
@@ -32,7 +32,7 @@ pub struct Line {
     /// Name of the variant.
     pub name: &'static str,
     /// Errors, coarse to fine.
-    pub levels: Vec<Level>,
+    pub levels: Vec<ErrorLevel>,
     /// The order that theory gives.
     pub formal: f64,
     /// Judges the order.
@@ -78,10 +78,10 @@ pub fn add(
 pub fn plot<'a>(
     title: &str,
     [x, y]: [&str; 2],
-    lines: impl Iterator<Item = (&'a str, &'a [Level])> + Clone,
+    lines: impl Iterator<Item = (&'a str, &'a [ErrorLevel])> + Clone,
     slopes: &[f64],
 ) -> Plot {
-    let series = |(k, (name, levels)): (usize, (&str, &[Level]))| {
+    let series = |(k, (name, levels)): (usize, (&str, &[ErrorLevel]))| {
         let usable = levels.iter().filter(|level| level.value.is_finite());
         let points = usable.map(|level| (level.spacing, level.value)).collect();
         Series::line(name, points).cycle(k)
@@ -89,9 +89,9 @@ pub fn plot<'a>(
     let plot = Plot::new(title, Axis::log(x), Axis::log(y));
     let plot = lines.clone().enumerate().map(series).fold(plot, Plot::layer);
     let levels = || lines.clone().flat_map(|(_, levels)| levels).filter(|l| l.value.is_finite());
-    let size = |level: &&Level| (level.spacing, level.value);
+    let size = |level: &&ErrorLevel| (level.spacing, level.value);
     let by_spacing =
-        |a: &&Level, b: &&Level| size(a).partial_cmp(&size(b)).unwrap_or(Ordering::Equal);
+        |a: &&ErrorLevel, b: &&ErrorLevel| size(a).partial_cmp(&size(b)).unwrap_or(Ordering::Equal);
     let (Some(coarsest), Some(finest)) = (levels().max_by(by_spacing), levels().min_by(by_spacing))
     else {
         return plot;
@@ -140,8 +140,8 @@ mod tests {
 
     use super::*;
 
-    fn levels(value: fn(f64) -> f64) -> Vec<Level> {
-        [0.4, 0.2, 0.1].map(|spacing| Level { spacing, value: value(spacing) }).into()
+    fn levels(value: fn(f64) -> f64) -> Vec<ErrorLevel> {
+        [0.4, 0.2, 0.1].map(|spacing| ErrorLevel { spacing, value: value(spacing) }).into()
     }
 
     /// A grey line begins at the error of the coarsest level, and falls with its order to the finest spacing.

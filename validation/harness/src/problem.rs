@@ -156,7 +156,7 @@ pub trait Problem: Sized {
 
 /// State of an observed run: everything that changes during it.
 #[derive(Serialize, Deserialize)]
-struct Watched<W> {
+struct ObservedState<W> {
     watch: W,
     #[serde(with = "as_json")]
     record: Record,
@@ -503,12 +503,13 @@ trait Parted: Problem {
         drop(scene);
         let Calls { after_step, every_step, at, of_ours, resumed } =
             self.calls(Calls::default(), output);
-        let mut seen = Watched { watch, record };
+        let mut seen = ObservedState { watch, record };
         let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
         let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
             .steps(brief.least_steps, size.sweeps);
         for (name, call) in after_step {
-            let call = move |seen: &mut Watched<Self::Watch>, s: &dyn Stepper<Self::Extra>| {
+            let call = move |seen: &mut ObservedState<Self::Watch>,
+                             s: &dyn Stepper<Self::Extra>| {
                 call(self, &mut seen.watch, &Snapshot::ours(s))
             };
             drive = drive.after_step(name, call);
@@ -520,7 +521,7 @@ trait Parted: Problem {
             });
         }
         for (name, reads, call) in at {
-            let call = move |seen: &mut Watched<Self::Watch>, s: &mut Self::Simulation, k| {
+            let call = move |seen: &mut ObservedState<Self::Watch>, s: &mut Self::Simulation, k| {
                 let now = Snapshot::ours(s.stepper());
                 call(self, &mut seen.watch, &now, k, &mut seen.record);
             };
@@ -536,7 +537,7 @@ trait Parted: Problem {
             drive = drive.resumed(move |seen, s| resumed(self, &seen.watch, s));
         }
         let ended = drive.run(context)?;
-        let Watched { watch, mut record } = seen;
+        let ObservedState { watch, mut record } = seen;
         ended.put(&mut record);
         self.measure(watch, &Snapshot::ours(simulation.stepper()), &mut record);
         Ok(record)

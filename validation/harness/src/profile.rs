@@ -60,7 +60,7 @@ impl Clock {
 
 /// Sums over samples of neighbour lists.
 #[derive(Default)]
-struct Lists {
+struct ListSums {
     count: f64,
     particles: f64,
     neighbours: f64,
@@ -76,7 +76,7 @@ pub(crate) struct Profiler {
     names: Vec<&'static str>,
     /// Profile of the part of the run before a checkpoint.
     earlier: Breakdown,
-    lists: Lists,
+    lists: ListSums,
     sampled: u64,
     /// Steps and builds of lists before it.
     before: [u64; 2],
@@ -98,7 +98,7 @@ impl Profiler {
         simulation.data_mut().watch = Some(Box::new(enter));
         let work = simulation.work();
         let before = [work.steps, work.list_builds];
-        Self { clock, names, earlier, lists: Lists::default(), sampled: 0, before }
+        Self { clock, names, earlier, lists: ListSums::default(), sampled: 0, before }
     }
 
     /// Stepping begins. The time between an observer and the next phase of a step counts as observing.
@@ -157,7 +157,8 @@ impl Profiler {
         let sweeps =
             all.stepping.iter().filter(|part| [FORCES, DRIFT, BOTH].contains(&&*part.name));
         let sweeps = sweeps.map(|part| part.times).sum::<u64>() as f64;
-        let Lists { count, particles, neighbours, inside, column_bytes, state_bytes } = self.lists;
+        let ListSums { count, particles, neighbours, inside, column_bytes, state_bytes } =
+            self.lists;
         all.neighbours = neighbours / particles;
         all.inside = inside / neighbours;
         // Each of a group is in the list that the group shares.

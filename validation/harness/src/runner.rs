@@ -16,7 +16,7 @@ use touchstone_solver::{
     Divergence, EquationOfState, Numbers, Observer, Outcome, Stepper, Symmetric,
 };
 
-pub use crate::context::{Context, Progress};
+pub use crate::context::{Context, RunProgress};
 use crate::{
     checkpoint::{self, Checkpoints, Stage},
     clock::Reading,
@@ -198,7 +198,7 @@ impl Monitor<'_> {
     fn show<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, dt: f64) {
         if let Some(show) = self.context.progress {
             let particle_steps = simulation.work().steps * simulation.data().fluid_count() as u64;
-            show(Progress { time: simulation.time(), end: self.end, dt, particle_steps });
+            show(RunProgress { time: simulation.time(), end: self.end, dt, particle_steps });
             self.shown = Instant::now();
         }
     }
@@ -440,14 +440,14 @@ impl<X: Numbers, S: Serialize + DeserializeOwned> Observations<X> for CaseObserv
 }
 
 /// A simulation with the functions of a case.
-struct Run<'a, X: Numbers, D: ?Sized, S> {
+struct CaseRun<'a, X: Numbers, D: ?Sized, S> {
     simulation: &'a mut D,
     seeing: CaseObservations<'a, X, S>,
     at: Vec<At<'a, D, S>>,
     resumed: Resumed<'a, D, S>,
 }
 
-impl<X, D, S> ObservedRun<X> for Run<'_, X, D, S>
+impl<X, D, S> ObservedRun<X> for CaseRun<'_, X, D, S>
 where
     X: Numbers,
     D: Stepper<X> + ?Sized,
@@ -468,7 +468,7 @@ where
 ///
 /// The functions of a case cannot change their captures: all changing data is in `S`, which checkpoints hold.
 pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
-    run: Run<'a, X, D, S>,
+    run: CaseRun<'a, X, D, S>,
     schedule: Schedule<'a>,
 }
 
@@ -488,7 +488,7 @@ where
         seen: &'a mut S,
     ) -> Self {
         let seeing = CaseObservations { seen, after_step: Vec::new() };
-        let run = Run { simulation, seeing, at: Vec::new(), resumed: Box::new(|_, _| {}) };
+        let run = CaseRun { simulation, seeing, at: Vec::new(), resumed: Box::new(|_, _| {}) };
         let (least, sweeps, after_step, at) = (1, 2.0, Vec::new(), Vec::new());
         let pressure = Box::new(move |density| eos.pressure(density));
         Self { run, schedule: Schedule { dt, least, sweeps, times, pressure, after_step, at } }
@@ -630,7 +630,7 @@ mod tests {
     #[test]
     fn progress_is_shown_at_once_and_by_wall_time_and_changes_nothing() {
         let shown: Mutex<Vec<(Instant, f64)>> = Mutex::default();
-        let show = |p: Progress| shown.lock().unwrap().push((Instant::now(), p.time));
+        let show = |p: RunProgress| shown.lock().unwrap().push((Instant::now(), p.time));
         let watched = Context { progress: Some(&show), ..Context::default() };
         let mut states = Vec::new();
         for context in [Context::default(), watched] {

@@ -18,7 +18,7 @@ use crate::{
 };
 
 /// The bound of a judged run.
-struct Level {
+struct JudgedLevel {
     /// Spacings over a length of the problem: more is finer.
     fineness: f64,
     /// The largest magnitude of the error.
@@ -36,7 +36,7 @@ impl Draws {
 
     /// The judged runs of a variant with gates on a metric; none if one of them is a control or has a
     /// limitation, because its bound does not describe the variant.
-    fn levels(&self, index: &GateIndex, variant: &str, metric: &str) -> Vec<Level> {
+    fn levels(&self, index: &GateIndex, variant: &str, metric: &str) -> Vec<JudgedLevel> {
         let case = index.case;
         let set: Vec<String> = self.set.iter().map(ToString::to_string).collect();
         if !self.variants.is_empty() && !self.variants.contains(&variant) {
@@ -57,7 +57,7 @@ impl Draws {
                     .into_iter()
                     .all(|(name, value)| may_differ(name) || spec.settings.get(name) == Some(value))
         };
-        let mut levels: Vec<Level> = Vec::new();
+        let mut levels: Vec<JudgedLevel> = Vec::new();
         for Planned { spec, gates, .. } in index.judged() {
             if !is_alike(spec) {
                 continue;
@@ -70,7 +70,7 @@ impl Draws {
                 let is_new = levels.iter().all(|level| level.gate.id != gate.id);
                 let settings = spec.settings.clone();
                 if let (true, Some(most)) = (is_new, most(gate)) {
-                    levels.push(Level { fineness, most, gate: gate.clone(), settings });
+                    levels.push(JudgedLevel { fineness, most, gate: gate.clone(), settings });
                 }
             }
         }
@@ -79,15 +79,16 @@ impl Draws {
     }
 
     /// The bound at a resolution, and where it comes from.
-    fn bound(&self, levels: &[&Level], fineness: f64) -> Option<(f64, String)> {
-        let worst = |levels: &mut dyn Iterator<Item = &&Level>| -> Option<(f64, f64, String)> {
-            let worst = levels.max_by(|a, b| a.most.total_cmp(&b.most))?;
-            Some((worst.fineness, worst.most, worst.gate.id.clone()))
-        };
+    fn bound(&self, levels: &[&JudgedLevel], fineness: f64) -> Option<(f64, String)> {
+        let worst =
+            |levels: &mut dyn Iterator<Item = &&JudgedLevel>| -> Option<(f64, f64, String)> {
+                let worst = levels.max_by(|a, b| a.most.total_cmp(&b.most))?;
+                Some((worst.fineness, worst.most, worst.gate.id.clone()))
+            };
         let of = |at: f64| worst(&mut levels.iter().filter(|level| level.fineness == at));
         let before = levels.iter().rev().find(|level| level.fineness <= fineness);
         let after = levels.iter().find(|level| level.fineness >= fineness);
-        let near = |level: Option<&&Level>| level.and_then(|level| of(level.fineness));
+        let near = |level: Option<&&JudgedLevel>| level.and_then(|level| of(level.fineness));
         match (near(before), near(after)) {
             (Some((coarse, at_coarse, a)), Some((fine, at_fine, b))) if coarse < fine => {
                 let share = ln(fineness / coarse) / ln(fine / coarse);
@@ -105,8 +106,8 @@ impl Draws {
     }
 
     /// The judged runs with the drawn values: with the values of [`Drawn::Judged`].
-    fn with_values<'a>(&self, levels: &'a [Level], settings: &Value) -> Vec<&'a Level> {
-        let is_same = |level: &&Level| {
+    fn with_values<'a>(&self, levels: &'a [JudgedLevel], settings: &Value) -> Vec<&'a JudgedLevel> {
+        let is_same = |level: &&JudgedLevel| {
             let judged = self.others.iter().filter(|(_, how)| matches!(how, Drawn::Judged));
             judged.into_iter().all(|(name, _)| level.settings.get(name) == settings.get(name))
         };
@@ -221,9 +222,9 @@ pub fn gates(index: &GateIndex, spec: &RunSpec) -> Vec<Gate> {
 mod tests {
     use super::*;
 
-    fn level(fineness: f64, most: f64) -> Level {
+    fn level(fineness: f64, most: f64) -> JudgedLevel {
         let gate = Gate::new("c.v", "l2", Bound::Below(most), Evidence::Analytic, "made up");
-        Level { fineness, most, gate, settings: Value::Null }
+        JudgedLevel { fineness, most, gate, settings: Value::Null }
     }
 
     /// Of order 2 beyond the judged runs, interpolated between them, and the largest of equal resolutions.
@@ -239,7 +240,7 @@ mod tests {
             free: &[],
         };
         let levels = [level(20.0, 0.04), level(20.0, 0.02), level(80.0, 0.01)];
-        let levels: Vec<&Level> = levels.iter().collect();
+        let levels: Vec<&JudgedLevel> = levels.iter().collect();
         for (fineness, expected) in
             [(10.0, 0.16), (20.0, 0.04), (40.0, 0.02), (80.0, 0.01), (160.0, 0.0025)]
         {

@@ -46,7 +46,7 @@ impl AddAssign for Times {
 
 /// How far a run is.
 #[derive(Debug)]
-pub(crate) struct Run {
+pub(crate) struct RunTally {
     case: &'static str,
     times: Times,
     has_ended: bool,
@@ -55,7 +55,7 @@ pub(crate) struct Run {
 /// How much of a batch is done.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
-    pub(crate) runs: Sorted<RunKey, Run>,
+    pub(crate) runs: Sorted<RunKey, RunTally>,
     /// Runs that have a record.
     pub(crate) done: usize,
     /// Name of the last of them.
@@ -66,10 +66,10 @@ impl Tally {
     /// A run is to be made, which is expected to take so long.
     pub(crate) fn plan(&mut self, run: RunKey, case: &'static str, expected: f64) {
         let times = Times { expected, ..Times::default() };
-        entry(&mut self.runs, run, || Run { case, times, has_ended: false });
+        entry(&mut self.runs, run, || RunTally { case, times, has_ended: false });
     }
 
-    fn run(&mut self, key: &RunKey) -> Option<&mut Run> {
+    fn run(&mut self, key: &RunKey) -> Option<&mut RunTally> {
         self.runs.iter_mut().find(|(other, _)| other == key).map(|(_, run)| run)
     }
 
@@ -102,7 +102,7 @@ impl Tally {
 
     /// Sets the completed part of a run and its time so far; repetitions of a run count no further.
     pub(crate) fn reach(&mut self, run: &RunKey, part: f64, took: f64) {
-        if let Some(Run { times, has_ended: false, .. }) = self.run(run) {
+        if let Some(RunTally { times, has_ended: false, .. }) = self.run(run) {
             *times = Times { done: part.clamp(0.0, 1.0) * times.expected, took, ..*times };
         }
     }

@@ -109,17 +109,17 @@ impl Submitted {
     }
 
     /// Changes of gates and metrics against the earlier run of the code.
-    fn changes(&self, was: Option<&Self>) -> Vec<Change> {
+    fn changes(&self, was: Option<&Self>) -> Vec<VerdictChange> {
         let name = self.name();
         let gates = |of: &Self| by_name(of.of.judged.iter());
         let old = was.map(gates).unwrap_or_default();
         let mut changes = paired(&old, &gates(self), |_, was, is| of_gate(was, is));
         changes.iter_mut().for_each(|change| change.name += &format!(" of {name}"));
-        let mut add = |kind, words| changes.push(Change { kind, name: name.clone(), words });
+        let mut add = |kind, words| changes.push(VerdictChange { kind, name: name.clone(), words });
         match was {
-            None => add(Kind::New, self.who()),
+            None => add(ChangeKind::New, self.who()),
             Some(was) if was.of.key != self.of.key => {
-                add(Kind::State, format!("{} to {}", was.who(), self.who()));
+                add(ChangeKind::State, format!("{} to {}", was.who(), self.who()));
             }
             Some(_) => {}
         }
@@ -127,7 +127,11 @@ impl Submitted {
             let bound = |of: &Judged| ((name.clone(), of.gate.metric.clone()), of.gate.bound);
             let bounds = self.of.judged.iter().map(bound).collect();
             let found = of_run(&name, Some(was), Some(is), &bounds).into_iter();
-            changes.extend(found.map(|(kind, words)| Change { kind, name: name.clone(), words }));
+            changes.extend(found.map(|(kind, words)| VerdictChange {
+                kind,
+                name: name.clone(),
+                words,
+            }));
         }
         changes
     }
@@ -135,16 +139,20 @@ impl Submitted {
 
 /// The changes of runs of other codes. A run is compared with the run of equal results or, without one, with
 /// a run of the same code, scheme and problem, in any version.
-fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<Change> {
+fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<VerdictChange> {
     let is_same = |a: &Submitted, b: &Submitted| a.of.key == b.of.key;
     let was = |is: &Submitted| {
         let alike = || old.iter().find(|was| was.name() == is.name());
         old.iter().find(|was| is_same(was, is)).or_else(alike)
     };
-    let mut changes: Vec<Change> = new.iter().flat_map(|is| is.changes(was(is))).collect();
+    let mut changes: Vec<VerdictChange> = new.iter().flat_map(|is| is.changes(was(is))).collect();
     let is_there =
         |was: &Submitted| new.iter().any(|is| is_same(was, is) || was.name() == is.name());
-    let gone = |was: &Submitted| Change { kind: Kind::Gone, name: was.name(), words: was.who() };
+    let gone = |was: &Submitted| VerdictChange {
+        kind: ChangeKind::Gone,
+        name: was.name(),
+        words: was.who(),
+    };
     changes.extend(old.iter().filter(|was| !is_there(was)).map(gone));
     changes
 }
@@ -152,7 +160,7 @@ fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<Change> {
 /// Kinds of changes, the worst first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
-enum Kind {
+enum ChangeKind {
     /// A gate that did not fail.
     Failing,
     /// A run that was completed.
@@ -168,7 +176,7 @@ enum Kind {
     Seconds,
 }
 
-impl Kind {
+impl ChangeKind {
     /// Does something fail that did not, or is something not known any more that was?
     fn is_loss(self) -> bool {
         self <= Self::Gone
@@ -177,8 +185,8 @@ impl Kind {
 
 /// A change of one gate or run, in words and as data.
 #[derive(Serialize)]
-struct Change {
-    kind: Kind,
+struct VerdictChange {
+    kind: ChangeKind,
     name: String,
     #[serde(rename = "change")]
     words: String,
@@ -217,8 +225,10 @@ pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
     }
     changes.extend(of_submissions(&before.submissions, &after.submissions));
     changes.sort_by_key(|change| change.kind);
-    let count = |of: fn(Kind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
-    let (losses, failures) = (count(Kind::is_loss), count(|kind| kind == Kind::Failing));
+    let count =
+        |of: fn(ChangeKind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
+    let (losses, failures) =
+        (count(ChangeKind::is_loss), count(|kind| kind == ChangeKind::Failing));
     let json = || json!({"new_failures": failures, "losses": losses, "changes": changes});
     output::answer(arguments.json, json, || in_words(&changes, &before, &after))?;
     Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
@@ -240,7 +250,7 @@ fn bounds(session: &Session, records: &BTreeMap<String, Record>) -> Bounds {
     bounds
 }
 
-fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
+fn in_words(changes: &[VerdictChange], before: &Side, after: &Side) -> String {
     let mut text = String::new();
     if let (Some(old), Some(new)) = (&before.records, &after.records) {
         let shared = new.keys().filter(|name| old.contains_key(*name)).count();
@@ -263,36 +273,43 @@ fn in_words(changes: &[Change], before: &Side, after: &Side) -> String {
 fn paired<T>(
     old: &BTreeMap<String, T>,
     new: &BTreeMap<String, T>,
-    of: impl Fn(&str, Option<&T>, Option<&T>) -> Vec<(Kind, String)>,
-) -> Vec<Change> {
+    of: impl Fn(&str, Option<&T>, Option<&T>) -> Vec<(ChangeKind, String)>,
+) -> Vec<VerdictChange> {
     let mut changes = Vec::new();
     for name in old.keys().chain(new.keys()).collect::<BTreeSet<_>>() {
         let found = of(name, old.get(name), new.get(name)).into_iter();
-        changes.extend(found.map(|(kind, words)| Change { kind, name: name.clone(), words }));
+        changes.extend(found.map(|(kind, words)| VerdictChange {
+            kind,
+            name: name.clone(),
+            words,
+        }));
     }
     changes
 }
 
-fn of_gate(was: Option<&Judged>, is: Option<&Judged>) -> Vec<(Kind, String)> {
+fn of_gate(was: Option<&Judged>, is: Option<&Judged>) -> Vec<(ChangeKind, String)> {
     let number =
         |value: Option<f64>| value.map_or("not measured".to_string(), |v| format!("{v:?}"));
     let fails = |judged: &Judged| judged.judgement.verdict == Verdict::Fail;
     let (was, is) = match (was, is) {
         (Some(was), Some(is)) => (was, is),
-        (was, None) => return was.map(|was| (Kind::Gone, was.words())).into_iter().collect(),
+        (was, None) => return was.map(|was| (ChangeKind::Gone, was.words())).into_iter().collect(),
         (None, Some(is)) => {
-            let kind = if fails(is) { Kind::Failing } else { Kind::New };
+            let kind = if fails(is) { ChangeKind::Failing } else { ChangeKind::New };
             return vec![(kind, format!("{}; {}", is.words(), number(is.judgement.value)))];
         }
     };
     let [from, to] = [&was.judgement, &is.judgement];
     let values = format!("{} to {}", number(from.value), number(to.value));
     if fails(is) && !fails(was) {
-        vec![(Kind::Failing, format!("{}; {values}; bound {}", was.words(), is.gate.bounds()))]
+        vec![(
+            ChangeKind::Failing,
+            format!("{}; {values}; bound {}", was.words(), is.gate.bounds()),
+        )]
     } else if from.verdict != to.verdict {
-        vec![(Kind::Verdict, format!("{} to {}; {values}", was.words(), is.words()))]
+        vec![(ChangeKind::Verdict, format!("{} to {}; {values}", was.words(), is.words()))]
     } else if has_moved(is.gate.bound.scale(), from.value, to.value) {
-        vec![(Kind::Value, values)]
+        vec![(ChangeKind::Value, values)]
     } else {
         Vec::new()
     }
@@ -316,22 +333,25 @@ fn of_run(
     was: Option<&Record>,
     is: Option<&Record>,
     bounds: &Bounds,
-) -> Vec<(Kind, String)> {
+) -> Vec<(ChangeKind, String)> {
     let status = |kind, record: &Record| vec![(kind, format!("the run, {}", record.status))];
     let (was, is) = match (was, is) {
         (Some(was), Some(is)) => (was, is),
-        (was, None) => return was.map_or(Vec::new(), |was| status(Kind::Gone, was)),
-        (None, Some(is)) => return status(Kind::New, is),
+        (was, None) => return was.map_or(Vec::new(), |was| status(ChangeKind::Gone, was)),
+        (None, Some(is)) => return status(ChangeKind::New, is),
     };
     let mut changes = Vec::new();
     let statuses = format!("{} to {}", was.status, is.status);
     if was.status != is.status {
         let is_worse = was.status == Status::Completed;
-        changes.push((if is_worse { Kind::Stopped } else { Kind::Status }, statuses.clone()));
+        changes.push((
+            if is_worse { ChangeKind::Stopped } else { ChangeKind::Status },
+            statuses.clone(),
+        ));
     }
     changes.extend(of_metrics(name, was, is, bounds));
     if was.state != is.state {
-        changes.push((Kind::State, format!("other bits at the end ({statuses})")));
+        changes.push((ChangeKind::State, format!("other bits at the end ({statuses})")));
     }
     let (from, to) = (&was.cost, &is.cost);
     if (from.steps, from.pair_interactions) != (to.steps, to.pair_interactions) {
@@ -339,7 +359,7 @@ fn of_run(
             "{} to {} steps, {} to {} pair interactions",
             from.steps, to.steps, from.pair_interactions, to.pair_interactions
         );
-        changes.push((Kind::Work, words));
+        changes.push((ChangeKind::Work, words));
     }
     if let Some((before, after)) = from.alone_median().zip(to.alone_median())
         && ln(after / before).abs() > ln(NOTABLE)
@@ -347,13 +367,13 @@ fn of_run(
         && was.numerics.get(MACHINE) == is.numerics.get(MACHINE)
     {
         let words = format!("{before:.4} to {after:.4} s, {:.3} times", after / before);
-        changes.push((Kind::Seconds, words));
+        changes.push((ChangeKind::Seconds, words));
     }
     changes
 }
 
 /// Metrics of one run that disappeared, appeared or moved, in one change each.
-fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(Kind, String)> {
+fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(ChangeKind, String)> {
     let value = |record: &Record, metric: &str| record.metrics.get(metric).map(|m| m.value);
     let lacking = |of: &Record, other: &Record| -> Vec<String> {
         let reason = |metric: &String| match other.absent.get(metric) {
@@ -370,11 +390,11 @@ fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(Ki
         has_moved(scale, Some(from), Some(to)).then(|| format!("{metric} {from:?} to {to:?}"))
     });
     let all = [
-        (Kind::Gone, lacking(was, is)),
-        (Kind::New, lacking(is, was)),
-        (Kind::Value, moved.collect()),
+        (ChangeKind::Gone, lacking(was, is)),
+        (ChangeKind::New, lacking(is, was)),
+        (ChangeKind::Value, moved.collect()),
     ];
-    let told = |(kind, metrics): (Kind, Vec<String>)| {
+    let told = |(kind, metrics): (ChangeKind, Vec<String>)| {
         let told = metrics.iter().take(TOLD).cloned().collect::<Vec<_>>().join(", ");
         match metrics.len() {
             0 => None,
@@ -411,7 +431,7 @@ mod tests {
     }
 
     /// The changes after something was done to the record of run 1.
-    fn changes(change: impl Fn(&mut Record)) -> Vec<(Kind, String)> {
+    fn changes(change: impl Fn(&mut Record)) -> Vec<(ChangeKind, String)> {
         let (old, bounds) = records();
         let mut new = old.clone();
         change(new.get_mut("1").expect("run 1"));
@@ -421,7 +441,7 @@ mod tests {
     }
 
     #[track_caller]
-    fn one(change: impl Fn(&mut Record), kind: Kind, words: &str) {
+    fn one(change: impl Fn(&mut Record), kind: ChangeKind, words: &str) {
         assert_eq!(changes(change), [(kind, format!("1: {words}"))]);
     }
 
@@ -430,15 +450,15 @@ mod tests {
     fn a_metric_that_moved_by_more_than_the_resolution_of_its_gate_is_told() {
         assert_eq!(changes(|_| ()), []);
         assert_eq!(changes(|record| record.put(L2, 0.1049)), [], "0.98 % of the bound 0.5");
-        one(|record| record.put(L2, 0.1051), Kind::Value, "l2 0.1 to 0.1051");
-        one(|record| record.put(L2, 123.0), Kind::Value, "l2 0.1 to 123.0");
-        one(|record| record.put(L2, f64::NAN), Kind::Value, "l2 0.1 to NaN");
+        one(|record| record.put(L2, 0.1051), ChangeKind::Value, "l2 0.1 to 0.1051");
+        one(|record| record.put(L2, 123.0), ChangeKind::Value, "l2 0.1 to 123.0");
+        one(|record| record.put(L2, f64::NAN), ChangeKind::Value, "l2 0.1 to NaN");
         assert_eq!(changes(|record| record.put(DRIFT, 1.009e-9)), [], "0.9 % of itself");
-        one(|record| record.put(DRIFT, 1.02e-9), Kind::Value, "drift 1e-9 to 1.02e-9");
+        one(|record| record.put(DRIFT, 1.02e-9), ChangeKind::Value, "drift 1e-9 to 1.02e-9");
         let all = |record: &mut Record| {
             record.metrics.values_mut().for_each(|metric| metric.value = 123.0);
         };
-        one(all, Kind::Value, "drift 1e-9 to 123.0, l2 0.1 to 123.0");
+        one(all, ChangeKind::Value, "drift 1e-9 to 123.0, l2 0.1 to 123.0");
     }
 
     #[test]
@@ -447,11 +467,11 @@ mod tests {
             record.metrics.remove("l2");
             record.absent.insert("l2".into(), "no reference".into());
         };
-        one(gone, Kind::Gone, "l2 (no reference)");
-        one(|record| record.metrics.clear(), Kind::Gone, "drift, l2");
+        one(gone, ChangeKind::Gone, "l2 (no reference)");
+        one(|record| record.metrics.clear(), ChangeKind::Gone, "drift, l2");
         let new = |record: &mut Record| record.put(MetricKey::new("new", "-", "staged"), 1.0);
-        one(new, Kind::New, "new");
-        assert!(Kind::Gone.is_loss() && !Kind::New.is_loss());
+        one(new, ChangeKind::New, "new");
+        assert!(ChangeKind::Gone.is_loss() && !ChangeKind::New.is_loss());
     }
 
     #[test]
@@ -459,30 +479,34 @@ mod tests {
         let (old, bounds) = records();
         let mut new = old.clone();
         new.remove("1");
-        for (from, to, kind) in [(&old, &new, Kind::Gone), (&new, &old, Kind::New)] {
+        for (from, to, kind) in [(&old, &new, ChangeKind::Gone), (&new, &old, ChangeKind::New)] {
             let found = paired(from, to, |name, was, is| of_run(name, was, is, &bounds));
             let found: Vec<_> = found.iter().map(|c| (c.kind, c.name.as_str())).collect();
             assert_eq!(found, [(kind, "1")]);
         }
         let refused = |record: &mut Record| record.status = Status::Refused { reason: "x".into() };
-        one(refused, Kind::Stopped, "completed to refused: x");
-        assert!(Kind::Gone.is_loss() && Kind::Stopped.is_loss() && !Kind::New.is_loss());
+        one(refused, ChangeKind::Stopped, "completed to refused: x");
+        assert!(
+            ChangeKind::Gone.is_loss()
+                && ChangeKind::Stopped.is_loss()
+                && !ChangeKind::New.is_loss()
+        );
     }
 
     /// Slower and faster runs are both reported.
     #[test]
     fn seconds_work_and_bits_are_told() {
-        one(|r| r.cost.alone_s = vec![0.8], Kind::Seconds, "1.0000 to 0.8000 s, 0.800 times");
-        one(|r| r.cost.alone_s = vec![1.2], Kind::Seconds, "1.0000 to 1.2000 s, 1.200 times");
+        one(|r| r.cost.alone_s = vec![0.8], ChangeKind::Seconds, "1.0000 to 0.8000 s, 0.800 times");
+        one(|r| r.cost.alone_s = vec![1.2], ChangeKind::Seconds, "1.0000 to 1.2000 s, 1.200 times");
         assert_eq!(changes(|record| record.cost.alone_s = vec![1.09]), []);
         let elsewhere = |record: &mut Record| {
             record.cost.alone_s = vec![3.0];
             record.manifest.cpu = "another".into();
         };
         assert_eq!(changes(elsewhere), [], "seconds of another machine say nothing");
-        one(|r| r.cost.steps = 7, Kind::Work, "0 to 7 steps, 0 to 0 pair interactions");
+        one(|r| r.cost.steps = 7, ChangeKind::Work, "0 to 7 steps, 0 to 0 pair interactions");
         let other = "other bits at the end (completed to completed)";
-        one(|record| record.state = Some("other".into()), Kind::State, other);
+        one(|record| record.state = Some("other".into()), ChangeKind::State, other);
     }
 
     /// `compare` must not end with 0 when all gates are missing.
@@ -493,19 +517,23 @@ mod tests {
             let judged = Judged::new(gate, Some(value));
             BTreeMap::from([("c.l2".to_string(), judged)])
         };
-        let kinds = |old: &BTreeMap<_, _>, new: &BTreeMap<_, _>| -> Vec<Kind> {
+        let kinds = |old: &BTreeMap<_, _>, new: &BTreeMap<_, _>| -> Vec<ChangeKind> {
             paired(old, new, |_, was, is| of_gate(was, is))
                 .iter()
                 .map(|change| change.kind)
                 .collect()
         };
-        assert_eq!(kinds(&judged(0.1), &BTreeMap::new()), [Kind::Gone]);
-        assert_eq!(kinds(&BTreeMap::new(), &judged(0.1)), [Kind::New]);
-        assert_eq!(kinds(&BTreeMap::new(), &judged(0.6)), [Kind::Failing]);
-        assert_eq!(kinds(&judged(0.1), &judged(0.6)), [Kind::Failing]);
-        assert_eq!(kinds(&judged(0.6), &judged(0.1)), [Kind::Verdict]);
+        assert_eq!(kinds(&judged(0.1), &BTreeMap::new()), [ChangeKind::Gone]);
+        assert_eq!(kinds(&BTreeMap::new(), &judged(0.1)), [ChangeKind::New]);
+        assert_eq!(kinds(&BTreeMap::new(), &judged(0.6)), [ChangeKind::Failing]);
+        assert_eq!(kinds(&judged(0.1), &judged(0.6)), [ChangeKind::Failing]);
+        assert_eq!(kinds(&judged(0.6), &judged(0.1)), [ChangeKind::Verdict]);
         assert_eq!(kinds(&judged(0.1), &judged(0.1049)), [], "0.98 % of the bound");
-        assert_eq!(kinds(&judged(0.1), &judged(0.1051)), [Kind::Value]);
-        assert!(Kind::Gone.is_loss() && Kind::Failing.is_loss() && !Kind::Value.is_loss());
+        assert_eq!(kinds(&judged(0.1), &judged(0.1051)), [ChangeKind::Value]);
+        assert!(
+            ChangeKind::Gone.is_loss()
+                && ChangeKind::Failing.is_loss()
+                && !ChangeKind::Value.is_loss()
+        );
     }
 }

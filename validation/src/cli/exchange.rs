@@ -16,7 +16,7 @@ use touchstone_base::{
 use touchstone_exchange::{
     challenge,
     flaw::{Flaw, lines},
-    problem::{CURVE, PROBLEM, Problem, ProblemDocument, Sealed},
+    problem::{CURVE, ExportedProblem, PROBLEM, ProblemDocument, Sealed},
     read::{COLUMNS, Head, RESULTS, Renamed},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
@@ -44,7 +44,7 @@ pub fn export(arguments: &arguments::Export, session: &Session) -> Result<(), Fa
     if arguments.solve {
         estimate(case, &spec, arguments)?;
     }
-    let problem = Problem::seen(case, spec, arguments.relation, arguments.allow_long)?;
+    let problem = ExportedProblem::seen(case, spec, arguments.relation, arguments.allow_long)?;
     problem.unjudged().iter().for_each(|why| output::say(&format!("note: {why}")));
     let mut files = write::files(&problem, of.format)?;
     let method = solved_by(&problem);
@@ -118,7 +118,7 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
 }
 
 /// The description of this program's method in a submission.
-fn solved_by(problem: &Problem) -> String {
+fn solved_by(problem: &ExportedProblem) -> String {
     let read = problem.settings().map(|(field, value)| (field.name.to_string(), value.clone()));
     let (mut settings, own) = (Value::Object(read.collect()), &problem.outline.method);
     // With these settings the gates on the theory of our own method apply.
@@ -139,7 +139,7 @@ fn solved_by(problem: &Problem) -> String {
 /// Makes the run and writes it as another code would: an example of a submission.
 fn solve(
     case: &dyn Case,
-    problem: &Problem,
+    problem: &ExportedProblem,
     folder: &OutputFolder,
     allow_long: bool,
     session: &Session,
@@ -219,7 +219,7 @@ pub fn sealed(
     let set = challenge::draw(case, variant, seed, &method).map_err(Failure::usage)?;
     let sealed = Sealed { seed, method: method.digest() };
     let digest = sealed.method.clone();
-    let problem = Problem::of(case, case::spec(case, variant, &set)?)?.sealed(case, sealed);
+    let problem = ExportedProblem::of(case, case::spec(case, variant, &set)?)?.sealed(case, sealed);
     let mut files = write::files(&problem, of.format)?;
     files.push((METHOD, text.into_bytes()));
     let folder = prepare(of, &files, &[])?;
@@ -356,7 +356,7 @@ pub fn relate(
         let asked = entry.asked.as_ref().ok_or_else(none)?;
         let by = Relation::named(asked.relation.as_ref().ok_or_else(none)?);
         let by = by.map_err(|what| usage(&format!("relation: {what}")))?;
-        let problem = Problem::seen(case, spec_of(case, asked)?, Some(by), allow_long)?;
+        let problem = ExportedProblem::seen(case, spec_of(case, asked)?, Some(by), allow_long)?;
         asked.agrees(&problem).map_err(|flaw| refused(vec![flaw]))?;
         entry
             .results
@@ -413,7 +413,7 @@ fn problem(
     case: &dyn Case,
     entry: &Entry,
     arguments: &arguments::Submit,
-) -> Result<Problem, Failure> {
+) -> Result<ExportedProblem, Failure> {
     let is_given = arguments.variant.is_some() || !arguments.set.is_empty();
     let spec: RunSpec = match &entry.asked {
         Some(_) if is_given => {
@@ -435,7 +435,7 @@ fn problem(
     let sealed = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
     let check = |sealed| challenge::check(case, sealed, &entry.method, &spec);
     sealed.map_or(Ok(()), check).map_err(Failure::usage)?;
-    let mut problem = Problem::seen(case, spec, None, arguments.allow_long)?;
+    let mut problem = ExportedProblem::seen(case, spec, None, arguments.allow_long)?;
     if let Some(sealed) = sealed {
         problem = problem.sealed(case, sealed.clone());
     }

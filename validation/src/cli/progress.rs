@@ -5,7 +5,7 @@ use std::sync::{Mutex, OnceLock};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use touchstone_harness::{context::Progress, tally::Done};
+use touchstone_harness::{context::RunProgress, tally::Done};
 use touchstone_report::sig;
 
 use super::output;
@@ -42,11 +42,11 @@ impl Bar {
     }
 
     /// Shows how far a run is.
-    pub fn show_run(&self, progress: Progress) {
+    pub fn show_run(&self, progress: RunProgress) {
         if !self.is_time() {
             return;
         }
-        let Progress { time, end, .. } = progress;
+        let RunProgress { time, end, .. } = progress;
         let elapsed = self.start.elapsed().as_secs_f64();
         let done = (time / end).clamp(0.0, 1.0);
         let left = left(elapsed, *self.first.get_or_init(|| done), done);

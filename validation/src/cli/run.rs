@@ -20,7 +20,7 @@ use touchstone_base::{
 use touchstone_harness::{
     case::{self, Case, RunError},
     checkpoint::Checkpoints,
-    context::{Context, Progress},
+    context::{Context, RunProgress},
     gates::GateIndex,
     runs::Judged,
     size::Size,
@@ -203,7 +203,7 @@ fn compute(
             told.call_once(|| bar.say(&format!("estimate: {size}")));
         }
     };
-    let show = |progress: Progress| bar.show_run(progress);
+    let show = |progress: RunProgress| bar.show_run(progress);
     let lose = |error: &RunError| bar.suspend(|| lost.tell(error, folder));
     let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let write = |simulations: &[Vec<u8>]| match folder {

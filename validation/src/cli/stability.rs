@@ -9,7 +9,7 @@ use touchstone_harness::{
     studies::{StepLimit, StepLimits, limit::of_theory as limit_of_theory},
 };
 
-use touchstone_cases::stiffness::Row;
+use touchstone_cases::stiffness::StiffnessRow;
 
 use super::{Exit, Failure, Outcome, Session, arguments, output, trouble};
 
@@ -67,14 +67,14 @@ const READING: &str = "At default settings. Step: the time step that is taken. L
 fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
     let mut rows = Vec::new();
     for case in cases {
-        rows.extend(Row::of(*case)?);
+        rows.extend(StiffnessRow::of(*case)?);
     }
     if rows.is_empty() {
         let words = format!("{} has no rule for its time step", cases[0].name());
         return Err(Failure::usage(words));
     }
     let text = || {
-        let row = |row: &Row| {
+        let row = |row: &StiffnessRow| {
             let limits = &row.rules.limits;
             let headroom = touchstone_report::sig(row.rules.dt_limit() / row.rules.dt(), 3);
             let [stiffness, steps, sweeps] =
@@ -94,7 +94,7 @@ fn theory(cases: &[&'static dyn Case], as_json: bool) -> Result<(), Failure> {
     output::answer(as_json, || rows.iter().map(row_json).collect(), text)
 }
 
-fn row_json(row: &Row) -> Value {
+fn row_json(row: &StiffnessRow) -> Value {
     let limits = &row.rules.limits;
     let all = Mechanism::ALL.into_iter().map(|of| (of.name().to_string(), limits.alone(of)));
     let alone =

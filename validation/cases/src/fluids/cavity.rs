@@ -23,7 +23,7 @@ use touchstone_report::ColourMap;
 use touchstone_schemes::flow;
 use touchstone_solver::{QuinticSpline, Role, Smoothing, lattice};
 
-use crate::fluids::unit_flow::{Numerics, Scales, UnitFlow};
+use crate::fluids::unit_flow::{FlowScales, Numerics, UnitFlow};
 
 touchstone_base::settings! {
     /// Settings of the cavity. L = U = ρ = 1.
@@ -107,7 +107,7 @@ impl Closed {
     fn new(method: &Method, s: &Cavity) -> Result<Self, RunError> {
         let Cavity { re, n, end, h_over_dx, c0, .. } = *s;
         let scales =
-            Scales { re, n, h_over_dx, c0, end, speed: 1.0, force: 0.0, area: 1.0, dt: None };
+            FlowScales { re, n, h_over_dx, c0, end, speed: 1.0, force: 0.0, area: 1.0, dt: None };
         let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let places = places(s.re).map_err(|error| RunError::Reference(error.to_string()))?;
         Ok(Self { settings: s.clone(), method: method.clone(), flow, places })

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use touchstone_base::gate::Cause;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    convergence::Level,
+    convergence::ErrorLevel,
     method::FirstRow,
     orders::{self, Line, Refinement},
     problem::Simple,
@@ -19,7 +19,7 @@ use touchstone_maths::{exact::manufactured, metrics::norms::rms};
 use touchstone_schemes::flow;
 use touchstone_solver::{EquationOfState, PlaneWall, Role};
 
-use crate::fluids::unit_flow::{DECISIVE, Numerics, Scales, UnitFlow};
+use crate::fluids::unit_flow::{DECISIVE, FlowScales, Numerics, UnitFlow};
 
 touchstone_base::settings! {
     /// Settings of the manufactured flow. L = U = ρ = 1.
@@ -105,7 +105,7 @@ fn flow(s: &ManufacturedSettings, m: &Method) -> UnitFlow {
     let nu = 1.0 / s.re;
     let force = MOST[0] + MOST[1] * nu;
     let ManufacturedSettings { re, n, end, h_over_dx, c0, .. } = *s;
-    let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.0, force, area: 1.0, dt: None };
+    let scales = FlowScales { re, n, h_over_dx, c0, end, speed: 1.0, force, area: 1.0, dt: None };
     let mut flow = UnitFlow::new(&m.properties, &s.numerics, scales);
     flow.medium.acceleration = Vector2::new(1.0, nu);
     flow
@@ -243,7 +243,7 @@ fn studies(tier: Tier) -> Studies {
 fn orders(table: &Table, runs: &Runs) -> Section {
     let refinement = |(of, title): (Group, &'static str)| {
         let line = |name: &'static str| {
-            let level = |row: &table::Row<ManufacturedSettings, Group>| Level {
+            let level = |row: &table::Row<ManufacturedSettings, Group>| ErrorLevel {
                 spacing: 1.0 / row.settings.n as f64,
                 value: runs.value(&row.run.spec, L2),
             };

@@ -11,7 +11,7 @@ use touchstone_harness::{
 };
 use touchstone_maths::{
     exact::TaylorCouette,
-    geometry::{Curve, Row as Particles},
+    geometry::{Curve, ParticleRow},
     metrics::norms::l2,
 };
 use touchstone_schemes::flow;
@@ -108,7 +108,7 @@ impl Cylinders {
         let behind = |curve: &Curve| curve.rows_behind(dx, first, method.properties.support * h);
         let inside = behind(&inner).into_iter().map(|row| (row, flow.speed));
         let outside = behind(&outer).into_iter().map(|row| (row, 0.0));
-        let particles = |(row, speed): (Particles, f64)| {
+        let particles = |(row, speed): (ParticleRow, f64)| {
             let around = |x: Vector2<f64>| Vector2::new(-x.y, x.x) / x.norm() * speed;
             row.particles(dx, s.rho, around).collect::<Vec<Particle>>()
         };

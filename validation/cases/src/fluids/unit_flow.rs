@@ -30,7 +30,7 @@ touchstone_base::settings! {
 
 /// The scales of a flow: additions of a case to the numerical settings.
 #[derive(Clone, Copy, Debug)]
-pub struct Scales {
+pub struct FlowScales {
     /// Reynolds number, 1/ν.
     pub re: f64,
     /// Spacings per unit length.
@@ -75,8 +75,8 @@ pub const LIMIT_BOX: usize = 32;
 
 impl UnitFlow {
     /// Follows the rules for a method.
-    pub fn new(method: &Properties, numerics: &Numerics, scales: Scales) -> Self {
-        let Scales { re, n, h_over_dx, c0, end, speed, force, area, dt } = scales;
+    pub fn new(method: &Properties, numerics: &Numerics, scales: FlowScales) -> Self {
+        let FlowScales { re, n, h_over_dx, c0, end, speed, force, area, dt } = scales;
         let (dx, nu) = (1.0 / n as f64, 1.0 / re);
         let h = h_over_dx * dx;
         let background = numerics.background * c0 * c0;

@@ -65,7 +65,7 @@ touchstone_base::metrics! {
 
 /// The scene of a variant.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Scene {
+enum ExtremeScene {
     AtRest,
     Stirred,
     Blocks,
@@ -90,26 +90,31 @@ fn variants() -> Compositions<ExtremeSettings> {
         names.filter(|name| !uses.contains(name)).collect()
     };
     let wendland = touchstone_schemes::lattice::wendland();
-    Variants::<_, (Method, Scene)>::of(|(method, scene), s: &ExtremeSettings| {
+    Variants::<_, (Method, ExtremeScene)>::of(|(method, scene), s: &ExtremeSettings| {
         Ok(Extreme { method: method.clone(), scene: *scene, settings: s.clone() })
     })
-    .lacking([REST, rest], (cubic(), Scene::AtRest), all_but(AT_REST), |s| {
+    .lacking([REST, rest], (cubic(), ExtremeScene::AtRest), all_but(AT_REST), |s| {
         (s.n, s.h_over_dx, s.steps, s.dt) = (5, 1.2, 100_000, 0.7);
     })
-    .lacking([PRESSED, pressed], (wendland, Scene::AtRest), all_but(AT_REST), |s| {
+    .lacking([PRESSED, pressed], (wendland, ExtremeScene::AtRest), all_but(AT_REST), |s| {
         (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
     })
-    .lacking([COINCIDENT, coincident], (cubic(), Scene::Stirred), all_but(SHORT), |_| ())
-    .lacking([BULLET, bullet], (cubic(), Scene::Blocks), all_but(&["speed", "steps", "dt"]), |s| {
-        (s.steps, s.dt) = (200, 0.3);
-    })
+    .lacking([COINCIDENT, coincident], (cubic(), ExtremeScene::Stirred), all_but(SHORT), |_| ())
+    .lacking(
+        [BULLET, bullet],
+        (cubic(), ExtremeScene::Blocks),
+        all_but(&["speed", "steps", "dt"]),
+        |s| {
+            (s.steps, s.dt) = (200, 0.3);
+        },
+    )
     .all
 }
 
 /// A run of any variant.
 struct Extreme {
     method: Method,
-    scene: Scene,
+    scene: ExtremeScene,
     settings: ExtremeSettings,
 }
 
@@ -123,7 +128,7 @@ struct Watch {
 
 impl Extreme {
     fn is_resting(&self) -> bool {
-        self.scene == Scene::AtRest
+        self.scene == ExtremeScene::AtRest
     }
 
     /// How often its state is sampled.
@@ -166,9 +171,9 @@ impl Problem for Extreme {
 
     fn scene(&self) -> Result<Parts, RunError> {
         let scene = match self.scene {
-            Scene::AtRest => at_rest,
-            Scene::Stirred => stirred,
-            Scene::Blocks => blocks,
+            ExtremeScene::AtRest => at_rest,
+            ExtremeScene::Stirred => stirred,
+            ExtremeScene::Blocks => blocks,
         };
         Ok(scene(&self.method, &self.settings))
     }

@@ -23,7 +23,10 @@ use touchstone_solver::{CubicSpline, EquationOfState, Kernel, Numbers, Symmetric
 
 use super::{
     causes::{DISPERSION, ONE_LATTICE, SOFT_CONTACT, VISCOSITY},
-    solid::{self, Body, Common, Energy, LAGRANGIAN, Material, Scales, SolidSettings, Watch},
+    solid::{
+        self, ElasticBody, ElasticEnergy, LAGRANGIAN, Material, SolidParameters, SolidScales,
+        SolidSettings, Watch,
+    },
 };
 
 touchstone_base::settings! {
@@ -119,21 +122,21 @@ impl BarSettings {
     }
 }
 
-impl Body for BarSettings {
+impl ElasticBody for BarSettings {
     type Watch = Motion;
 
-    fn common(&self) -> Common {
+    fn common(&self) -> SolidParameters {
         self.solid.common()
     }
 
-    fn scales(&self) -> Scales {
+    fn scales(&self) -> SolidScales {
         let (dx, rows) = (self.length / self.n as f64, self.rows());
         let (bodies, auto) = match (self.collide, self.gap > 0.0) {
             (false, _) => (1, 0.3),
             (true, false) => (2, 1.3),
             (true, true) => (2, 3.0),
         };
-        Scales {
+        SolidScales {
             dx,
             length: self.length,
             speed: self.speed * self.wave(),
@@ -142,7 +145,7 @@ impl Body for BarSettings {
             decisive: "end, dt or n",
             meet: self.collide,
             domain: Domain { low: Vector2::zeros(), period: [None, Some(rows as f64 * dx)] },
-            ..Scales::default()
+            ..SolidScales::default()
         }
     }
 
@@ -180,8 +183,8 @@ impl Body for BarSettings {
 
     fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Motion {
         let all = scene.all();
-        let of_points = || Energy::of_points(all.iter().copied(), scene, &self.material());
-        let energy = Energy::known(start).map_or_else(of_points, Ok);
+        let of_points = || ElasticEnergy::of_points(all.iter().copied(), scene, &self.material());
+        let energy = ElasticEnergy::known(start).map_or_else(of_points, Ok);
         Motion::new(&all, energy.map(|energy| energy.total()))
     }
 }
@@ -307,7 +310,7 @@ impl Watch<BarSettings> for Motion {
         }
         let momentum = momentum(&end.all()) - self.momentum;
         record.put(MOMENTUM_ERROR, momentum.norm() / self.total);
-        let after = Energy::of(end, &s.material());
+        let after = ElasticEnergy::of(end, &s.material());
         let change = after.and_then(|after| Ok(after.total() / self.energy.clone()? - 1.0));
         record.put_or_absent(ENERGY_CHANGE, change);
         let column = |k: usize| self.series.iter().map(|row| row[k]).collect();

@@ -19,8 +19,8 @@ use touchstone_solver::Symmetric;
 use super::{
     causes::FREE_FACES,
     solid::{
-        self, Body, Common, Energy, LAGRANGIAN, Scales, SolidSettings, Watch, angular_momentum,
-        norm_squared,
+        self, ElasticBody, ElasticEnergy, LAGRANGIAN, SolidParameters, SolidScales, SolidSettings,
+        Watch, angular_momentum, norm_squared,
     },
 };
 
@@ -77,23 +77,23 @@ const SAMPLES: f64 = 200.0;
 /// When the angular momentum is first sampled, of a revolution.
 const TENTH: f64 = 0.1;
 
-impl Body for DiskSettings {
-    type Watch = History;
+impl ElasticBody for DiskSettings {
+    type Watch = DiskHistory;
 
-    fn common(&self) -> Common {
+    fn common(&self) -> SolidParameters {
         self.solid.common()
     }
 
-    fn scales(&self) -> Scales {
+    fn scales(&self) -> SolidScales {
         let speed = self.speed * self.material().sound_speed();
-        Scales {
+        SolidScales {
             dx: self.radius / self.n as f64,
             length: 2.0 * self.radius,
             speed,
             end: self.end * TAU * self.radius / speed,
             count: PI * (self.n as f64).powi(2),
             decisive: "end, dt or n",
-            ..Scales::default()
+            ..SolidScales::default()
         }
     }
 
@@ -107,14 +107,14 @@ impl Body for DiskSettings {
             .collect()
     }
 
-    fn watch(&self, scene: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> History {
-        History::new(self, scene)
+    fn watch(&self, scene: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> DiskHistory {
+        DiskHistory::new(self, scene)
     }
 }
 
 /// History of the disk.
 #[derive(Serialize, Deserialize)]
-pub struct History {
+pub struct DiskHistory {
     /// \[kg/m\].
     mass: f64,
     until: f64,
@@ -125,12 +125,12 @@ pub struct History {
     first: Option<([f64; 2], f64)>,
 }
 
-impl History {
+impl DiskHistory {
     fn new(s: &DiskSettings, scene: &Snapshot<Symmetric>) -> Self {
         let start = scene.all();
         let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
         let (mass, until) = (start.iter().map(|p| p.mass).sum(), s.end() / SAMPLES);
-        let energy = Energy::of_points(start.into_iter(), scene, &s.material());
+        let energy = ElasticEnergy::of_points(start.into_iter(), scene, &s.material());
         let mut series = Series::default();
         series.push([Ok(0.0), Ok(spin), energy.map(|energy| energy.total()), Ok(0.0)]);
         Self { mass, until, series, first: None }
@@ -145,7 +145,7 @@ impl History {
             }
             sum / mass
         });
-        let energy = Energy::of(now, &s.material()).map(|energy| energy.total());
+        let energy = ElasticEnergy::of(now, &s.material()).map(|energy| energy.total());
         let spin = angular_momentum(now);
         // A sample after the last step, when the velocities of a leapfrog lag, is replaced by the
         // synchronised one.
@@ -176,7 +176,7 @@ fn mistaken(now: &Snapshot<Symmetric>, radius: f64) -> Result<[f64; 2], Absent> 
     Ok([inside, rim / count])
 }
 
-impl Watch<DiskSettings> for History {
+impl Watch<DiskSettings> for DiskHistory {
     fn after_step(&mut self, s: &DiskSettings, now: &Snapshot<Symmetric>) {
         if let (None, Ok(simulation)) = (self.first, now.simulation()) {
             // One support for the gradient, one for the neighbours that XSPH has moved before it.
@@ -370,7 +370,7 @@ mod tests {
             particles.iter().find(|p| p.position.x == s.radius).expect("a particle at the rim");
         let [x, y] = [rim.velocity.x, rim.velocity.y];
         assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
-        let History { mass, series, .. } = History::new(&s, &Snapshot::of(0.0, &particles));
+        let DiskHistory { mass, series, .. } = DiskHistory::new(&s, &Snapshot::of(0.0, &particles));
         let row = [0, 1, 2].map(|k| series.column(k).expect("a column")[0]);
         let spin = 2.851 / 0.04;
         let inertia = mass * 0.5 * 0.04 * 0.04;

@@ -23,7 +23,7 @@ use touchstone_solver::EquationOfState;
 
 use super::{
     causes::{NOISY_DENSITY, SHORT_KERNEL},
-    water::{Ledger, Scales, WaterSettings, ledger},
+    water::{Ledger, WaterScales, WaterSettings, ledger},
 };
 
 touchstone_base::settings! {
@@ -100,7 +100,7 @@ impl Drop {
         let gravity = s.gravity * s.strain * rate;
         let fall = gravity * s.end / s.strain;
         let speed = (tip.strain * tip.b).max(rate) + fall;
-        let scales = Scales { dx, c0: s.c0 * rate, gravity, speed, end: s.end / s.strain };
+        let scales = WaterScales { dx, c0: s.c0 * rate, gravity, speed, end: s.end / s.strain };
         let (medium, rules) = s.water.medium(method, scales);
         Self { settings: s.clone(), method: method.clone(), medium, rules }
     }
@@ -127,14 +127,14 @@ impl Drop {
 
 /// Mean position and velocity, and the semi-axes of the ellipse with equal second moments: a² = 4 Σ m (x −
 /// x_c)²/Σ m.
-struct Shape {
+struct EllipseMoments {
     mass: f64,
     centre: Vector2<f64>,
     velocity: Vector2<f64>,
     axes: [f64; 2],
 }
 
-fn shape(particles: &[Point]) -> Shape {
+fn shape(particles: &[Point]) -> EllipseMoments {
     let (mut mass, mut centre, mut velocity) = (0.0, Vector2::zeros(), Vector2::zeros());
     for p in particles {
         mass += p.mass;
@@ -147,12 +147,12 @@ fn shape(particles: &[Point]) -> Shape {
         sum + r.component_mul(&r) * p.mass
     });
     let axes = [squares.x, squares.y].map(|s| 2.0 * (s / mass).sqrt());
-    Shape { mass, centre, velocity, axes }
+    EllipseMoments { mass, centre, velocity, axes }
 }
 
 /// Measurements through time.
 #[derive(Serialize, Deserialize)]
-struct History {
+struct DropHistory {
     /// The exact drop at the start.
     exact: Exact,
     /// t, semi-axes, the exact ones \[s, m\].
@@ -163,7 +163,7 @@ struct History {
     velocity: f64,
 }
 
-impl History {
+impl DropHistory {
     fn new(exact: Exact) -> Self {
         Self { exact, rows: Vec::new(), free_fall: [0.0; 2], velocity: 0.0 }
     }
@@ -171,7 +171,7 @@ impl History {
     fn sample(&mut self, drop: &Drop, now: &Snapshot) {
         let (t, g) = (now.time(), drop.medium.acceleration);
         let particles = now.all();
-        let Shape { centre, velocity, axes, .. } = shape(&particles);
+        let EllipseMoments { centre, velocity, axes, .. } = shape(&particles);
         let exact = self.exact.after(t);
         let [error, scale] = particles.iter().fold([0.0; 2], |[error, scale], p| {
             let r = p.position - g * (0.5 * t * t);
@@ -210,7 +210,7 @@ impl History {
 /// The history and the energy ledger.
 #[derive(Serialize, Deserialize)]
 struct Watch {
-    history: History,
+    history: DropHistory,
     ledger: Ledger,
     /// Kinetic energy of the exact drop at the start \[J/m\].
     kinetic: f64,
@@ -243,9 +243,9 @@ impl Problem for Drop {
 
     fn watch(&self, _: &Snapshot, _: &Snapshot) -> Watch {
         let start = Snapshot::of(0.0, &self.particles()).all();
-        let Shape { mass, axes, .. } = shape(&start);
+        let EllipseMoments { mass, axes, .. } = shape(&start);
         let kinetic = mass * (self.settings.strain * axes[0]).powi(2) / 4.0;
-        let (history, ledger) = (History::new(self.exact(&start)), Ledger::default());
+        let (history, ledger) = (DropHistory::new(self.exact(&start)), Ledger::default());
         Watch { history, ledger, kinetic }
     }
 
@@ -494,7 +494,8 @@ mod tests {
             let method = if variant == "seed" { water::free_seed() } else { water::free() };
             let drop = Drop::new(&method, &settings);
             let parts = drop.scene().expect("a scene");
-            let mut history = History::new(drop.exact(&Snapshot::of(0.0, &parts.particles).all()));
+            let mut history =
+                DropHistory::new(drop.exact(&Snapshot::of(0.0, &parts.particles).all()));
             let mut simulation = (method.build)(parts).expect("a scene");
             simulation.advance(0.0, 1.0, &mut ());
             history.sample(&drop, &Snapshot::ours(&*simulation));
@@ -534,8 +535,8 @@ mod tests {
             simulation.advance(0.0, 1.0, &mut ());
             simulation
         };
-        let history = || History::new(circle);
-        let measured = |history: &History| {
+        let history = || DropHistory::new(circle);
+        let measured = |history: &DropHistory| {
             let mut record = Record::new(NAME, "modern", serde_json::json!({}), 1);
             history.measure(&mut record);
             move |metric: MetricKey| record.value(metric).expect("a metric")

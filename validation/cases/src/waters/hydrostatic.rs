@@ -218,7 +218,7 @@ impl WaterColumn {
 impl Problem for WaterColumn {
     type Extra = ();
     type Simulation = dyn Metered<()>;
-    type Watch = History;
+    type Watch = ColumnHistory;
 
     fn method(&self) -> &WaterMethod {
         &self.method
@@ -241,8 +241,8 @@ impl Problem for WaterColumn {
         self.parts()
     }
 
-    fn watch(&self, _: &Snapshot, start: &Snapshot) -> History {
-        let mut history = History::new(self, start);
+    fn watch(&self, _: &Snapshot, start: &Snapshot) -> ColumnHistory {
+        let mut history = ColumnHistory::new(self, start);
         history.sample(self, start);
         history
     }
@@ -251,7 +251,7 @@ impl Problem for WaterColumn {
         calls.at("history", |column, history, now, _, _| history.sample(column, now))
     }
 
-    fn measure(&self, history: History, _: &Snapshot, record: &mut Record) {
+    fn measure(&self, history: ColumnHistory, _: &Snapshot, record: &mut Record) {
         history.measure(record);
     }
 }
@@ -262,7 +262,7 @@ const HISTORY: [(&str, &str); 5] =
     [("t", "4 H/c0"), ("p_l2", "-"), ("level_drift", "H"), ("gap", "dx"), ("kinetic", "M g H")];
 
 #[derive(Serialize, Deserialize)]
-struct History {
+struct ColumnHistory {
     /// Mean heights of the lowest and of the highest particles at the start \[m\].
     start: [f64; 2],
     /// The columns of [`HISTORY`].
@@ -273,7 +273,7 @@ struct History {
     spread: f64,
 }
 
-impl History {
+impl ColumnHistory {
     /// No sample yet of water that starts like this.
     fn new(column: &WaterColumn, start: &Snapshot) -> Self {
         let start = ends(column, &start.moving());
@@ -495,7 +495,7 @@ mod tests {
         let water = || -> Vec<Particle> { column.water(method.properties.first_row).collect() };
         let start = ends(&column, &Snapshot::of(0.0, &water()).all());
         assert!((start[0] - 0.5 * dx).abs() < 1e-12 && (start[1] - 19.5 * dx).abs() < 1e-12);
-        let mut history = History::new(&column, &Snapshot::of(0.0, &water()));
+        let mut history = ColumnHistory::new(&column, &Snapshot::of(0.0, &water()));
         history.sample(&column, &Snapshot::of(0.0, &water()));
         let mut changed = water();
         for p in &mut changed {

@@ -100,7 +100,8 @@ impl Still {
     fn new(m: &WaterMethod, s: &Wedge) -> Self {
         let (dx, fall) = (1.0 / s.n as f64, s.gravity.sqrt());
         let end = s.end * 4.0 / (s.c0 * fall);
-        let scales = water::Scales { dx, c0: s.c0 * fall, gravity: s.gravity, speed: 0.0, end };
+        let scales =
+            water::WaterScales { dx, c0: s.c0 * fall, gravity: s.gravity, speed: 0.0, end };
         let (medium, rules) = s.water.medium(m, scales);
         Self { settings: s.clone(), method: m.clone(), medium, rules }
     }

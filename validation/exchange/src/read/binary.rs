@@ -20,7 +20,7 @@ pub enum Of {
 
 /// Representation of numbers as bytes.
 #[derive(Clone, Copy, Debug)]
-pub struct Kind {
+pub struct NumberFormat {
     pub of: Of,
     /// Bytes of each.
     pub width: usize,
@@ -28,7 +28,7 @@ pub struct Kind {
     pub is_big: bool,
 }
 
-impl Kind {
+impl NumberFormat {
     /// Floats of 4 or 8 bytes, or whole numbers of 1, 2, 4 or 8.
     fn new(of: Of, bits: Option<usize>, is_big: bool) -> Option<Self> {
         let is_known = |bits: &usize| match of {
@@ -77,7 +77,10 @@ fn unknown(name: &str) -> String {
 ///
 /// # Errors
 /// If the bytes end within a number, or there are too many.
-pub fn numbers(Kind { of, width, is_big }: Kind, bytes: &[u8]) -> Result<Vec<f64>, String> {
+pub fn numbers(
+    NumberFormat { of, width, is_big }: NumberFormat,
+    bytes: &[u8],
+) -> Result<Vec<f64>, String> {
     if !bytes.len().is_multiple_of(width) {
         return Err("it ends within a number".into());
     }

@@ -14,7 +14,7 @@ use touchstone_harness::{
 use super::{Head, MOST_FLAWS, MOST_ROWS, Renamed, Results, Rows, table};
 use crate::{
     flaw::Flaw,
-    problem::{CURVE, Problem},
+    problem::{CURVE, ExportedProblem},
 };
 
 /// The frames represented by a table.
@@ -25,7 +25,7 @@ pub fn frames(
     curve: &SubmittedCurve,
     text: &str,
     renamed: &Renamed,
-    problem: &Problem,
+    problem: &ExportedProblem,
 ) -> Result<Results, Vec<Flaw>> {
     let rows = finite(curve, text, renamed)?;
     let (times, ascending) = (rows.column("t"), curve.columns[0].0);

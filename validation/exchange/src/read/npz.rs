@@ -60,7 +60,7 @@ fn numbers(array: &mut dyn Read) -> Result<Vec<f64>, String> {
         return Err("it has Fortran order; expected C order".into());
     }
     let kind = head.split("'descr':").nth(1).and_then(|rest| rest.split('\'').nth(1));
-    let values = binary::numbers(binary::Kind::of_numpy(kind.unwrap_or_default())?, data)?;
+    let values = binary::numbers(binary::NumberFormat::of_numpy(kind.unwrap_or_default())?, data)?;
     let shape = head.split("'shape': (").nth(1).and_then(|rest| rest.split(')').next());
     let sizes = shape.unwrap_or_default().split(',').filter(|size| !size.trim().is_empty());
     let mut count = sizes.map(|size| size.trim().parse::<usize>().ok());

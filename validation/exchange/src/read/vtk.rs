@@ -8,7 +8,7 @@ use touchstone_base::text::{few, from_base64, short};
 
 use super::{
     Renamed, Rows,
-    binary::{self, Kind, MOST_NUMBERS, Of, too_long},
+    binary::{self, MOST_NUMBERS, NumberFormat, Of, too_long},
     columns::{Heads, MOST_SHOWN},
     of_arrays,
 };
@@ -32,7 +32,7 @@ pub fn rows(file: &str, bytes: Vec<u8>, renamed: &Renamed) -> Result<Rows, Vec<F
     let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(&text, options)
         .map_err(|error| vec![Flaw::of(file, error.to_string()).at(error.pos().row.into())])?;
-    let layout = Layout::of(&document, &appended).map_err(whole)?;
+    let layout = ArrayLayout::of(&document, &appended).map_err(whole)?;
     let mut arrays: Vec<Array> = Vec::new();
     for node in document.descendants().filter(|node| node.has_tag_name("DataArray")) {
         let line = || document.text_pos_at(node.range().start).row.into();
@@ -150,7 +150,7 @@ impl<'a> Stream<'a> {
 }
 
 /// Common data of the arrays of a file.
-struct Layout<'a> {
+struct ArrayLayout<'a> {
     /// Does the most significant byte come first?
     is_big: bool,
     /// Bytes of a number in the head of an array.
@@ -160,7 +160,7 @@ struct Layout<'a> {
     appended: Option<Stream<'a>>,
 }
 
-impl<'a> Layout<'a> {
+impl<'a> ArrayLayout<'a> {
     fn of(document: &'a Document, appended: &'a [u8]) -> Result<Self, String> {
         let root = document.root_element();
         let is_big = match root.attribute("byte_order") {
@@ -309,12 +309,12 @@ impl<'a> Array<'a> {
     }
 
     /// Type of its numbers.
-    fn kind(&self, is_big: bool) -> Result<Kind, String> {
-        Kind::of_vtk(self.node.attribute("type").unwrap_or("not stated"), is_big)
+    fn kind(&self, is_big: bool) -> Result<NumberFormat, String> {
+        NumberFormat::of_vtk(self.node.attribute("type").unwrap_or("not stated"), is_big)
     }
 
     /// Numbers.
-    fn values(&self, layout: &Layout) -> Result<Vec<f64>, String> {
+    fn values(&self, layout: &ArrayLayout) -> Result<Vec<f64>, String> {
         let Self { node, components, .. } = self;
         if *components > 3 {
             return Err(format!("it has {components} components; expected 1 to 3"));

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use touchstone_harness::outline::Outline;
 
 use super::{WriteError, check_fluid};
-use crate::problem::Problem;
+use crate::problem::ExportedProblem;
 
 /// Margin of the box in open directions, in spacings.
 const MARGIN: f64 = 50.0;
@@ -15,7 +15,7 @@ const MARGIN: f64 = 50.0;
 /// velocity.
 const COURANT: f64 = 0.15;
 
-pub fn files(problem: &Problem) -> Result<Vec<(&'static str, String)>, WriteError> {
+pub fn files(problem: &ExportedProblem) -> Result<Vec<(&'static str, String)>, WriteError> {
     check_fluid("LAMMPS", problem)?;
     let (data, script) = (data(&problem.outline), script(problem));
     Ok(vec![("data.lmp", data), ("in.lmp", script), ("run_lammps.py", RUN.to_string())])
@@ -84,7 +84,7 @@ fn mass(outline: &Outline) -> (f64, f64) {
     (first, masses.iter().fold(0.0, |most, mass| (mass / first - 1.0).abs().max(most)))
 }
 
-fn script(problem: &Problem) -> String {
+fn script(problem: &ExportedProblem) -> String {
     let Outline { medium: m, times, .. } = &problem.outline;
     let borders = [0, 1].map(|axis| ends(&problem.outline, axis).1);
     let cut = problem.outline.method.support * m.h;

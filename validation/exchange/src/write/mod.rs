@@ -5,7 +5,7 @@ mod lammps;
 use thiserror::Error;
 use touchstone_base::vtk;
 
-use crate::problem::{PARTICLES, PROBLEM, Problem};
+use crate::problem::{ExportedProblem, PARTICLES, PROBLEM};
 
 /// A script that reads `particles.csv` and `problem.json`, runs the scheme of its name with PySPH, and writes
 /// `results.csv` and `system.json` as `touchstone submit` reads them.
@@ -67,7 +67,7 @@ const README: &str = "README.md";
 ///
 /// # Errors
 /// If the code of the format cannot run it.
-pub fn files(problem: &Problem, format: Format) -> Result<Vec<File>, WriteError> {
+pub fn files(problem: &ExportedProblem, format: Format) -> Result<Vec<File>, WriteError> {
     let own: Vec<(&str, String)> = match format {
         Format::Csv => Vec::new(),
         Format::Vtu => vec![("particles.vtu", vtk::particles(0.0, &problem.particles())?)],
@@ -88,7 +88,7 @@ pub fn files(problem: &Problem, format: Format) -> Result<Vec<File>, WriteError>
 }
 
 /// Refuses problems beyond a code of weakly compressible fluids with walls of particles.
-fn check_fluid(code: &'static str, problem: &Problem) -> Result<(), WriteError> {
+fn check_fluid(code: &'static str, problem: &ExportedProblem) -> Result<(), WriteError> {
     let refused = |why| {
         let (case, variant) = (problem.spec.case.clone(), problem.spec.variant.clone());
         Err(WriteError::Cannot { code, case, variant, why })

@@ -323,7 +323,7 @@ impl Answer<'_> {
     fn orders(&self) -> Result<[f64; 3], String> {
         let (accuracy, ladder) = self.ladder()?;
         let points = cost::points(self.metric, ladder, self.runs);
-        let levels: Vec<_> = points.iter().map(cost::Point::level).collect();
+        let levels: Vec<_> = points.iter().map(cost::LadderPoint::level).collect();
         let found = convergence(&levels, accuracy.slope);
         let found = found.map_err(|_| format!("{} resolutions", levels.len()))?;
         let compared = self.shown.first().and_then(|spec| self.compared(spec));
@@ -332,11 +332,11 @@ impl Answer<'_> {
             return Err("the ladder does not tell".into());
         }
         let x: Vec<f64> = points.iter().map(|point| ln(point.spacing)).collect();
-        let growth = |of: fn(&cost::Point) -> f64| {
+        let growth = |of: fn(&cost::LadderPoint) -> f64| {
             let y: Vec<f64> = points.iter().map(|point| ln(of(point))).collect();
             -slope(&x, &y).0
         };
-        Ok([found.order, growth(|point| point.pairs), growth(cost::Point::median)])
+        Ok([found.order, growth(|point| point.pairs), growth(cost::LadderPoint::median)])
     }
 
     /// The smallest value of a setting at which a run of the variant broke, or the largest at which none did.

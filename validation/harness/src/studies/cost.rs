@@ -16,7 +16,7 @@ use super::{Card, Ladder, ladder};
 use crate::{
     case::Case,
     columns::TableColumns,
-    convergence::{Level, convergence},
+    convergence::{ErrorLevel, convergence},
     orders::{self, FittedOrder},
     runs::{Planned, Runs},
     section::Section,
@@ -83,7 +83,7 @@ impl Accuracy {
 
 /// One run of a ladder.
 #[derive(Clone, Debug)]
-pub(super) struct Point {
+pub(super) struct LadderPoint {
     /// Spacing.
     pub spacing: f64,
     /// Label in figures: its resolution.
@@ -101,7 +101,7 @@ pub(super) struct Line<'a> {
     /// Name in the legend.
     pub name: &'a str,
     /// The runs, coarse to fine.
-    pub points: &'a [Point],
+    pub points: &'a [LadderPoint],
 }
 
 /// The setting that refines the runs of a case: a number of particles, or else a spacing.
@@ -131,15 +131,15 @@ impl RefiningSetting {
     }
 }
 
-impl Point {
+impl LadderPoint {
     /// Median of the timings \[s\]; NaN if the run was not timed.
     pub(super) fn median(&self) -> f64 {
         median(&self.seconds).unwrap_or(f64::NAN)
     }
 
     /// Spacing and error.
-    pub fn level(&self) -> Level {
-        Level { spacing: self.spacing, value: self.error }
+    pub fn level(&self) -> ErrorLevel {
+        ErrorLevel { spacing: self.spacing, value: self.error }
     }
 
     /// Fastest and slowest \[s\].
@@ -150,14 +150,14 @@ impl Point {
 }
 
 /// The points of a ladder, whose error is the magnitude of a metric.
-pub(super) fn points(error: &MetricName, ladder: &Ladder, runs: &Runs) -> Vec<Point> {
+pub(super) fn points(error: &MetricName, ladder: &Ladder, runs: &Runs) -> Vec<LadderPoint> {
     let levels = ladder.levels.iter();
     let of = levels.map(|level| {
         let record = runs.record(&level.run.spec);
         let error = record.and_then(|record| error_of(error, record));
         let mut seconds = record.map_or(Vec::new(), |record| record.cost.alone_s.clone());
         seconds.sort_by(f64::total_cmp);
-        Point {
+        LadderPoint {
             spacing: level.spacing,
             label: level.resolution.count.to_string(),
             error: error.unwrap_or(f64::NAN),
@@ -169,13 +169,13 @@ pub(super) fn points(error: &MetricName, ladder: &Ladder, runs: &Runs) -> Vec<Po
 }
 
 /// The cost of a run.
-pub(super) type Cost = fn(&Point) -> f64;
+pub(super) type Cost = fn(&LadderPoint) -> f64;
 
 /// Points that no other point beats in both error and cost, cheapest first.
-fn pareto<'a>(points: impl Iterator<Item = &'a Point>, cost: Cost) -> Vec<&'a Point> {
-    let mut sorted: Vec<&Point> = points.filter(|p| p.error.is_finite()).collect();
+fn pareto<'a>(points: impl Iterator<Item = &'a LadderPoint>, cost: Cost) -> Vec<&'a LadderPoint> {
+    let mut sorted: Vec<&LadderPoint> = points.filter(|p| p.error.is_finite()).collect();
     sorted.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
-    let mut front: Vec<&Point> = Vec::new();
+    let mut front: Vec<&LadderPoint> = Vec::new();
     for point in sorted {
         if front.last().is_none_or(|best| point.error < best.error) {
             front.push(point);
@@ -186,22 +186,22 @@ fn pareto<'a>(points: impl Iterator<Item = &'a Point>, cost: Cost) -> Vec<&'a Po
 
 /// The least median cost of the points of a ladder with at most this error and with finer levels of at most
 /// this error: a single level may be good because parts of its error cancel. NaN if there is none.
-fn cheapest(ladder: &[Point], error: f64) -> f64 {
-    let holds = |point: &&Point| {
+fn cheapest(ladder: &[LadderPoint], error: f64) -> f64 {
+    let holds = |point: &&LadderPoint| {
         let finer = ladder.iter().filter(|p| p.spacing <= point.spacing);
         finer.into_iter().all(|p| p.error <= error)
     };
-    ladder.iter().filter(holds).map(Point::median).fold(f64::NAN, f64::min)
+    ladder.iter().filter(holds).map(LadderPoint::median).fold(f64::NAN, f64::min)
 }
 
 /// The errors for which the table states the least run time.
 const GOALS: [f64; 2] = [1e-2, 1e-3];
 
 /// Results for a ladder.
-struct Row<'a> {
+struct LadderRow<'a> {
     of: &'a Ladder,
-    points: Vec<Point>,
-    levels: Vec<Level>,
+    points: Vec<LadderPoint>,
+    levels: Vec<ErrorLevel>,
     found: FittedOrder,
 }
 
@@ -216,11 +216,11 @@ impl Study for Accuracy {
     fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
         let row = |of| {
             let points = points(&self.error, of, runs);
-            let levels: Vec<Level> = points.iter().map(Point::level).collect();
+            let levels: Vec<ErrorLevel> = points.iter().map(LadderPoint::level).collect();
             let found = convergence(&levels, self.slope);
-            Row { of, points, levels, found }
+            LadderRow { of, points, levels, found }
         };
-        let rows: Vec<Row> = self.ladders.iter().map(row).collect();
+        let rows: Vec<LadderRow> = self.ladders.iter().map(row).collect();
         let id = format!("{}-work-precision", self.id);
         let section = Section::new(&id, "What a smaller error costs");
         let judged = rows.iter().filter_map(|row| Some((row.of.order.clone()?, &row.found)));
@@ -291,18 +291,18 @@ pub fn against_run_time(
 }
 
 /// Error over run time.
-fn timed(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
+fn timed(id: &str, accuracy: &Accuracy, rows: &[LadderRow]) -> Figure {
     let about = first_sentence(&accuracy.about).0;
     let caption = format!(
         "{about} Error over run time on one core. Numbers at the ends of lines are resolutions; no point \
          beats the pale line in both error and time."
     );
     let axes = ["", "run time on one core [s]", &accuracy.label];
-    Figure::new(id, caption).panel(panel(axes, &lines(rows), Point::median, true))
+    Figure::new(id, caption).panel(panel(axes, &lines(rows), LadderPoint::median, true))
 }
 
 /// Error over spacing and over pair interactions.
-fn refined(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
+fn refined(id: &str, accuracy: &Accuracy, rows: &[LadderRow]) -> Figure {
     let slope = accuracy.slope.map(|order| format!(" The grey line has order {}.", exact(order)));
     let about = first_sentence(&accuracy.about).0;
     let caption = format!(
@@ -318,7 +318,7 @@ fn refined(id: &str, accuracy: &Accuracy, rows: &[Row]) -> Figure {
     figure.panel(spacing).panel(counted)
 }
 
-fn lines<'a>(rows: &'a [Row]) -> Vec<Line<'a>> {
+fn lines<'a>(rows: &'a [LadderRow]) -> Vec<Line<'a>> {
     rows.iter().map(|row| Line { name: row.of.variant, points: &row.points }).collect()
 }
 
@@ -335,7 +335,7 @@ pub(super) fn panel(
     let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
     plot = plot.layer(Series::line("best of all", front).colour(PALE).width(7.0));
     for (k, Line { name, points }) in lines.iter().enumerate() {
-        let own: Vec<&Point> = points.iter().filter(|p| p.error.is_finite()).collect();
+        let own: Vec<&LadderPoint> = points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
         let mut series = Series::line(*name, line).cycle(k);
         series.names = own.iter().map(|p| p.label.clone()).collect();
@@ -363,12 +363,12 @@ const TIMES: &str = "Times are the least median run time on one core of a level 
     every finer level, is at most so much: at a single level errors of time and spacing can cancel.";
 
 /// Orders, intervals, and the costs of errors.
-fn table(accuracy: &Accuracy, rows: &[Row]) -> Table {
+fn table(accuracy: &Accuracy, rows: &[LadderRow]) -> Table {
     let about = format!("Observed orders of accuracy. {} {LABELS} {TIMES}", accuracy.about);
-    let finest = |row: &Row| row.points.last().map_or(f64::NAN, |p| p.error);
+    let finest = |row: &LadderRow| row.points.last().map_or(f64::NAN, |p| p.error);
     let columns = TableColumns::default()
-        .code("variant", |row: &Row| row.of.variant)
-        .order(|row: &Row| &row.found)
+        .code("variant", |row: &LadderRow| row.of.variant)
+        .order(|row: &LadderRow| &row.found)
         .of(["finest error", "-"], finest, |error| Cell::percent(error, 2));
     let columns = GOALS.iter().fold(columns, |columns, goal| {
         let head = format!("time to {}", percent(*goal, 1));
@@ -386,9 +386,9 @@ mod tests {
     use super::*;
     use crate::studies::tests::{ERROR, column, comparison, evaluate, records, spec, tables};
 
-    fn point(name: &str, error: f64, seconds: &[f64]) -> Point {
+    fn point(name: &str, error: f64, seconds: &[f64]) -> LadderPoint {
         let (label, seconds) = (name.to_string(), seconds.to_vec());
-        Point { spacing: 0.1, label, error, seconds, pairs: 1.0 }
+        LadderPoint { spacing: 0.1, label, error, seconds, pairs: 1.0 }
     }
 
     #[test]
@@ -399,13 +399,13 @@ mod tests {
             point("slow and bad", 2e-2, &[1.5]),
             point("failed", f64::NAN, &[0.01]),
         ];
-        let front = pareto(points.iter(), Point::median);
+        let front = pareto(points.iter(), LadderPoint::median);
         assert_eq!(names(front), ["fast and bad", "slow and good"]);
         assert_eq!(points[0].median(), 2.0);
         assert_eq!(points[0].spread(), (1.0, 3.0));
     }
 
-    fn names<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<String> {
+    fn names<'a>(points: impl IntoIterator<Item = &'a LadderPoint>) -> Vec<String> {
         points.into_iter().map(|p| p.label.clone()).collect()
     }
 
@@ -420,10 +420,13 @@ mod tests {
             point("equal and dearer", 1e-2, &[1.5]),
             point("worse than the best alone", 0.9901e-2, &[5.0]),
         ];
-        assert_eq!(names(pareto(points.iter(), Point::median)), ["cheapest", "a hundredth better"]);
+        assert_eq!(
+            names(pareto(points.iter(), LadderPoint::median)),
+            ["cheapest", "a hundredth better"]
+        );
         // By work, of which they all have as much as the number of their place, the first comes first.
-        let work = |k: usize| Point { pairs: k as f64, ..points[k].clone() };
-        let work: Vec<Point> = (0..points.len()).map(work).collect();
+        let work = |k: usize| LadderPoint { pairs: k as f64, ..points[k].clone() };
+        let work: Vec<LadderPoint> = (0..points.len()).map(work).collect();
         assert_eq!(names(pareto(work.iter(), |p| p.pairs)), ["a hundredth better"]);
     }
 
@@ -434,13 +437,13 @@ mod tests {
         assert_eq!((cheapest(&disturbed, 1e-3), disturbed[0].spread()), (2.1, (2.0, 30.0)));
         assert!(cheapest(&disturbed, 1e-5).is_nan());
         // A failure has no error, so coarser levels do not count either.
-        let failed = Point { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
+        let failed = LadderPoint { spacing: 0.05, ..point("failed later", f64::NAN, &[9.0]) };
         assert!(cheapest(&[point("failed later", 1e-3, &[1.0]), failed], 1e-2).is_nan());
     }
 
     #[test]
     fn an_error_that_a_finer_level_does_not_reach_is_not_the_cheapest() {
-        let of = |spacing: f64, error: f64, seconds: f64| Point {
+        let of = |spacing: f64, error: f64, seconds: f64| LadderPoint {
             spacing,
             ..point("cancels", error, &[seconds])
         };

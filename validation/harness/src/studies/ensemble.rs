@@ -45,7 +45,7 @@ pub struct Ensemble {
     /// Quantities over time.
     pub histories: Vec<History>,
     /// The numbers whose distribution is shown.
-    pub numbers: Vec<Number>,
+    pub numbers: Vec<MemberNumber>,
     /// Is it drawn?
     pub is_drawn: bool,
 }
@@ -70,7 +70,7 @@ pub struct History {
 pub type NumberOf = Box<dyn Fn(&Record) -> Option<f64> + Send + Sync>;
 
 /// A number that each member gives, and which has a distribution.
-pub struct Number {
+pub struct MemberNumber {
     /// Name, and unit.
     pub name: [&'static str; 2],
     /// Value of a record, if measured.
@@ -149,8 +149,9 @@ fn evaluate(case: &str, ensembles: &Ensembles, runs: &Runs) -> Section {
     for made in &all {
         let of = |of| (made, Followed::of(of, &made.records));
         followed.extend(made.of.histories.iter().map(of));
-        let values =
-            |of: &Number| made.records.iter().filter_map(|record| (of.value)(record)).collect();
+        let values = |of: &MemberNumber| {
+            made.records.iter().filter_map(|record| (of.value)(record)).collect()
+        };
         numbers.extend(made.of.numbers.iter().map(|of| (made, of, values(of))));
     }
     let id = anchor(case, "ensembles");
@@ -181,7 +182,7 @@ fn complete(made: &CompletedEnsemble) -> Judged {
 }
 
 /// A number of an ensemble with its values, one a member.
-type Numbered<'a> = (&'a CompletedEnsemble<'a>, &'a Number, Vec<f64>);
+type Numbered<'a> = (&'a CompletedEnsemble<'a>, &'a MemberNumber, Vec<f64>);
 
 fn horizons(unit: &str, all: &[(&CompletedEnsemble, Followed)]) -> Table {
     let caption = format!(
@@ -338,7 +339,7 @@ mod tests {
             is_drawn: true,
             gate: Some(gate("agree", Bound::Above(4.0))),
         };
-        let number = Number {
+        let number = MemberNumber {
             name: ["number", "1"],
             value: Box::new(|record| record.value(ERROR)),
             measured: vec![3.0, 4.0],

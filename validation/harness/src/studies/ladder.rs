@@ -16,7 +16,7 @@ pub const FINER: i32 = 2;
 
 /// The setting that decides the spacing of the runs of a ladder, with its resolution in words.
 pub struct Spacing<T> {
-    setting: Setting<T>,
+    setting: RefinedSetting<T>,
     beside: Option<Count<T>>,
     length: fn(&T) -> f64,
     words: &'static str,
@@ -25,18 +25,18 @@ pub struct Spacing<T> {
 /// A number of spacings among settings.
 type Count<T> = fn(&mut T) -> &mut usize;
 
-enum Setting<T> {
+enum RefinedSetting<T> {
     Count(Count<T>),
     Length(fn(&mut T) -> &mut f64),
 }
 
-impl<T> Clone for Setting<T> {
+impl<T> Clone for RefinedSetting<T> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T> Copy for Setting<T> {}
+impl<T> Copy for RefinedSetting<T> {}
 
 impl<T> Clone for Spacing<T> {
     fn clone(&self) -> Self {
@@ -50,13 +50,13 @@ impl<T: Settings> Spacing<T> {
     /// A setting that is the number of spacings in the unit of length; in the words of its resolution `{}` is
     /// replaced by the number.
     pub fn count(setting: fn(&mut T) -> &mut usize, words: &'static str) -> Self {
-        Self { setting: Setting::Count(setting), beside: None, length: |_| 1.0, words }
+        Self { setting: RefinedSetting::Count(setting), beside: None, length: |_| 1.0, words }
     }
 
     /// A setting that is the spacing; in the words of its resolution `{}` is replaced by the number of
     /// spacings in the unit of length.
     pub fn length(setting: fn(&mut T) -> &mut f64, words: &'static str) -> Self {
-        Self { setting: Setting::Length(setting), beside: None, length: |_| 1.0, words }
+        Self { setting: RefinedSetting::Length(setting), beside: None, length: |_| 1.0, words }
     }
 
     /// Counts the spacings in another length, in the unit of [`Accuracy::spacing`](super::Accuracy::spacing).
@@ -75,11 +75,11 @@ impl<T: Settings> Spacing<T> {
     pub(crate) fn level(self, run: Planned, settings: &T) -> Level {
         let (words, length, mut settings) = (self.words, (self.length)(settings), settings.clone());
         let (spacing, count) = match self.setting {
-            Setting::Count(setting) => {
+            RefinedSetting::Count(setting) => {
                 let count = *setting(&mut settings);
                 (length / count as f64, count)
             }
-            Setting::Length(setting) => {
+            RefinedSetting::Length(setting) => {
                 let spacing = *setting(&mut settings);
                 (spacing, (length / spacing).round() as usize)
             }
@@ -93,8 +93,8 @@ impl<T: Settings> Spacing<T> {
         let mut finer: T = settings::of_json(&run.settings).ok()?;
         let refine = |count: &mut usize| *count = (*count as f64 / factor).round() as usize;
         match self.setting {
-            Setting::Count(setting) => refine(setting(&mut finer)),
-            Setting::Length(setting) => *setting(&mut finer) *= factor,
+            RefinedSetting::Count(setting) => refine(setting(&mut finer)),
+            RefinedSetting::Length(setting) => *setting(&mut finer) *= factor,
         }
         self.beside.iter().for_each(|other| refine(other(&mut finer)));
         settings::validate(&finer).ok()?;

@@ -21,7 +21,7 @@ pub use budget::{Budgets, Change};
 pub use card::{Breaks, Card, Stated};
 pub use cost::Accuracy;
 pub use curves::{CurveOf, CurvePanel, Curves, PointsOf};
-pub use ensemble::{Ensemble, Ensembles, History, Number};
+pub use ensemble::{Ensemble, Ensembles, History, MemberNumber};
 pub use ladder::{FINER, Ladder, Level, Refine, Resolution, Spacing};
 pub use limit::{StepLimit, StepLimits};
 pub use map::{Map, MapPanel, STARTS};

@@ -125,7 +125,7 @@ impl Sensitivity {
 }
 
 /// A constant and the results of the searches: the best of all runs.
-struct Row<'a> {
+struct SensitivityRow<'a> {
     watched: &'a Watched,
     detected: Option<&'a Record>,
     undetected: Option<f64>,
@@ -135,7 +135,7 @@ struct Row<'a> {
     is_whole: bool,
 }
 
-impl Row<'_> {
+impl SensitivityRow<'_> {
     /// The smallest detected error; NaN if a search is missing.
     fn error(&self) -> f64 {
         let error = self.detected.and_then(|record| record.value(DETECTED)).unwrap_or(NONE);
@@ -162,7 +162,7 @@ impl Study for Sensitivity {
 
     fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
         let row = |watched| row(self, watched, runs);
-        let rows: Vec<Row> = self.of.iter().map(row).collect();
+        let rows: Vec<SensitivityRow> = self.of.iter().map(row).collect();
         let mut section =
             Section::new(&anchor(case, "sensitivity"), "Errors that the gates detect");
         for row in &rows {
@@ -172,21 +172,21 @@ impl Study for Sensitivity {
                 section = section.judge(gate, failed as f64);
             }
         }
-        let faults = |row: &Row| {
+        let faults = |row: &SensitivityRow| {
             let of = |(factor, failed): &(f64, usize)| format!("× {factor}: {failed}");
             row.faults.iter().map(of).collect::<Vec<_>>().join(", ")
         };
         let percent = |error: f64| Cell::percent(error, 2);
-        let error = move |row: &Row| match row.error() {
+        let error = move |row: &SensitivityRow| match row.error() {
             NONE => Cell::text("none"),
             error => percent(error),
         };
-        let table = TableColumns::<Row>::default()
+        let table = TableColumns::<SensitivityRow>::default()
             .text("constant", |row| row.watched.constant.words())
             .num(["must be detected", "-"], move |row| percent(row.watched.constant.allowed()))
             .num(["detected from", "-"], error)
             .num(["not detected", "-"], move |row| row.undetected.map_or(Cell::text("–"), percent))
-            .marked("gates that detect it", Row::gates)
+            .marked("gates that detect it", SensitivityRow::gates)
             .text("gates that detect a gross fault", faults)
             .text("why not smaller", |row| row.watched.blind.as_ref().map_or("", |blind| blind.why))
             .table(ABOUT, &rows);
@@ -206,7 +206,7 @@ impl Study for Sensitivity {
 }
 
 /// The search of that run which detects the smallest error.
-fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> Row<'a> {
+fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> SensitivityRow<'a> {
     let searches = sensitivity.searches(watched.constant);
     let records: Vec<Option<&Record>> = searches.map(|spec| runs.completed(&spec)).collect();
     let is_whole = records.iter().all(Option::is_some);
@@ -220,7 +220,7 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> R
     };
     let failed = |factor: &f64| failed(sensitivity, watched.constant, *factor, runs);
     let faults = watched.faults.iter().map(|factor| (*factor, failed(factor))).collect();
-    Row { watched, detected, undetected, faults, is_whole }
+    SensitivityRow { watched, detected, undetected, faults, is_whole }
 }
 
 /// The gates of the runs that fail with a gross fault, without gates that compare the program with itself.

@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// A submission with an error.
-struct Mark<'a> {
+struct SubmissionMark<'a> {
     of: &'a Submission,
     /// Code, scheme and the variant of its problem; of ours the variant.
     name: String,
@@ -29,7 +29,7 @@ struct Mark<'a> {
     seconds: f64,
 }
 
-impl Mark<'_> {
+impl SubmissionMark<'_> {
     /// Whether it is a run that the program contains. Other codes may choose any name.
     fn is_ours(&self) -> bool {
         self.of.code == OURS && self.session.is_some()
@@ -43,14 +43,14 @@ fn session(record: &Record) -> Option<&str> {
 
 /// The submissions with an error of this study; for equal methods and numbers of particles only the fastest,
 /// because a longer run has no other error.
-fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
+fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<SubmissionMark<'a>> {
     let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.run.submission.as_ref()?);
         let name = match of.code.as_str() {
             OURS if session(record).is_some() => format!("ours, {}", record.run.variant),
             code => format!("{code}, {} ({})", of.scheme, record.run.variant),
         };
-        Some(Mark {
+        Some(SubmissionMark {
             of,
             name,
             particles: record.cost.particles,
@@ -59,11 +59,11 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
             seconds: record.cost.cpu_s,
         })
     };
-    let mut marks: Vec<Mark> = runs.of_others().filter_map(of).collect();
+    let mut marks: Vec<SubmissionMark> = runs.of_others().filter_map(of).collect();
     marks.sort_by(|a, b| a.name.cmp(&b.name).then(a.seconds.total_cmp(&b.seconds)));
-    let mut first: Vec<Mark> = Vec::new();
+    let mut first: Vec<SubmissionMark> = Vec::new();
     for mark in marks {
-        let is_same = |of: &Mark| of.particles == mark.particles && of.name == mark.name;
+        let is_same = |of: &SubmissionMark| of.particles == mark.particles && of.name == mark.name;
         if mark.particles == 0 || !first.iter().any(is_same) {
             first.push(mark);
         }
@@ -73,8 +73,9 @@ fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<Mark<'a>> {
 
 /// Where another code is better than ours in one session: in error at an equal number of particles, or in
 /// time at no more error, at any resolution.
-fn better(marks: &[Mark]) -> Option<String> {
-    let (ours, others): (Vec<&Mark>, Vec<&Mark>) = marks.iter().partition(|m| m.is_ours());
+fn better(marks: &[SubmissionMark]) -> Option<String> {
+    let (ours, others): (Vec<&SubmissionMark>, Vec<&SubmissionMark>) =
+        marks.iter().partition(|m| m.is_ours());
     if ours.is_empty() || others.is_empty() {
         return None;
     }
@@ -114,9 +115,11 @@ fn better(marks: &[Mark]) -> Option<String> {
 const MOST_NAMED: usize = 24;
 
 /// Marks by their names: ours and the most accurate of the others, and all others.
-fn named<'m, 'a>(marks: &'m [Mark<'a>]) -> (Vec<&'m [Mark<'a>]>, Vec<&'m [Mark<'a>]>) {
-    let mut all: Vec<&[Mark]> = marks.chunk_by(|a, b| a.name == b.name).collect();
-    let rank = |marks: &&[Mark]| {
+fn named<'m, 'a>(
+    marks: &'m [SubmissionMark<'a>],
+) -> (Vec<&'m [SubmissionMark<'a>]>, Vec<&'m [SubmissionMark<'a>]>) {
+    let mut all: Vec<&[SubmissionMark]> = marks.chunk_by(|a, b| a.name == b.name).collect();
+    let rank = |marks: &&[SubmissionMark]| {
         let least = marks.iter().map(|mark| mark.error).fold(f64::INFINITY, f64::min);
         if marks[0].is_ours() { -1.0 } else { least }
     };
@@ -129,12 +132,12 @@ fn named<'m, 'a>(marks: &'m [Mark<'a>]) -> (Vec<&'m [Mark<'a>]>, Vec<&'m [Mark<'
 }
 
 /// Error against run time, a panel for each division in which other codes are.
-fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
+fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
     let mut caption =
         "Runs of other codes (in parentheses the variant whose problem they ran): error over the time of \
          the loop on one core, as submitted. Labels are numbers of particles."
             .to_string();
-    if marks.iter().any(Mark::is_ours) {
+    if marks.iter().any(SubmissionMark::is_ours) {
         caption += " Ours of the session in which the records of the program were made are black.";
     }
     if marks.iter().any(|mark| mark.session.is_none()) {
@@ -143,12 +146,12 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[Mark]) -> Figure {
     }
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
-        let is_of = |mark: &&Mark| mark.of.division == division || mark.is_ours();
-        let is_shown = |mark: &&Mark| mark.seconds.is_finite() && is_of(mark);
+        let is_of = |mark: &&SubmissionMark| mark.of.division == division || mark.is_ours();
+        let is_shown = |mark: &&SubmissionMark| mark.seconds.is_finite() && is_of(mark);
         let has_others = marks.iter().filter(is_shown).any(|mark| !mark.is_ours());
         let (x, y) = (Axis::log("run time on one core [s]"), Axis::log(&accuracy.label));
         let plot = Plot::new(format!("{division} division"), x, y);
-        let series = |(k, all): (usize, &[Mark])| {
+        let series = |(k, all): (usize, &[SubmissionMark])| {
             let shown = all.iter().filter(is_shown);
             let points = shown.clone().map(|mark| (mark.seconds, mark.error)).collect();
             let labels = shown.map(|mark| match mark.particles {
@@ -348,9 +351,15 @@ mod tests {
         Submission { code, version, scheme, division, method, ..Submission::default() }
     }
 
-    fn mark<'a>(of: &'a Submission, session: &'a str, rows: usize, error: f64, s: f64) -> Mark<'a> {
+    fn mark<'a>(
+        of: &'a Submission,
+        session: &'a str,
+        rows: usize,
+        error: f64,
+        s: f64,
+    ) -> SubmissionMark<'a> {
         let (name, particles, session) = (of.code.clone(), rows, Some(session));
-        Mark { of, name, particles, session, error, seconds: s }
+        SubmissionMark { of, name, particles, session, error, seconds: s }
     }
 
     /// A run of a code with this number of particles, seconds and error; the same error at another time and a
@@ -440,7 +449,7 @@ mod tests {
     fn a_figure_names_the_best_of_many_codes_and_counts_the_others() {
         let all: Vec<Submission> = (0..100).map(|k| of(&format!("code-{k:02}"))).collect();
         let error = |k: usize| 0.01 * (1.0 + (k as f64 - 50.5).abs());
-        let mut marks: Vec<Mark> =
+        let mut marks: Vec<SubmissionMark> =
             all.iter().enumerate().map(|(k, of)| mark(of, "a", 10, error(k), 1.0)).collect();
         let ours = of(OURS);
         marks.push(mark(&ours, "a", 10, 9.0, 1.0));
@@ -457,7 +466,7 @@ mod tests {
     #[test]
     fn what_is_better_than_ours_in_the_same_session_is_said() {
         let (ours, peer) = (of(OURS), of("other"));
-        let said = |marks: &[Mark]| better(marks).expect("there are both");
+        let said = |marks: &[SubmissionMark]| better(marks).expect("there are both");
         let own = [mark(&ours, "a", 10, 0.02, 1.0), mark(&ours, "a", 20, 0.005, 4.0)];
         let with = |error, seconds, session| {
             let [coarse, fine] = [(10, 0.02, 1.0), (20, 0.005, 4.0)]

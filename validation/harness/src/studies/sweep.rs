@@ -10,7 +10,7 @@ use touchstone_report::{Cell, Figure, Table, TableColumn, code, sig};
 
 use super::{
     Card, Studies, anchor,
-    cost::{Line, Point, RefiningSetting, error_of, panel},
+    cost::{LadderPoint, Line, RefiningSetting, error_of, panel},
 };
 use crate::{
     case::{self, Case},
@@ -19,12 +19,12 @@ use crate::{
 };
 
 /// A run and the settings in which it differs from the defaults of its variant, but for its resolution.
-struct Row<'a> {
+struct SweepRow<'a> {
     record: &'a Record,
     /// Place of its variant in the list of the case.
     place: usize,
     others: Vec<String>,
-    point: Point,
+    point: LadderPoint,
 }
 
 /// A table of the errors and costs of these runs of a case, and a figure of errors over costs: a line for the
@@ -33,9 +33,9 @@ pub fn section(case: &dyn Case, records: &[Record]) -> Section {
     let studies = case.studies(Tier::Quick);
     let error = studies.error();
     let resolution = RefiningSetting::of(case, &studies);
-    let mut rows: Vec<Row> =
+    let mut rows: Vec<SweepRow> =
         records.iter().map(|of| row(case, of, error, resolution.as_ref())).collect();
-    let coarser = |a: &Row, b: &Row| b.point.spacing.total_cmp(&a.point.spacing);
+    let coarser = |a: &SweepRow, b: &SweepRow| b.point.spacing.total_cmp(&a.point.spacing);
     rows.sort_by(|a, b| {
         (a.place, &a.others).cmp(&(b.place, &b.others)).then_with(|| coarser(a, b))
     });
@@ -53,7 +53,7 @@ fn row<'a>(
     record: &'a Record,
     error: Option<&MetricName>,
     resolution: Option<&RefiningSetting>,
-) -> Row<'a> {
+) -> SweepRow<'a> {
     let mut others = case::changes(case, &record.spec());
     others.retain(|(field, _)| resolution.is_none_or(|of| of.setting.name != field.name));
     let value = resolution.and_then(|of| of.value(&record.run.settings));
@@ -62,7 +62,7 @@ fn row<'a>(
         seconds.push(record.cost.cpu_s);
     }
     seconds.sort_by(f64::total_cmp);
-    let point = Point {
+    let point = LadderPoint {
         spacing: resolution.zip(value).map_or(f64::NAN, |(of, value)| of.spacing(value)),
         label: value.map(touchstone_report::exact).unwrap_or_default(),
         error: error.and_then(|error| error_of(error, record)).unwrap_or(f64::NAN),
@@ -71,23 +71,24 @@ fn row<'a>(
     };
     let place = case.variants().iter().position(|variant| variant.name == record.run.variant);
     let others = others.into_iter().map(case::assignment).collect();
-    Row { record, place: place.unwrap_or(usize::MAX), others, point }
+    SweepRow { record, place: place.unwrap_or(usize::MAX), others, point }
 }
 
 /// Errors over run time and over pair interactions.
-fn figure(id: &str, error: &MetricName, rows: &[Row]) -> Figure {
-    let of_line = |a: &Row, b: &Row| (a.place, &a.others) == (b.place, &b.others);
-    let line = |rows: &[Row]| {
+fn figure(id: &str, error: &MetricName, rows: &[SweepRow]) -> Figure {
+    let of_line = |a: &SweepRow, b: &SweepRow| (a.place, &a.others) == (b.place, &b.others);
+    let line = |rows: &[SweepRow]| {
         let name = format!("{} {}", rows[0].record.run.variant, rows[0].others.join(" "));
         (name.trim_end().to_string(), rows.iter().map(|row| row.point.clone()).collect::<Vec<_>>())
     };
-    let lines: Vec<(String, Vec<Point>)> = rows.chunk_by(of_line).map(line).collect();
+    let lines: Vec<(String, Vec<LadderPoint>)> = rows.chunk_by(of_line).map(line).collect();
     let lines: Vec<Line> = lines.iter().map(|(name, points)| Line { name, points }).collect();
     let name = code(&error.name);
     let caption =
         format!("The error {name} over run time on one core (left) and over work (right).");
     let title = "Error against run time";
-    let time = panel([title, "run time on one core [s]", &error.name], &lines, Point::median, true);
+    let time =
+        panel([title, "run time on one core [s]", &error.name], &lines, LadderPoint::median, true);
     let title = "Error against work";
     let work = panel([title, "pair interactions [-]", ""], &lines, |point| point.pairs, false);
     let figure = Figure::new(format!("{id}-cost"), caption).columns(2).panel_size(420.0, 300.0);
@@ -95,7 +96,7 @@ fn figure(id: &str, error: &MetricName, rows: &[Row]) -> Figure {
 }
 
 /// A row a run. A column for each setting that is changed in some run.
-fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
+fn table(case: &dyn Case, studies: &Studies, rows: &[SweepRow]) -> Table {
     let changes = rows.iter().flat_map(|row| case::changes(case, &row.record.spec()));
     let changed: BTreeSet<&str> = changes.map(|(field, _)| field.name).collect();
     let mut fields: Vec<&Field> = case.fields().iter().collect();
@@ -110,8 +111,8 @@ fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
         TableColumn::text("ended"),
     ]);
     let mut formulas = BTreeMap::new();
-    let cells = |row: &Row| {
-        let Row { record, point, .. } = row;
+    let cells = |row: &SweepRow| {
+        let SweepRow { record, point, .. } = row;
         let mut cells = vec![Cell::marked(code(&record.run.variant))];
         let values = fields.iter().map(|field| field.of_json(&record.run.settings));
         cells.extend(values.map(|value| value.map_or_else(|| Cell::text("–"), setting)));
@@ -139,7 +140,7 @@ fn table(case: &dyn Case, studies: &Studies, rows: &[Row]) -> Table {
 }
 
 /// The error as the case states it.
-fn error_in_words(studies: &Studies, point: &Point, record: &Record) -> Cell {
+fn error_in_words(studies: &Studies, point: &LadderPoint, record: &Record) -> Cell {
     let stated = studies.first::<Card>().map(|card| (card.stated)(&record.run.settings));
     match stated {
         _ if point.error.is_nan() => Cell::text("–"),

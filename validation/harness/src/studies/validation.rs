@@ -9,10 +9,10 @@ use touchstone_base::{
 };
 use touchstone_report::{Cell, Table, percent, sig};
 
-use super::{Ladder, Level as LadderLevel, anchor};
+use super::{Ladder, Level, anchor};
 use crate::{
     columns::TableColumns,
-    convergence::{Convergence, Label, Level, SLOWEST, convergence},
+    convergence::{Convergence, ErrorLevel, Label, SLOWEST, convergence},
     orders::FittedOrder,
     runs::{Planned, Runs},
     section::Section,
@@ -44,7 +44,7 @@ pub struct Comparison {
     /// E = S − D, result less data; of a norm its magnitude.
     pub metric: MetricName,
     /// The runs, coarse to fine: E is the error of the finest.
-    pub levels: Vec<LadderLevel>,
+    pub levels: Vec<Level>,
     /// Pairs of runs: as it is, and with one input changed by its own uncertainty.
     pub inputs: Vec<[RunSpec; 2]>,
     /// u_D, in the unit of E.
@@ -145,8 +145,8 @@ impl ComparisonResult {
     pub fn of(comparison: &Comparison, runs: &Runs) -> Self {
         let value = |spec: &RunSpec| runs.value(spec, comparison.metric.clone());
         let levels = comparison.levels.iter();
-        let levels: Vec<Level> = levels
-            .map(|level| Level { spacing: level.spacing, value: value(&level.run.spec) })
+        let levels: Vec<ErrorLevel> = levels
+            .map(|level| ErrorLevel { spacing: level.spacing, value: value(&level.run.spec) })
             .collect();
         let change = |[plain, changed]: &[RunSpec; 2]| value(changed) - value(plain);
         let squares = comparison.inputs.iter().map(change).map(|change| change * change);
@@ -233,8 +233,8 @@ fn with_interval(order: f64, interval: [f64; 2]) -> String {
     format!("{order} ({low} … {high})")
 }
 
-fn magnitudes(levels: &[Level]) -> Vec<Level> {
-    levels.iter().map(|level| Level { value: level.value.abs(), ..*level }).collect()
+fn magnitudes(levels: &[ErrorLevel]) -> Vec<ErrorLevel> {
+    levels.iter().map(|level| ErrorLevel { value: level.value.abs(), ..*level }).collect()
 }
 
 /// The numerical uncertainty of the finest level from levels, coarse to fine. Where one order describes all
@@ -242,7 +242,7 @@ fn magnitudes(levels: &[Level]) -> Vec<Level> {
 /// differences of the last three levels have an order, which three levels determine and cannot test, it is
 /// three times the distance from the limit of this order; else three times the range of the last three
 /// levels, or the distance of the only two.
-pub fn numerical(levels: &[Level]) -> Numerical {
+pub fn numerical(levels: &[ErrorLevel]) -> Numerical {
     let found = |[limit, distance]: [f64; 2],
                  [factor, coverage]: [f64; 2],
                  order: Option<String>,
@@ -385,7 +385,7 @@ mod tests {
     use crate::studies::tests::{column, comparison, runs, spec, tables, whole};
 
     fn of(values: &[(f64, f64)]) -> Numerical {
-        let level = |&(n, value): &(f64, f64)| Level { spacing: 1.0 / n, value };
+        let level = |&(n, value): &(f64, f64)| ErrorLevel { spacing: 1.0 / n, value };
         numerical(&values.iter().map(level).collect::<Vec<_>>())
     }
 

@@ -25,7 +25,7 @@ pub struct Curve {
 
 /// A row of particles at one distance from a curve.
 #[derive(Clone, Debug)]
-pub struct Row {
+pub struct ParticleRow {
     /// Distance behind the curve, on its right \[m\]; negative in the fluid.
     pub depth: f64,
     /// Arc length between neighbours \[m\]: length of the row over its number of particles.
@@ -34,7 +34,7 @@ pub struct Row {
     pub points: Vec<Point>,
 }
 
-impl Row {
+impl ParticleRow {
     /// Its particles, each with its part of the area of a row of width `dx` \[m\]: fluid before the curve,
     /// interface on the curve, wall behind it.
     pub fn particles(
@@ -114,7 +114,7 @@ impl Curve {
 
     /// Rows behind the curve out to the `support` \[m\], dx apart, the first one `first` dx behind it: 0
     /// for interface particles on the curve and wall particles behind, 1/2 for walls that extrapolate.
-    pub fn rows_behind(&self, dx: f64, first: f64, support: f64) -> Vec<Row> {
+    pub fn rows_behind(&self, dx: f64, first: f64, support: f64) -> Vec<ParticleRow> {
         let count = (support / dx - first - 1e-9).floor() as i32;
         (0..=count).map(|k| self.row((first + f64::from(k)) * dx, dx)).collect()
     }
@@ -124,7 +124,7 @@ impl Curve {
     /// Where the offset curve folds, deeper than its radius of curvature, points nearer to the curve than the
     /// depth are cut off: particles keep their distance on the concave side. On the convex side a row has
     /// more particles.
-    pub fn row(&self, depth: f64, dx: f64) -> Row {
+    pub fn row(&self, depth: f64, dx: f64) -> ParticleRow {
         let offset = self.offset(depth, dx);
         let chords: Vec<Vector2<f64>> = self.chords(&offset).collect();
         let length: f64 = chords.iter().map(|chord| chord.norm()).sum();
@@ -140,7 +140,7 @@ impl Curve {
             }
             so_far += span;
         }
-        Row { depth, spacing, points }
+        ParticleRow { depth, spacing, points }
     }
 
     /// The samples moved to a depth \[m\], without the samples in folds.
@@ -203,14 +203,15 @@ mod tests {
             // Interface particles replace the lattice row on the curve.
             let nearest = if first == 0.0 { 1.0 } else { first };
             let fluid = (0..6).map(|k| curve.row(-(nearest + f64::from(k)) * dx, dx));
-            let mut rows: Vec<Row> = fluid.collect();
+            let mut rows: Vec<ParticleRow> = fluid.collect();
             let fluid = rows.iter().map(|row| row.points.len()).sum();
             rows.extend(curve.rows_behind(dx, first, support));
             for row in &rows {
                 check_spacing(row, curve.period, dx);
             }
-            let area = |row: &Row| row.spacing * dx;
-            let of_row = |row: Row| row.points.clone().into_iter().map(move |p| (p, area(&row)));
+            let area = |row: &ParticleRow| row.spacing * dx;
+            let of_row =
+                |row: ParticleRow| row.points.clone().into_iter().map(move |p| (p, area(&row)));
             let points = rows.into_iter().flat_map(of_row).collect();
             Self { points, fluid, period: curve.period, dx }
         }
@@ -249,7 +250,7 @@ mod tests {
 
     /// Neighbours of a row are one spacing apart along it. The spacing is dx within 1 %, or within the
     /// deviation that a whole number of particles on a short row implies.
-    fn check_spacing(row: &Row, period: Vector2<f64>, dx: f64) {
+    fn check_spacing(row: &ParticleRow, period: Vector2<f64>, dx: f64) {
         let next = row.points.iter().skip(1).copied().chain([row.points[0] + period]);
         for (a, b) in row.points.iter().zip(next) {
             let apart = (b - a).norm() / row.spacing;

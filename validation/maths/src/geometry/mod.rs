@@ -6,7 +6,7 @@ mod hill;
 mod tank;
 mod topology;
 
-pub use curve::{Curve, Row};
+pub use curve::{Curve, ParticleRow};
 pub use hill::Hill;
 pub use tank::Tank;
 pub use topology::{BOND, Bonds, Topology};

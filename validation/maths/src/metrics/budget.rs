@@ -25,7 +25,7 @@ pub type Slope<'a, X> = &'a dyn Fn(f64, &State<X>, &Rate<X>) -> f64;
 pub type Powers = [f64; 5];
 
 /// Powers by the rates of one sweep.
-struct Sums {
+struct PowerSums {
     /// Power of dv/dt \[W/m\].
     velocity: f64,
     /// Power of dρ/dt and of the rates of extra fields \[W/m\].
@@ -47,8 +47,9 @@ fn power<X>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> f6
         .fold(0.0, |sum, ((mass, particle), rate)| sum + slope(mass, particle, rate))
 }
 
-fn sums<X: Numbers>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> Sums {
-    let mut sums = Sums { velocity: 0.0, density: 0.0, position: 0.0, force: Vector2::zeros() };
+fn sums<X: Numbers>(particles: &mut Masses<X>, rates: &[Rate<X>], slope: Slope<X>) -> PowerSums {
+    let mut sums =
+        PowerSums { velocity: 0.0, density: 0.0, position: 0.0, force: Vector2::zeros() };
     for ((mass, particle), rate) in particles.zip(rates) {
         let (none, no_extra) = (Vector2::zeros(), X::default());
         let power = |part: Rate<X>| slope(mass, particle, &part);
@@ -142,7 +143,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::metrics::energy::{Energy, Water, water_slope};
+    use crate::metrics::energy::{FluidEnergy, Water, water_slope};
     use touchstone_base::random::Random;
 
     type Forces = (Pressure<Tait, ArtificialStress>, ArtificialViscosity<Tait>, BodyForce);
@@ -193,7 +194,7 @@ mod tests {
     fn energy(dt: f64) -> f64 {
         let mut simulation = scene().build().expect("a scene");
         simulation.advance(dt, 1.0, &mut ());
-        let Energy { kinetic, potential, compression } = WATER.energy(&simulation);
+        let FluidEnergy { kinetic, potential, compression } = WATER.energy(&simulation);
         kinetic + potential + compression
     }
 

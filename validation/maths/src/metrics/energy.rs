@@ -15,7 +15,7 @@ pub struct Water {
 
 /// Energies \[J/m\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
+pub struct FluidEnergy {
     /// Σ m v²/2.
     pub kinetic: f64,
     /// −Σ m g·x.
@@ -40,8 +40,8 @@ impl Water {
     }
 
     /// The energy of all particles.
-    pub fn energy<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Energy {
-        let mut sum = Energy::default();
+    pub fn energy<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> FluidEnergy {
+        let mut sum = FluidEnergy::default();
         for (mass, p) in simulation.data().fluid() {
             sum.kinetic += 0.5 * mass * p.velocity.norm_squared();
             sum.potential -= mass * self.gravity.dot(&p.position);

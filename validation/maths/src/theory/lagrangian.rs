@@ -31,7 +31,7 @@ pub const HOURGLASS: f64 = 4.0 / 3.0;
 type Neighbours = Vec<(usize, Vector2<f64>, f64)>;
 
 /// A square block of a lattice of spacing 1 without stress, all of whose faces are free.
-struct Block {
+struct LatticeBlock {
     neighbours: Vec<Neighbours>,
     /// M⁻¹.
     inverse: Vec<Matrix2<f64>>,
@@ -43,7 +43,7 @@ struct Block {
     c: f64,
 }
 
-impl Block {
+impl LatticeBlock {
     fn new<K: Kernel>(h_over_dx: f64, side: usize, moduli: &Moduli) -> Self {
         let kernel = Smoothing::<K>::new(h_over_dx);
         let place = |k: usize| Vector2::new((k % side) as f64, (k / side) as f64);
@@ -93,7 +93,7 @@ impl Block {
 pub fn fastest_of_block<K: Kernel>(h_over_dx: f64, moduli: &Moduli) -> f64 {
     // Corners three supports apart do not affect each other.
     let side = 3 * (K::SUPPORT * h_over_dx).ceil() as usize + 2;
-    let block = Block::new::<K>(h_over_dx, side, moduli);
+    let block = LatticeBlock::new::<K>(h_over_dx, side, moduli);
     let mixed = |k: usize| sin(12.9898 * k as f64 + 1.0);
     let mut u: Vec<_> =
         (0..side * side).map(|k| Vector2::new(mixed(2 * k), mixed(2 * k + 1))).collect();

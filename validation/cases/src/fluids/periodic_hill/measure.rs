@@ -77,7 +77,7 @@ const COMPARED: [MetricKey; 5] = [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REA
 
 /// Velocity and pressure at any point: a linear field fitted to the particles in reach, walls included, with
 /// the weights V W (moving least squares).
-struct Field<'a> {
+struct FittedField<'a> {
     /// W \[1/m²\] of r² \[m²\], and where it ends \[m\].
     weight: &'a dyn Fn(f64) -> f64,
     reach: f64,
@@ -85,7 +85,7 @@ struct Field<'a> {
     bands: Vec<Vec<[f64; 6]>>,
 }
 
-impl<'a> Field<'a> {
+impl<'a> FittedField<'a> {
     fn new(
         (weight, reach): (&'a dyn Fn(f64) -> f64, f64),
         mut points: Vec<[f64; 6]>,
@@ -228,7 +228,7 @@ impl Window {
 
     /// Adds a sample of these particles, x, y, V, u, v, p each, with the weight of a squared distance.
     fn add(&mut self, setup: &HillSetup, points: Vec<[f64; 6]>, weight: &dyn Fn(f64) -> f64) {
-        let field = Field::new((weight, setup.flow.support), points, setup.hill.lid());
+        let field = FittedField::new((weight, setup.flow.support), points, setup.hill.lid());
         let sections = places(setup).into_iter().map(|[x, y]| field.at(x, y));
         add(&mut self.sections, sections.map(|[u, v, _]| [u, v]));
         self.samples += 1;
@@ -241,7 +241,7 @@ impl Window {
 }
 
 /// Shear stress on the hill (along its tangent) and on the lid, pressure on the hill, at x.
-fn wall(setup: &HillSetup, field: &Field, x: f64) -> [f64; 3] {
+fn wall(setup: &HillSetup, field: &FittedField, x: f64) -> [f64; 3] {
     let (x, nu, lid) = (x.rem_euclid(setup.hill.period()), setup.flow.medium.nu, setup.hill.lid());
     let (floor, slope) = (setup.floor(x), setup.slope(x));
     let length = hypot(1.0, slope);
@@ -639,7 +639,7 @@ mod tests {
             points.push([p.x, p.y, dx * dx, v.x, v.y, 0.0]);
         }
         let weight = |r2: f64| kernel.w(r2);
-        let field = Field::new((&weight, kernel.support()), points, 4.0);
+        let field = FittedField::new((&weight, kernel.support()), points, 4.0);
         let above = |p: &[f64; 6]| {
             let p = Vector2::new(p[0], p[1] - 2.0);
             p.dot(&across) - 0.5 * c * p.dot(&along).powi(2)
@@ -682,9 +682,9 @@ mod tests {
             .collect();
         let weight = |r2: f64| kernel.w(r2);
         let reach = kernel.support();
-        let field = Field::new((&weight, reach), points.clone(), lid);
+        let field = FittedField::new((&weight, reach), points.clone(), lid);
         assert!(field.bands.len() > 10);
-        let mut all = Field { weight: &weight, reach, bands: vec![points] };
+        let mut all = FittedField { weight: &weight, reach, bands: vec![points] };
         all.bands[0].sort_by(|a, b| a[0].total_cmp(&b[0]));
         for y in [-0.05, 0.0, 1e-9, 0.299, 0.3, 0.301, 1.5, lid - 0.1, lid, lid + 0.05] {
             for (some, every) in field.at(1.0, y).into_iter().zip(all.at(1.0, y)) {

@@ -10,7 +10,7 @@ use super::{
     HillSettings,
     reference::{HillReference, KNOWN_SETTINGS},
 };
-use crate::fluids::unit_flow::{Scales, UnitFlow};
+use crate::fluids::unit_flow::{FlowScales, UnitFlow};
 
 /// Gap over the crest of the reference \[H\]: with U_b = 1 the flux per depth.
 pub const FLUX: f64 = 2.035;
@@ -39,7 +39,8 @@ impl HillSetup {
     pub fn new(method: &HillMethod, s: &HillSettings) -> Result<Self, RunError> {
         // The largest speed, over the crest, is below 1.6 U_b.
         let HillSettings { re, n, h_over_dx, c0, end, force, .. } = *s;
-        let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.6, force, area: 27.0, dt: None };
+        let scales =
+            FlowScales { re, n, h_over_dx, c0, end, speed: 1.6, force, area: 27.0, dt: None };
         let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let hill = Hill::new(1.0).map_err(|e| RunError::Reference(e.to_string()))?;
         let reference = HillReference::of(s).map_err(|e| RunError::Reference(e.to_string()))?;

@@ -12,7 +12,7 @@ use touchstone_maths::{exact::TaylorGreen, metrics::norms::largest};
 use touchstone_solver::EquationOfState;
 
 use super::VortexSettings;
-use crate::fluids::unit_flow::{Scales, UnitFlow};
+use crate::fluids::unit_flow::{FlowScales, UnitFlow};
 
 /// The numbers of one run, L = U = ρ = 1.
 pub struct VortexSetup {
@@ -38,7 +38,8 @@ impl VortexSetup {
     /// Follows the rules for a method.
     pub fn new(method: &Method, s: &VortexSettings) -> Self {
         let VortexSettings { re, n, h_over_dx, c0, end, dt, .. } = *s;
-        let scales = Scales { re, n, h_over_dx, c0, end, speed: 1.0, force: 0.0, area: 1.0, dt };
+        let scales =
+            FlowScales { re, n, h_over_dx, c0, end, speed: 1.0, force: 0.0, area: 1.0, dt };
         let flow = UnitFlow::new(&method.properties, &s.numerics, scales);
         let exact = TaylorGreen { nu: flow.medium.nu };
         Self { settings: s.clone(), method: method.clone(), exact, flow }
@@ -96,7 +97,7 @@ const SAMPLES: usize = 40;
 
 /// The mean velocity at the start, and time and error at the samples.
 #[derive(Serialize, Deserialize)]
-pub struct Series {
+pub struct VortexHistory {
     drift: Vector2<f64>,
     errors: Vec<[f64; 2]>,
 }
@@ -104,7 +105,7 @@ pub struct Series {
 impl Problem for VortexSetup {
     type Extra = ();
     type Simulation = dyn Stepper<()>;
-    type Watch = Series;
+    type Watch = VortexHistory;
 
     fn method(&self) -> &Method {
         &self.method
@@ -122,9 +123,9 @@ impl Problem for VortexSetup {
         Ok(self.flow.parts(Domain::torus(1.0, 1.0), self.particles()))
     }
 
-    fn watch(&self, _: &Snapshot, start: &Snapshot) -> Series {
+    fn watch(&self, _: &Snapshot, start: &Snapshot) -> VortexHistory {
         let start = start.all();
-        Series { drift: drift(&start), errors: vec![[0.0, self.error(0.0, &start)]] }
+        VortexHistory { drift: drift(&start), errors: vec![[0.0, self.error(0.0, &start)]] }
     }
 
     fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
@@ -133,7 +134,12 @@ impl Problem for VortexSetup {
         })
     }
 
-    fn measure(&self, Series { drift, mut errors }: Series, now: &Snapshot, record: &mut Record) {
+    fn measure(
+        &self,
+        VortexHistory { drift, mut errors }: VortexHistory,
+        now: &Snapshot,
+        record: &mut Record,
+    ) {
         if record.status == Status::Completed {
             measure(self, drift, now, &errors, record);
             if OptionalOutput::of(&record.run).particles {

@@ -48,7 +48,7 @@ enum Operator {
 
 /// A variant: an operator of a kernel.
 #[derive(Clone, Copy)]
-struct Subject {
+struct OperatorVariant {
     name: &'static str,
     kernel: &'static str,
     operator: Operator,
@@ -58,7 +58,7 @@ struct Subject {
     method: fn() -> Method,
 }
 
-impl Subject {
+impl OperatorVariant {
     /// The power of h of the noise at fixed h/dx. In Σ V G(r) of a smooth G, displacements δ of the
     /// neighbours leave Σ V ∇G·δ, whose rms is |δ| dx (∫|∇G|²)^½. With the part of the field that G does not
     /// cancel, of order q in kr, and the derivative of order d that is sought, this is ε (dx/h)² (kh)^(q−d).
@@ -96,10 +96,10 @@ const fn subjects_of(
     [sum, plain, corrected]: [fn() -> Method; 3],
     adjust: fn(&mut OperatorSettings),
     names: [&'static str; 7],
-) -> [Subject; 7] {
+) -> [OperatorVariant; 7] {
     let [density, gradient, gradient_corrected, laplacian, laplacian_corrected, rest @ ..] = names;
     let [divergence, divergence_corrected] = rest;
-    let plain = Subject {
+    let plain = OperatorVariant {
         name: gradient,
         kernel,
         operator: Operator::Gradient,
@@ -107,16 +107,20 @@ const fn subjects_of(
         adjust,
         method: plain,
     };
-    let corrected =
-        Subject { name: gradient_corrected, is_corrected: true, method: corrected, ..plain };
+    let corrected = OperatorVariant {
+        name: gradient_corrected,
+        is_corrected: true,
+        method: corrected,
+        ..plain
+    };
     [
-        Subject { name: density, operator: Operator::Density, method: sum, ..plain },
+        OperatorVariant { name: density, operator: Operator::Density, method: sum, ..plain },
         plain,
         corrected,
-        Subject { name: laplacian, operator: Operator::Laplacian, ..plain },
-        Subject { name: laplacian_corrected, operator: Operator::Laplacian, ..corrected },
-        Subject { name: divergence, operator: Operator::Divergence, ..plain },
-        Subject { name: divergence_corrected, operator: Operator::Divergence, ..corrected },
+        OperatorVariant { name: laplacian, operator: Operator::Laplacian, ..plain },
+        OperatorVariant { name: laplacian_corrected, operator: Operator::Laplacian, ..corrected },
+        OperatorVariant { name: divergence, operator: Operator::Divergence, ..plain },
+        OperatorVariant { name: divergence_corrected, operator: Operator::Divergence, ..corrected },
     ]
 }
 
@@ -126,7 +130,7 @@ const QUINTIC: &str = "quintic";
 const CUBIC: &str = "cubic";
 
 /// All variants, with the h/dx that other cases use for the kernel.
-static SUBJECTS: [[Subject; 7]; 3] = [
+static SUBJECTS: [[OperatorVariant; 7]; 3] = [
     subjects_of(
         QUINTIC,
         [lattice::quintic_sum, lattice::quintic, lattice::quintic_corrected],
@@ -171,15 +175,15 @@ static SUBJECTS: [[Subject; 7]; 3] = [
     ),
 ];
 
-fn subjects() -> impl Iterator<Item = &'static Subject> {
+fn subjects() -> impl Iterator<Item = &'static OperatorVariant> {
     SUBJECTS.iter().flatten()
 }
 
 fn variants() -> Compositions<OperatorSettings> {
-    let none = Variants::of(|(of, method): &(&'static Subject, Method), s| {
+    let none = Variants::of(|(of, method): &(&'static OperatorVariant, Method), s| {
         Ok(run::Sampled::new(of, method, s))
     });
-    let add = |all: Variants<_, _>, of: &'static Subject| {
+    let add = |all: Variants<_, _>, of: &'static OperatorVariant| {
         all.lacking([of.name, of.about()], (of, (of.method)()), Vec::new(), of.adjust)
     };
     subjects().fold(none, add).all

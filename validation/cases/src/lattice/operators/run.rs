@@ -19,7 +19,7 @@ use touchstone_maths::theory::time_step::{self, Mode};
 use touchstone_schemes::lattice::summing_step;
 use touchstone_solver::{EquationOfState, Tait};
 
-use super::{Operator, OperatorSettings, Subject};
+use super::{Operator, OperatorSettings, OperatorVariant};
 
 touchstone_base::metrics! {
     all ALL;
@@ -134,7 +134,7 @@ impl Operator {
 /// Of each particle what was made of the field, and the exact value.
 type Values = Vec<[Vector2<f64>; 2]>;
 
-impl Subject {
+impl OperatorVariant {
     /// The gain on a lattice: the symbol of the sum over the symbol of the continuum, for a diagonal wave.
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
@@ -170,7 +170,7 @@ impl Subject {
 }
 
 /// The operator summed pair by pair; only the values of the kernel come from the solver.
-struct Sums<'a> {
+struct PairwiseSums<'a> {
     operator: Operator,
     medium: &'a Medium,
     /// Where the kernel ends \[m\].
@@ -179,7 +179,7 @@ struct Sums<'a> {
     weight: &'a dyn Fn(f64) -> f64,
 }
 
-impl Sums<'_> {
+impl PairwiseSums<'_> {
     /// The distance of the operator of a run from its sum, over the sum, rms over particles.
     ///
     /// # Errors
@@ -239,7 +239,7 @@ impl Sums<'_> {
 
 /// A run of an operator.
 pub(super) struct Sampled {
-    of: &'static Subject,
+    of: &'static OperatorVariant,
     method: Method,
     settings: OperatorSettings,
     medium: Medium,
@@ -247,7 +247,7 @@ pub(super) struct Sampled {
 }
 
 impl Sampled {
-    pub fn new(of: &'static Subject, method: &Method, s: &OperatorSettings) -> Self {
+    pub fn new(of: &'static OperatorVariant, method: &Method, s: &OperatorSettings) -> Self {
         let medium = medium(method, s);
         let limits = method.properties.limits(
             [s.h_over_dx, ETA2],
@@ -314,7 +314,7 @@ impl Problem for Sampled {
         let weight: &dyn Fn(f64) -> f64 = &|r2| end.weight(r2);
         if !of.is_corrected {
             let reach = method.properties.support * medium.h;
-            let sums = Sums { operator: of.operator, medium, reach, weight };
+            let sums = PairwiseSums { operator: of.operator, medium, reach, weight };
             record.put_or_absent(SUM_ERROR, sums.error(&start, &values));
         }
         if settings.disorder == 0.0 {

@@ -3,7 +3,7 @@
 use touchstone_base::{gate::Cause, record::MetricKey};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    convergence::Level,
+    convergence::ErrorLevel,
     orders::{self, Line, Refinement},
     runs::Runs,
     section::Section,
@@ -12,7 +12,7 @@ use touchstone_harness::{
 };
 
 use super::{
-    CUBIC, OPERATORS, Operator, OperatorSettings, QUINTIC, Subject,
+    CUBIC, OPERATORS, Operator, OperatorSettings, OperatorVariant, QUINTIC,
     plan::{Group, Table, judged},
     run::{BIAS, NOISE},
     subjects,
@@ -55,7 +55,7 @@ impl Group {
     }
 
     /// The order that theory expects.
-    fn expected(self, of: &Subject) -> f64 {
+    fn expected(self, of: &OperatorVariant) -> f64 {
         match self {
             Group::Resolution => of.order(),
             Group::Disorder => 1.0,
@@ -63,7 +63,7 @@ impl Group {
         }
     }
 
-    fn gate(self, of: &Subject) -> Gate {
+    fn gate(self, of: &OperatorVariant) -> Gate {
         let expected = self.expected(of);
         let within = |by: f64| Bound::Within(expected - by, expected + by);
         let (bound, because) = match self {
@@ -130,7 +130,7 @@ fn section(tier: Tier, table: &Table, runs: &Runs) -> Section {
         };
         let lines = subjects().filter(|of| tier == Tier::Full || of.kernel == QUINTIC).map(|of| {
             let rows = table.of(refined).filter(|row| row.variant == of.name);
-            let level = |row: &Row<OperatorSettings, Group>| Level {
+            let level = |row: &Row<OperatorSettings, Group>| ErrorLevel {
                 spacing: refined.spacing(&row.settings),
                 value: runs.value(&row.run.spec, metric),
             };

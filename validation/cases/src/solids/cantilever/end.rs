@@ -14,7 +14,7 @@ use super::{
     AVERAGE_Y_ERROR, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR, COMPARED, CantileverSettings,
     ENERGY_CHANGE, FREQUENCY_ERROR, OF_METHODS, PATH_RMS, Watch, elements, path,
 };
-use crate::solids::solid::{self, Body, Energy, Path, lagrangian};
+use crate::solids::solid::{self, ElasticBody, ElasticEnergy, Path, lagrangian};
 
 /// Samples of a run: every 0.0025 s of 4 s, as finite elements have them.
 const SAMPLES: f64 = 1600.0;
@@ -52,10 +52,10 @@ impl End {
 
 /// A row of the energies. The energy of the weight is 0 at the start, because the bar is along y = 0.
 fn energy(s: &CantileverSettings, now: &Snapshot<Symmetric>) -> [Result<f64, Absent>; 3] {
-    if let Some(known) = Energy::known(now) {
+    if let Some(known) = ElasticEnergy::known(now) {
         return [now.time(), known.kinetic, known.total()].map(Ok);
     }
-    let of_points = Energy::of_points(now.stored(), now, &s.material());
+    let of_points = ElasticEnergy::of_points(now.stored(), now, &s.material());
     let total = of_points.map(|mut found| {
         let height = |p: Point| p.mass * p.position.y;
         let height = now.stored().map(height).fold(0.0, |sum, one| sum + one);
@@ -127,7 +127,7 @@ fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solids::solid::Body;
+    use crate::solids::solid::ElasticBody;
     use approx::assert_relative_eq;
     use touchstone_harness::method::Parts;
     use touchstone_harness::{series::Series, snapshot::Snapshot};

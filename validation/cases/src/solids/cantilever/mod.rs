@@ -15,7 +15,8 @@ use touchstone_schemes::total;
 use touchstone_solver::{Role, Symmetric};
 
 use crate::solids::solid::{
-    self, Body, Common, Elements, LAGRANGIAN, Scales, SolidSettings, TOTAL, Watch, lagrangian,
+    self, ElasticBody, Elements, LAGRANGIAN, SolidParameters, SolidScales, SolidSettings, TOTAL,
+    Watch, lagrangian,
 };
 use end::End;
 use path::{
@@ -142,23 +143,23 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     found.number("harmonic_y").is_some().then_some(found)
 }
 
-impl Body for CantileverSettings {
+impl ElasticBody for CantileverSettings {
     type Watch = End;
 
-    fn common(&self) -> Common {
+    fn common(&self) -> SolidParameters {
         self.solid.common()
     }
 
     /// The speed of the end of a thin bar, which swings by its sag 3 ρ g L⁴ (1 − ν²)/(2 E H²) to either side;
     /// at most the speed of a rigid bar that falls to the vertical.
-    fn scales(&self) -> Scales {
+    fn scales(&self) -> SolidScales {
         let Self { length, thickness, gravity, .. } = *self;
         let SolidSettings { young, poisson, rho, .. } = self.solid;
         let modulus = young / (1.0 - poisson * poisson);
         let slenderness = length * length / thickness;
         let period = solid::thin_plate_period([length, thickness], [young, poisson, rho]);
         let sag = 1.5 * rho * gravity / modulus * slenderness * slenderness;
-        Scales {
+        SolidScales {
             speed: (sag * (TAU / period)).min((3.0 * gravity * length).sqrt()),
             end: self.end,
             gravity: Vector2::new(0.0, -gravity),

@@ -14,8 +14,8 @@ use touchstone_maths::metrics::history::passes;
 use touchstone_solver::{Role, Symmetric};
 
 use super::solid::{
-    self, Body, Common, Elements, Energy, FIRST_MODE, LAGRANGIAN, Path, Scales, SolidSettings,
-    Watch,
+    self, ElasticBody, ElasticEnergy, Elements, FIRST_MODE, LAGRANGIAN, Path, SolidParameters,
+    SolidScales, SolidSettings, Watch,
 };
 
 touchstone_base::settings! {
@@ -114,15 +114,15 @@ fn mode(x: f64) -> f64 {
     f(x) / f(1.0)
 }
 
-impl Body for PlateSettings {
+impl ElasticBody for PlateSettings {
     type Watch = Tip;
 
-    fn common(&self) -> Common {
+    fn common(&self) -> SolidParameters {
         self.solid.common()
     }
 
-    fn scales(&self) -> Scales {
-        Scales {
+    fn scales(&self) -> SolidScales {
+        SolidScales {
             speed: self.speed * self.material().sound_speed(),
             end: self.end * thin_plate_period(self),
             ..solid::of_layers(self.n, [self.length, self.thickness])
@@ -203,7 +203,7 @@ impl Watch<PlateSettings> for Tip {
 
     fn measure(self, s: &PlateSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
         self.measure_swing(s, record);
-        let after = Energy::of(end, &s.material());
+        let after = ElasticEnergy::of(end, &s.material());
         let change = after.map(|after| after.total() / self.energy - 1.0);
         record.put_or_absent(ENERGY_CHANGE, change);
         let path = Path(self.series);

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::solids::{
     causes::{LOCKING, STRESS_ADDS_ENERGY, VISCOSITY},
-    solid::{Body, LAGRANGIAN, SolidSettings, faces, lagrangian},
+    solid::{ElasticBody, LAGRANGIAN, SolidSettings, faces, lagrangian},
 };
 
 /// Purpose of a run.

@@ -9,7 +9,7 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     pictures,
-    series::Series as Columns,
+    series::Series,
     snapshot::{Point, Snapshot, momentum},
 };
 use touchstone_maths::geometry::{Bonds, Topology};
@@ -18,13 +18,13 @@ use touchstone_solver::{EquationOfState, Symmetric};
 use super::{
     RingSettings,
     metrics::{
-        ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM, PHASES,
-        PIECES_MOST, Phase, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT,
+        ContactPhase, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM,
+        PHASES, PIECES_MOST, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT,
         WIDTH_MIN, phase,
     },
     reference,
 };
-use crate::solids::solid::{Body, Energy, Watch, corners, largest};
+use crate::solids::solid::{ElasticBody, ElasticEnergy, Watch, corners, largest};
 
 /// Samples of a run, at most, and how many of them pass between two counts of pieces and holes.
 const SAMPLES: f64 = 800.0;
@@ -78,12 +78,12 @@ pub fn halves<T>(particles: &[T]) -> [&[T]; 2] {
 /// The energies of particles of a snapshot unless the method knows them.
 fn energies_of(
     s: &RingSettings,
-    known: Option<Energy>,
+    known: Option<ElasticEnergy>,
     all: &[Point],
     now: &Snapshot<Symmetric>,
 ) -> [Result<f64, Absent>; 3] {
-    let of_points = || Energy::each(all.iter().copied(), now, &s.material());
-    let each = |known: Energy| [known.kinetic, known.compression, known.shear].map(Ok);
+    let of_points = || ElasticEnergy::each(all.iter().copied(), now, &s.material());
+    let each = |known: ElasticEnergy| [known.kinetic, known.compression, known.shear].map(Ok);
     known.map_or_else(of_points, each)
 }
 
@@ -96,13 +96,15 @@ fn count(s: &RingSettings, particles: &[Point]) -> [f64; 2] {
 }
 
 /// Metrics of contact; `restitution` is for rings that have separated.
-fn put_contact(phases: &[Phase], restitution: f64, record: &mut Record) {
+fn put_contact(phases: &[ContactPhase], restitution: f64, record: &mut Record) {
     record.put(PHASES, phases.len() as f64);
     let parted = phases.last().filter(|last| last.is_over).map(|_| restitution);
     let never = phases.is_empty();
     let why = if never { "the rings never touch" } else { "the rings still touch at the end" };
     record.put_or(RESTITUTION, parted, why);
-    for (k, Phase { impulse, times: [early, late], is_over }) in phases.iter().enumerate().take(2) {
+    for (k, ContactPhase { impulse, times: [early, late], is_over }) in
+        phases.iter().enumerate().take(2)
+    {
         for (metric, value) in [(IMPULSE, impulse), (T_IMPULSE_1, early), (T_IMPULSE_99, late)] {
             let why = "the phase lasts until the end of the run";
             record.put_or(metric.at(phase(k)), is_over.then_some(*value), why);
@@ -112,7 +114,7 @@ fn put_contact(phases: &[Phase], restitution: f64, record: &mut Record) {
 
 /// Watches a run.
 #[derive(Serialize, Deserialize)]
-pub struct Series {
+pub struct RingHistory {
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
     next: f64,
@@ -120,11 +122,11 @@ pub struct Series {
     /// the longest distance of neighbours \[dx\].
     rows: Vec<[f64; COLUMNS]>,
     /// Kinetic, compression and shear energy of each row \[J/m\].
-    energies: Columns<3>,
+    energies: Series<3>,
 }
 
 const COLUMNS: usize = 8;
-/// Columns of [`Series::rows`].
+/// Columns of [`RingHistory::rows`].
 const PIECES: usize = 5;
 const HOLES: usize = 6;
 const STRETCH: usize = 7;
@@ -142,21 +144,21 @@ const NAMES: [(&str, &str); COLUMNS + 3] = [
     ("stretch", "dx"),
 ];
 
-impl Series {
+impl RingHistory {
     /// A series over a run with this start.
     pub fn new(s: &RingSettings, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Self {
         let all = along_flight(s, scene.all());
         let bonds = halves(&all).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * s.dx()));
-        let (rows, energies) = (Vec::new(), Columns::default());
+        let (rows, energies) = (Vec::new(), Series::default());
         let mut this = Self { bonds, next: s.end() / SAMPLES, rows, energies };
-        this.add(s, (0.0, &all), energies_of(s, Energy::known(start), &all, scene));
+        this.add(s, (0.0, &all), energies_of(s, ElasticEnergy::known(start), &all, scene));
         this
     }
 
     /// Takes a sample.
     pub fn sample(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>) {
         let all = along_flight(s, now.all());
-        self.add(s, (now.time(), &all), energies_of(s, Energy::known(now), &all, now));
+        self.add(s, (now.time(), &all), energies_of(s, ElasticEnergy::known(now), &all, now));
     }
 
     /// Adds a row of particles at a time: the ring on the right, whose centre has x > 0.
@@ -199,7 +201,7 @@ impl Series {
             HOLES..=8 => energy(k - HOLES),
             _ => row(k - 3),
         };
-        Columns::of(std::array::from_fn(column)).profile(&NAMES)
+        Series::of(std::array::from_fn(column)).profile(&NAMES)
     }
 
     /// The sum of the energies of each row \[J/m\].
@@ -248,7 +250,7 @@ impl Series {
 
     /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
     /// than 5 L/c0 bridged, as in `references/rubber_rings`.
-    fn phases(&self, s: &RingSettings) -> Vec<Phase> {
+    fn phases(&self, s: &RingSettings) -> Vec<ContactPhase> {
         let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
         let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
         let round_off = ROUND_OFF * s.speed;
@@ -263,7 +265,7 @@ impl Series {
         spans.into_iter().map(|span| self.phase(s, span)).collect()
     }
 
-    fn phase(&self, s: &RingSettings, [start, end]: [usize; 2]) -> Phase {
+    fn phase(&self, s: &RingSettings, [start, end]: [usize; 2]) -> ContactPhase {
         let rows = &self.rows[start..=end];
         let mass = std::f64::consts::PI * (s.outer * s.outer - s.inner * s.inner);
         let (first, last) = (rows[0][2], rows[rows.len() - 1][2]);
@@ -276,7 +278,7 @@ impl Series {
             })
         });
         let is_over = end + 1 < self.rows.len();
-        Phase { impulse: mass * (last - first), times, is_over }
+        ContactPhase { impulse: mass * (last - first), times, is_over }
     }
 }
 
@@ -288,7 +290,7 @@ const PAUSE: f64 = 5.0;
 /// Force of round-off, over mass and speed of a ring \[c₀/L\].
 const ROUND_OFF: f64 = 1e-9;
 
-impl Watch<RingSettings> for Series {
+impl Watch<RingSettings> for RingHistory {
     fn after_step(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>) {
         if now.time() >= self.next {
             self.next += s.end() / SAMPLES;
@@ -357,7 +359,7 @@ mod tests {
     fn watched(change: impl Fn(f64, &mut Particle<Symmetric>)) -> (Record, Vec<(f64, f64)>) {
         let settings = RingSettings::default();
         let start = Snapshot::of(0.0, &settings.particles());
-        let mut series = Series::new(&settings, &start, &start);
+        let mut series = RingHistory::new(&settings, &start, &start);
         for k in 1..40 {
             let time = f64::from(k);
             let mut particles = settings.particles();
@@ -412,7 +414,7 @@ mod tests {
     fn energies_are_those_of_simple_states() {
         let material = RingSettings::default().material();
         let mut p = Particle::fluid(Vector2::zeros(), Vector2::new(0.6, 0.8), 1.0, 0.01);
-        let of = |p| Energy::of(&Snapshot::of(0.0, &[p]), &material).expect("every column");
+        let of = |p| ElasticEnergy::of(&Snapshot::of(0.0, &[p]), &material).expect("every column");
         let at_rest = of(p);
         assert!((at_rest.kinetic - 0.005).abs() < 1e-15 && at_rest.compression.abs() < 1e-15);
         // Small compression: K e²/2 an area; pure shear: tau²/(2 mu) an area.

@@ -55,7 +55,7 @@ pub fn phase(k: usize) -> String {
 
 /// One phase of contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Phase {
+pub struct ContactPhase {
     /// Mass of a ring times the change of its velocity \[ρ c₀ L²\].
     pub impulse: f64,
     /// When 1 and 99 % of it have passed \[L/c₀\].

@@ -10,8 +10,8 @@ use touchstone_maths::metrics::{history, norms::rms};
 use super::{
     RingSettings,
     metrics::{
-        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, HEIGHT_RMS, HISTORIES, IMPULSE_ERROR,
-        Phase, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
+        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ContactPhase, HEIGHT_RMS, HISTORIES,
+        IMPULSE_ERROR, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
     },
 };
 use crate::solids::solid::{LAGRANGIAN, Quantities, largest, quantities};
@@ -57,7 +57,7 @@ const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES,
 type Histories = [Vec<(f64, f64)>; 4];
 
 /// Adds the distances from finite elements to the metrics of a measured run, or the reason for their absence.
-pub fn compare(s: &RingSettings, phases: &[Phase], found: &Histories, record: &mut Record) {
+pub fn compare(s: &RingSettings, phases: &[ContactPhase], found: &Histories, record: &mut Record) {
     let Some(exact) = RingReference::of(&record.run.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
         for metric in errors.into_iter().chain(OF_HISTORIES) {
@@ -151,11 +151,11 @@ impl RingReference {
 
     /// Begin, end and impulse of each phase. If a run has another number of phases, only the first begin and
     /// the last end have a counterpart.
-    fn compare_phases(&self, found: &[Phase], record: &mut Record) {
+    fn compare_phases(&self, found: &[ContactPhase], record: &mut Record) {
         const UNLIKE: &str = "the rings have another number of phases than finite elements, or still touch \
                               at the end";
         let is_same = found.len() == self.phases.len();
-        let is_over = |found: &&Phase| found.is_over;
+        let is_over = |found: &&ContactPhase| found.is_over;
         for (k, [impulse, begin, end]) in self.phases.iter().enumerate() {
             let same = found.get(k).filter(|_| is_same).filter(is_over);
             let first = if k == 0 { found.first() } else { same };

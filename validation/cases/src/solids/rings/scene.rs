@@ -7,8 +7,8 @@ use touchstone_base::functions::{rotation, sin_cos};
 use touchstone_harness::{case::RunError, method::Properties, snapshot::Snapshot};
 use touchstone_solver::{DivergenceBounds, Particle, Symmetric};
 
-use super::{RingSettings, measure::Series};
-use crate::solids::solid::{Body, Common, Material, Scales};
+use super::{RingSettings, measure::RingHistory};
+use crate::solids::solid::{ElasticBody, Material, SolidParameters, SolidScales};
 
 /// The largest number of layers that stay whole with corrected gradients at the paper's speed. Rings of 20
 /// tear at the inner face (docs/limits.md).
@@ -31,21 +31,26 @@ impl RingSettings {
     }
 }
 
-impl Body for RingSettings {
-    type Watch = Series;
+impl ElasticBody for RingSettings {
+    type Watch = RingHistory;
 
-    fn common(&self) -> Common {
+    fn common(&self) -> SolidParameters {
         let shear = self.shear_modulus * self.bulk_modulus;
         let material = Material { density: self.rho, bulk: self.bulk_modulus, shear };
-        Common { material, h_over_dx: self.h_over_dx, dt: self.dt, courant: Some(self.courant) }
+        SolidParameters {
+            material,
+            h_over_dx: self.h_over_dx,
+            dt: self.dt,
+            courant: Some(self.courant),
+        }
     }
 
     /// Twice the density or twice the speed of sound is no rubber any more.
-    fn scales(&self) -> Scales {
+    fn scales(&self) -> SolidScales {
         let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
         let (density, speed) = (self.rho, self.speed * c0);
         let most = 2.0 * (self.material().p_wave_speed() + speed);
-        Scales {
+        SolidScales {
             dx,
             length: 2.0 * self.outer,
             speed,
@@ -55,7 +60,7 @@ impl Body for RingSettings {
             meet: true,
             stops: self.samples,
             bounds: DivergenceBounds { density: [0.5 * density, 2.0 * density], speed: most },
-            ..Scales::default()
+            ..SolidScales::default()
         }
     }
 
@@ -106,8 +111,8 @@ impl Body for RingSettings {
         ring(-1.0).chain(ring(1.0)).collect()
     }
 
-    fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Series {
-        Series::new(self, scene, start)
+    fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> RingHistory {
+        RingHistory::new(self, scene, start)
     }
 }
 

@@ -31,7 +31,7 @@ use super::{
     plan::{Group, Row, SPEED, Table, table},
     reference::{self, RingReference},
 };
-use crate::solids::solid::{Body, LAGRANGIAN, corners};
+use crate::solids::solid::{ElasticBody, LAGRANGIAN, corners};
 
 /// Metrics that need the phases of contact, which begin and end between two steps; extremes of every step;
 /// and energies, which need the stress.

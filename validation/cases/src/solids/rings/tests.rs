@@ -9,7 +9,7 @@ use touchstone_harness::{case::Case, context::Context, snapshot::Snapshot};
 
 use super::{
     RUBBER_RINGS, RingSettings,
-    measure::{self, Series},
+    measure::{self, RingHistory},
     metrics::{
         CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX,
         HEIGHT_MAX_ERROR, HOLES_LEAST, IMPULSE, IMPULSE_ERROR, MOMENTUM, PHASES, RESTITUTION,
@@ -18,7 +18,7 @@ use super::{
     },
     reference::RingReference,
 };
-use crate::solids::solid::Body;
+use crate::solids::solid::ElasticBody;
 
 /// Coarse rings that fly at 0.06 c0.
 fn settings() -> RingSettings {
@@ -31,7 +31,7 @@ fn measured(settings: &RingSettings, motion: impl Fn(f64) -> [f64; 4]) -> Record
     let (start, dx) = (settings.particles(), settings.dx());
     let first = Snapshot::of(0.0, &start);
     let [_, _, extent] = measure::side(&first.all()[start.len() / 2..], dx);
-    let mut series = Series::new(settings, &first, &first);
+    let mut series = RingHistory::new(settings, &first, &first);
     for k in 1..=(4.0 * settings.end) as usize {
         let time = 0.25 * k as f64;
         let [x, v, width, height] = motion(time);

@@ -9,7 +9,7 @@ use super::Material;
 
 /// Energies \[J/m\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Energy {
+pub struct ElasticEnergy {
     /// Σ m v²/2.
     pub kinetic: f64,
     /// Σ m e with de = p dρ/ρ² and (12): e = ⁰c² (ln(ρ/⁰ρ) + ⁰ρ/ρ − 1).
@@ -18,7 +18,7 @@ pub struct Energy {
     pub shear: f64,
 }
 
-impl Energy {
+impl ElasticEnergy {
     /// The energy of all fluid particles of a simulation. If its forces have potentials, these are used:
     /// energy of loads counts as compression, and energy of the hourglass resistance as shear.
     pub fn of(now: &Snapshot<Symmetric>, of: &Material) -> Result<Self, Absent> {
@@ -37,7 +37,7 @@ impl Energy {
     /// Of particles of a snapshot.
     ///
     /// # Errors
-    /// As [`Energy::of`].
+    /// As [`ElasticEnergy::of`].
     pub fn of_points(
         points: impl Iterator<Item = Point> + Clone,
         now: &Snapshot<Symmetric>,
@@ -77,7 +77,7 @@ pub fn kinetic(points: impl Iterator<Item = Point>) -> f64 {
 }
 
 impl Material {
-    /// m e of [`Energy::compression`] \[J/m\], of a mass \[kg/m\] at a density \[kg/m³\].
+    /// m e of [`ElasticEnergy::compression`] \[J/m\], of a mass \[kg/m\] at a density \[kg/m³\].
     fn compression_energy(&self, mass: f64, density: f64) -> f64 {
         let ratio = density / self.density;
         let c2 = self.bulk / self.density;
@@ -122,9 +122,9 @@ mod tests {
         Particle { density, extra, ..Particle::fluid(Vector2::zeros(), velocity, 1.0, 1.0) }
     }
 
-    fn of_one(mass: f64, particle: &Particle<Symmetric>, material: &Material) -> Energy {
+    fn of_one(mass: f64, particle: &Particle<Symmetric>, material: &Material) -> ElasticEnergy {
         let now = Snapshot::of(0.0, &[Particle { mass, ..*particle }]);
-        Energy::of(&now, material).expect("every column")
+        ElasticEnergy::of(&now, material).expect("every column")
     }
 
     #[test]
@@ -132,7 +132,7 @@ mod tests {
         let material = Material { density: 2.0, bulk: 8.0, shear: 3.0 };
         let nothing = Symmetric::default();
         let at_rest = of_one(5.0, &particle(2.0, 0.0, nothing), &material);
-        assert_eq!(at_rest, Energy::default());
+        assert_eq!(at_rest, ElasticEnergy::default());
         let moving = of_one(5.0, &particle(2.0, 3.0, nothing), &material);
         assert_relative_eq!(moving.total(), 22.5, max_relative = 1e-15);
         // Small compression: V K e²/2; V = 2.5.

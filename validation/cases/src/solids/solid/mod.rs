@@ -12,11 +12,13 @@ mod problem;
 pub mod tests;
 
 pub use elements::{Elements, Path, Quantities, compare, quantities};
-pub use energy::{Energy, angular_momentum, kinetic, norm_squared};
+pub use energy::{ElasticEnergy, angular_momentum, kinetic, norm_squared};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
 pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};
-pub use problem::{Body, Common, Scales, Watch, leave_out, medium, no_variants, variants};
+pub use problem::{
+    ElasticBody, SolidParameters, SolidScales, Watch, leave_out, medium, no_variants, variants,
+};
 pub use touchstone_maths::{geometry::corners, metrics::norms::largest};
 
 touchstone_base::settings! {
@@ -50,9 +52,9 @@ touchstone_base::settings! {
 
 impl SolidSettings {
     /// The numbers that these settings state.
-    pub fn common(&self) -> Common {
+    pub fn common(&self) -> SolidParameters {
         let &Self { h_over_dx, dt, courant, .. } = self;
         let material = Material::from_young(self.rho, self.young, self.poisson);
-        Common { material, h_over_dx, dt, courant }
+        SolidParameters { material, h_over_dx, dt, courant }
     }
 }

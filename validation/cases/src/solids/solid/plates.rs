@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use touchstone_solver::PlaneWall;
 
-use super::Scales;
+use super::SolidScales;
 
 /// k L of the first mode of a cantilever: cos kL cosh kL = −1.
 pub const FIRST_MODE: f64 = 1.875_104_068_711_961;
@@ -22,9 +22,9 @@ pub fn thin_plate_period(
 }
 
 /// Scales of a plate of `n` layers, of this length and thickness \[m\].
-pub fn of_layers(n: usize, [length, thickness]: [f64; 2]) -> Scales {
+pub fn of_layers(n: usize, [length, thickness]: [f64; 2]) -> SolidScales {
     let (dx, decisive) = (thickness / n as f64, "end, dt, n, length or thickness");
-    Scales { dx, length, count: length / dx * n as f64, decisive, ..Scales::default() }
+    SolidScales { dx, length, count: length / dx * n as f64, decisive, ..SolidScales::default() }
 }
 
 /// The plane at x = 0 that holds a plate without held particles.

@@ -18,7 +18,7 @@ use super::{
 
 /// The numbers that the settings of every solid state.
 #[derive(Clone, Copy, Debug)]
-pub struct Common {
+pub struct SolidParameters {
     /// The material.
     pub material: Material,
     /// h/dx.
@@ -31,7 +31,7 @@ pub struct Common {
 
 /// Quantities of a problem that follow from its settings without particles.
 #[derive(Clone, Debug, Default)]
-pub struct Scales {
+pub struct SolidScales {
     /// Spacing \[m\].
     pub dx: f64,
     /// Length of a body along x \[m\].
@@ -58,17 +58,17 @@ pub struct Scales {
 }
 
 /// Elastic bodies, stated by the settings of a case: the differences between cases of solids.
-pub trait Body: Values + Sized {
+pub trait ElasticBody: Values + Sized {
     /// Measures a run.
     type Watch: Watch<Self>;
     /// Material, h/dx and time step.
-    fn common(&self) -> Common;
+    fn common(&self) -> SolidParameters;
     /// The material.
     fn material(&self) -> Material {
         self.common().material
     }
     /// Spacing, speed, end and the like.
-    fn scales(&self) -> Scales;
+    fn scales(&self) -> SolidScales;
     /// Spacing \[m\].
     fn dx(&self) -> f64 {
         self.scales().dx
@@ -122,12 +122,14 @@ pub trait Watch<B>: Serialize + DeserializeOwned {
 type Alike<B> = Variants<B, Method<Symmetric>>;
 
 /// No variants yet, of a problem that any method runs.
-pub fn no_variants<B: Body + Settings + Clone>() -> Alike<B> {
+pub fn no_variants<B: ElasticBody + Settings + Clone>() -> Alike<B> {
     Variants::of(|m, s: &B| Solid::new(m, s.clone()))
 }
 
 /// The variants of every problem; the methods: the paper's, and its equations alone.
-pub fn variants<B: Body + Settings + Clone>([seed, bare]: [Method<Symmetric>; 2]) -> Alike<B> {
+pub fn variants<B: ElasticBody + Settings + Clone>(
+    [seed, bare]: [Method<Symmetric>; 2],
+) -> Alike<B> {
     let papers = "the paper's: predictor-corrector, artificial viscosity, artificial stress in principal \
                   axes, XSPH";
     let alone = "equations (3), (9)-(12) alone, with the leapfrog: which errors are theirs, which those of \
@@ -146,9 +148,9 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 }
 
 /// Constants of the terms.
-pub fn medium(settings: &impl Body, method: &Properties) -> Medium {
-    let Scales { dx, gravity, .. } = settings.scales();
-    let Common { material, h_over_dx, .. } = settings.common();
+pub fn medium(settings: &impl ElasticBody, method: &Properties) -> Medium {
+    let SolidScales { dx, gravity, .. } = settings.scales();
+    let SolidParameters { material, h_over_dx, .. } = settings.common();
     let medium = material.medium(method, [dx, h_over_dx * dx]);
     Medium { acceleration: gravity, ..medium }.set_by(settings)
 }
@@ -157,9 +159,9 @@ pub fn medium(settings: &impl Body, method: &Properties) -> Medium {
 const FORCED: f64 = 0.25;
 
 /// The time step C h/(c_p + V) for speeds of V unless it is given, and its limit.
-fn rules(method: &Properties, settings: &impl Body) -> Rules {
-    let Scales { speed, end, meet, gravity, .. } = settings.scales();
-    let Common { material, h_over_dx, dt, courant } = settings.common();
+fn rules(method: &Properties, settings: &impl ElasticBody) -> Rules {
+    let SolidScales { speed, end, meet, gravity, .. } = settings.scales();
+    let SolidParameters { material, h_over_dx, dt, courant } = settings.common();
     let medium = medium(settings, method);
     let usual = if method.theory == Integrator::Leapfrog { 0.4 } else { 0.25 };
     let courant = courant.unwrap_or(usual);
@@ -175,12 +177,12 @@ fn rules(method: &Properties, settings: &impl Body) -> Rules {
 struct Solid<B> {
     method: Method<Symmetric>,
     body: B,
-    scales: Scales,
+    scales: SolidScales,
     medium: Medium,
     rules: Rules,
 }
 
-impl<B: Body> Solid<B> {
+impl<B: ElasticBody> Solid<B> {
     fn new(method: &Method<Symmetric>, body: B) -> Result<Self, RunError> {
         body.check()?;
         let scales = body.scales();
@@ -194,7 +196,7 @@ impl<B: Body> Solid<B> {
     }
 }
 
-impl<B: Body> Problem for Solid<B> {
+impl<B: ElasticBody> Problem for Solid<B> {
     type Extra = Symmetric;
     type Simulation = dyn Stepper<Symmetric>;
     type Watch = B::Watch;
@@ -206,7 +208,7 @@ impl<B: Body> Problem for Solid<B> {
 
     fn brief(&self) -> Brief {
         let Self { medium, rules, scales, .. } = self;
-        let Common { material, h_over_dx, .. } = self.body.common();
+        let SolidParameters { material, h_over_dx, .. } = self.body.common();
         let brief = Brief::new(*medium, *rules, scales.count, scales.decisive)
             .numbers(&rules.numbers([h_over_dx, medium.dx]))
             .numbers(&[

@@ -2,7 +2,7 @@
 //! levels and impulses agree, and the distribution after the jet has fallen back.
 
 use touchstone_harness::prelude::*;
-use touchstone_harness::studies::{Ensemble, Ensembles, History, Number};
+use touchstone_harness::studies::{Ensemble, Ensembles, History, MemberNumber};
 
 use super::{
     NAME,
@@ -102,7 +102,7 @@ fn late(curve: &Points) -> Option<f64> {
 }
 
 /// The numbers whose distribution is shown, which are judged in `modern`.
-fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
+fn numbers(id: &str, variant: &str, n: usize) -> Vec<MemberNumber> {
     let known = MEDIANS.iter().find(|(of, ..)| variant == "modern" && *of == n);
     let judged =
         |name: &str, median: &str, known| judged(format!("{id}.{name}.median"), median, known);
@@ -111,13 +111,13 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<Number> {
     let of_level = "median of the level at H3, mean of 6 ≤ t ≤ 8 [H]";
     let of_impulse = "median of the impulse on P3 during 2.5, over the measured one, minus 1";
     vec![
-        Number {
+        MemberNumber {
             name: [level, "H"],
             value: Box::new(|record| late(&depth(record, 2))),
             measured: LOBOVSKY.levels[2].iter().filter_map(late).collect(),
             gate: known.map(|(_, level, _)| judged("H3", of_level, *level)),
         },
-        Number {
+        MemberNumber {
             name: [impulse, "-"],
             value: Box::new(|record| record.value(IMPULSE[2].at(WINDOWS[1]))),
             measured: vec![0.0],

@@ -55,14 +55,14 @@ impl DamSettings {
     }
 
     /// The experiment whose scene the settings are, at any scale.
-    pub fn scene(&self) -> Option<Scene> {
+    pub fn scene(&self) -> Option<Experiment> {
         let is = |ratio: f64, expected: f64| (ratio / expected - 1.0).abs() < 1e-9;
         // The end of the floor is where not even a front of shallow water, at twice (g H)^(1/2), would come.
         let is_endless = self.tank >= self.width + 2.0 * self.end * self.height;
         match self.height / self.width {
-            ratio if is(ratio, 2.0) && is_endless => Some(Scene::MartinMoyce),
+            ratio if is(ratio, 2.0) && is_endless => Some(Experiment::MartinMoyce),
             ratio if is(ratio, 0.5) && is(self.tank / self.height, 1.61 / 0.3) => {
-                Some(Scene::Lobovsky)
+                Some(Experiment::Lobovsky)
             }
             _ => None,
         }
@@ -71,7 +71,7 @@ impl DamSettings {
 
 /// An experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scene {
+pub enum Experiment {
     /// Martin & Moyce 1952: a column twice as high as wide, on an endless floor.
     MartinMoyce,
     /// Lobovsky et al. 2014: a column half as high as wide, in a tank.

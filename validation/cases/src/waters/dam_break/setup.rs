@@ -7,7 +7,7 @@ use touchstone_maths::geometry::Tank;
 use touchstone_schemes::water::WaterMethod;
 use touchstone_solver::{EquationOfState, Ghosts};
 
-use super::{DamSettings, Scene};
+use super::{DamSettings, Experiment};
 use crate::waters::water::{self};
 
 /// The settings on which time and memory of a run depend.
@@ -55,7 +55,7 @@ impl Dam {
         // The front of a dam break in shallow water runs at 2 (g H)^(1/2).
         let speed = 2.0 * fall;
         let end = s.end * s.height / fall;
-        let scales = water::Scales { dx, c0: s.c0 * fall, gravity: s.gravity, speed, end };
+        let scales = water::WaterScales { dx, c0: s.c0 * fall, gravity: s.gravity, speed, end };
         let (medium, rules) = s.water.medium(method, scales);
         let (settings, method) = (s.clone(), method.clone());
         Ok(Self { settings, method, medium, tank, rim, counts, speed, rules })
@@ -87,12 +87,12 @@ impl Dam {
 
     /// Whether the scene is the experiment of Martin & Moyce.
     pub fn is_martin_moyce(&self) -> bool {
-        self.settings.scene() == Some(Scene::MartinMoyce)
+        self.settings.scene() == Some(Experiment::MartinMoyce)
     }
 
     /// Whether the scene is the experiment of Lobovsky et al.
     pub fn is_lobovsky(&self) -> bool {
-        self.settings.scene() == Some(Scene::Lobovsky)
+        self.settings.scene() == Some(Experiment::Lobovsky)
     }
 
     /// Water in hydrostatic equilibrium with the gate that is about to vanish.

@@ -22,7 +22,7 @@ use touchstone_report::{ColourMap, sig};
 use touchstone_solver::Numbers;
 
 use super::{
-    DAM_BREAK, DamSettings, NAME, Scene, curves, ensembles,
+    DAM_BREAK, DamSettings, Experiment, NAME, curves, ensembles,
     metrics::{
         self, FRONT, FRONT_AWAY, FRONT_BACK, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
         LEVEL_AWAY, LEVELS, MACH, Z,
@@ -89,11 +89,11 @@ fn card(accuracy: &Accuracy) -> Card {
         stated: |settings| {
             let n = &settings["n"];
             let (name, uncertainty, unit) = match scene(settings) {
-                Some(Scene::MartinMoyce) => {
+                Some(Experiment::MartinMoyce) => {
                     let name = format!("front at T = 2 in the tank of Martin & Moyce, a/dx = {n}");
                     (name, 2.0 * vof("martin_moyce", "front_at_1")[1], "a")
                 }
-                Some(Scene::Lobovsky) => {
+                Some(Experiment::Lobovsky) => {
                     let name =
                         format!("front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}");
                     (name, vof("lobovsky", "front_at_2")[1], "H")
@@ -115,15 +115,15 @@ fn card(accuracy: &Accuracy) -> Card {
 }
 
 /// The experiment whose scene the settings of a record are.
-fn scene(settings: &Value) -> Option<Scene> {
+fn scene(settings: &Value) -> Option<Experiment> {
     touchstone_base::settings::of_json::<DamSettings>(settings).ok()?.scene()
 }
 
 /// The distance of the front from the experiment with the tank of the settings.
 fn against_the_experiment(record: &Record) -> Option<String> {
     let (experiment, spread, unit) = match scene(&record.run.settings)? {
-        Scene::MartinMoyce => ("Martin & Moyce", FRONT_SPREAD, "a"),
-        Scene::Lobovsky => ("Lobovsky et al.", TANK_FRONT_SPREAD, "H"),
+        Experiment::MartinMoyce => ("Martin & Moyce", FRONT_SPREAD, "a"),
+        Experiment::Lobovsky => ("Lobovsky et al.", TANK_FRONT_SPREAD, "H"),
     };
     let number = |value| format!("{}\u{a0}{unit}", sig(value, 2));
     let [released, shifted, shift] =

@@ -8,7 +8,7 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::snapshot::Snapshot;
 use touchstone_maths::metrics::{
     budget::{Metered, Powers},
-    energy::{Energy, Water, water_slope},
+    energy::{FluidEnergy, Water, water_slope},
 };
 
 touchstone_base::metrics! {
@@ -51,7 +51,7 @@ impl Ledger {
         let (powers, pairs) = simulation.powers(&water_slope(&water));
         let time = simulation.time();
         self.balance_momentum(&*simulation, water.gravity, pairs);
-        let Energy { kinetic, potential, compression } = water.energy(&*simulation);
+        let FluidEnergy { kinetic, potential, compression } = water.energy(&*simulation);
         let [a, b, c, d, e] = self.works(time, &powers);
         self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
         self.powers = powers;

@@ -100,7 +100,7 @@ touchstone_base::settings! {
 
 /// The scales of a flow of water.
 #[derive(Clone, Copy, Debug)]
-pub struct Scales {
+pub struct WaterScales {
     /// Spacing \[m\].
     pub dx: f64,
     /// Sound speed \[m/s\].
@@ -115,8 +115,8 @@ pub struct Scales {
 
 impl WaterSettings {
     /// The medium and the rules of the time step of a flow with these scales.
-    pub fn medium(&self, method: &WaterMethod, scales: Scales) -> (Medium, Rules) {
-        let Scales { dx, c0, gravity, speed, end } = scales;
+    pub fn medium(&self, method: &WaterMethod, scales: WaterScales) -> (Medium, Rules) {
+        let WaterScales { dx, c0, gravity, speed, end } = scales;
         let (h, eos) = (self.h_over_dx * dx, Tait::new(self.rho, c0));
         let down = Vector2::new(0.0, -gravity);
         let medium = Medium {
