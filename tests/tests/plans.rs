@@ -12,7 +12,7 @@ use touchstone_harness::{
     gates::GateIndex,
     make::BatchResult,
     plan, sealed,
-    studies::{Accuracy, Budgets, Change, FINER, Map, STARTS},
+    studies::{Accuracy, Budgets, Card, Change, FINER, Map, STARTS},
     suite,
 };
 
@@ -25,6 +25,25 @@ fn no_planned_run_sets_what_its_variant_lacks() {
             let spec = &planned.spec;
             assert!(!matches!(refused, Err(RunError::Unused { .. })), "{refused:?}: {spec:?}");
         }
+    }
+}
+
+/// The figures of a case and of other codes show the error that its card, `run` and `list` state; the figures
+/// of ladders have the recommended variant.
+#[test]
+fn a_case_has_one_error_and_its_ladders_show_what_is_recommended() {
+    for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
+        let (studies, name) = (case.studies(tier), case.name());
+        let Some(accuracy) = studies.first::<Accuracy>() else { continue };
+        assert_eq!(studies.error(), Some(&accuracy.error), "{name}");
+        let recommended = case.recommended();
+        for accuracy in studies.of::<Accuracy>() {
+            let has_it = accuracy.ladders.iter().any(|of| of.variant == recommended.variant);
+            assert!(has_it, "{name}: {} lacks {}", accuracy.id, recommended.variant);
+        }
+        let shown = [Some(recommended.variant), recommended.papers];
+        let mut of_card = studies.first::<Card>().into_iter().flat_map(|card| &card.runs);
+        assert!(of_card.all(|run| shown.contains(&Some(&*run.variant))), "{name}");
     }
 }
 

@@ -469,6 +469,11 @@ impl Profile {
 }
 
 impl Record {
+    /// The day on which a record that the program contains was made together with those of other codes.
+    pub fn session(&self) -> Option<&str> {
+        self.numerics.get(crate::submission::SESSION)?.as_str()
+    }
+
     /// A record of a run that was refused before its first step, for this reason.
     pub fn refused(spec: &RunSpec, reason: String) -> Self {
         Self { status: Status::Refused { reason }, ..Self::of(spec, 1) }

@@ -120,18 +120,16 @@ fn errors(main: &[&CaseResults]) -> Figure {
         against_run_time(&title(results), results.case, &results.studies, &results.runs)
     };
     let caption = format!(
-        "What accuracy costs: error against run time on one core. Points of a line are resolutions. Other \
-         codes ran on another machine, in turn with ours{}.",
-        machines(main)
-            .map_or(String::new(), |ratio| format!(", which took {ratio} of the time there"))
+        "What does a smaller error cost? Run time on one core; points of a line are resolutions.{}",
+        session(main).unwrap_or_default()
     );
     let figure = Figure::new("errors", caption).columns(2).panel_size(148.0, 120.0);
     main.iter().filter_map(panel).fold(figure, Figure::panel)
 }
 
-/// Ratio of the run times of our own runs on the machine of the other codes to the run times of this report,
-/// least and largest.
-fn machines(main: &[&CaseResults]) -> Option<String> {
+/// Day and machine of the session of the other codes, and the ratio of the run times of our own runs there to
+/// the run times of this report, least and largest.
+fn session(main: &[&CaseResults]) -> Option<String> {
     let ratio = |results: &&CaseResults, peer: &JudgedRun| {
         let peer = &peer.record;
         let is_ours = peer.run.submission.as_ref().is_some_and(|of| of.code == OURS);
@@ -139,11 +137,18 @@ fn machines(main: &[&CaseResults]) -> Option<String> {
         let own = results.runs.all.iter().find(|run| run.planned.spec.key() == spec.key())?;
         is_ours.then_some(peer.cost.cpu_s / own.record.cost.alone_median()?)
     };
+    let mut peers = main.iter().flat_map(|of| &of.runs.peers).map(|peer| &peer.record);
+    let first = peers.find(|record| record.session().is_some())?;
+    let (day, cpu) = (first.session()?, plain(&first.manifest.cpu));
     let all = main.iter().flat_map(|of| of.runs.peers.iter().filter_map(|peer| ratio(of, peer)));
     let all: Vec<f64> = all.filter(|ratio| ratio.is_finite()).collect();
     let ends = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| all.iter().copied().reduce(of));
     let [low, high] = ends.map(|end| end.map(|end| percent(end, 2)));
-    Some(format!("{} to {}", low?, high?))
+    Some(format!(
+        " Other codes ran on {day} on another machine ({cpu}), in turn with ours, of which the same runs \
+         took {} to {} of their time here.",
+        low?, high?
+    ))
 }
 
 /// How this report was made.

@@ -26,6 +26,7 @@ pub mod gates;
 pub mod horizon;
 pub mod jobs;
 pub mod limits;
+pub mod looks;
 pub mod make;
 pub mod medium;
 pub mod method;

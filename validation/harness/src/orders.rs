@@ -9,6 +9,7 @@ use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, sig};
 use crate::{
     columns::TableColumns,
     convergence::{Convergence, ErrorLevel, convergence},
+    looks,
     section::Section,
 };
 
@@ -84,7 +85,7 @@ pub fn plot<'a>(
     let series = |(k, (name, levels)): (usize, (&str, &[ErrorLevel]))| {
         let usable = levels.iter().filter(|level| level.value.is_finite());
         let points = usable.map(|level| (level.spacing, level.value)).collect();
-        Series::line(name, points).cycle(k)
+        looks::line(name, points, k)
     };
     let plot = Plot::new(title, Axis::log(x), Axis::log(y));
     let plot = lines.clone().enumerate().map(series).fold(plot, Plot::layer);

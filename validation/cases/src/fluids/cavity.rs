@@ -359,7 +359,8 @@ fn studies(tier: Tier) -> Studies {
         ..Accuracy::new(&format!("{NAME}-{re}"), U_RMS, "rms error of u on x = L/2 [U]")
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
-    let caption = "Particles of `consistent` at the end, finest spacing, coloured by speed.";
+    let caption = "Where does the fluid go round? Speed of the particles of `consistent` at the end, finest \
+                   spacing.";
     let (texts, size) = (["cavity-picture", "The cavity", caption], [300.0, 270.0]);
     let panel = |r: &Row| vec![r.panel(format!("Re {}", r.group), 1.0 / r.settings.n as f64)];
     let picture = table.picture(texts, ("speed [U]", ColourMap::Sequential), size, panel);
@@ -391,11 +392,14 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
         let known = known.map(|place| (place.0[1 - k], place.2[0])).collect();
         let axes = [["y/L [-]", "u/U [-]"], ["x/L [-]", "v/U [-]"]][k];
         let known = ("finite differences", known);
-        CurvePanel::linear(&format!("Re {re}"), axes, rows.map(line).collect(), known)
+        let lines = rows.map(line).collect();
+        let panel = CurvePanel::linear(&format!("Re {re}"), axes, lines, known);
+        CurvePanel { symbols: true, ..panel }
     };
     let panels = [(100.0, 0), (100.0, 1), (1000.0, 0), (1000.0, 1)].map(panel);
     let caption = format!(
-        "Mean velocity with {finest} spacings a side at the places of Ghia et al., joined by lines."
+        "Is the vortex as strong as by finite differences? Mean velocity on the mid-lines at the places of \
+         Ghia et al., {finest} spacings a side."
     );
     let panels = panels.into_iter().filter(|panel| !panel.lines.is_empty()).collect();
     Curves::new("cavity-mid-lines", "Velocity on the mid-lines", caption, panels)

@@ -261,8 +261,8 @@ fn orders(table: &Table, runs: &Runs) -> Section {
     let mut all = vec![refinement((Group::Strained, "Re 0.5: strained"))];
     let is_mixed = table.of(Group::Mixed).next().is_some();
     all.extend(is_mixed.then(|| refinement((Group::Mixed, "Re 10: mixed"))));
-    let figure = "Relative L2 error of the velocity of a manufactured steady flow between walls over the \
-                  spacing: at Re 0.5, where the lattice is strained and not mixed, and in the full tier at \
+    let figure = "Does a whole method converge? Relative L2 error of the velocity of a manufactured steady \
+                  flow between walls: at Re 0.5 the lattice is strained and not mixed; the full tier has \
                   Re 10.";
     let caption = "Errors of the velocity, and their order by method and walls.";
     let title = "Orders of whole methods by a manufactured flow";

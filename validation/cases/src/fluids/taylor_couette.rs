@@ -245,34 +245,42 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
     }
 }
 
-/// Velocity over the radius at the finest level.
+/// Velocity over the radius at the finest level, and how far it is from the exact one.
 fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
     let finest = table.rows.iter().map(|row| row.settings.layers).max().unwrap_or_default();
     let caption = format!(
-        "Velocity u around the axis between two cylinders at t = d²/ν, Re = 0.5: every seventeenth \
-         particle, with {finest} spacings across the gap d, and the exact A r + B/r (line). The inner \
-         cylinder turns with speed V, and the outer one, of twice its radius, rests."
+        "Where between the cylinders is the velocity wrong? Velocity u around the axis at t = d²/ν, Re 0.5, \
+         {finest} spacings across the gap d: every seventeenth particle, and the exact A r + B/r. The inner \
+         cylinder turns with speed V, the outer one, of twice its radius, rests."
     );
-    let points = |record: &Record| {
-        let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
-        r.iter().zip(u).step_by(17).map(|(r, u)| (*r, *u)).collect()
-    };
-    let line = |row: &Row<CylinderSettings, ()>| CurveOf {
+    let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
+    let line = |row: &Row<CylinderSettings, ()>, is_difference: bool| CurveOf {
         name: row.variant.into(),
         spec: row.run.spec.clone(),
-        points: Box::new(points),
+        points: Box::new(move |record: &Record| {
+            let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
+            let shown = |(r, u): (&f64, &f64)| match is_difference {
+                true => (*r, 100.0 * (u - flow.velocity(*r))),
+                false => (*r, *u),
+            };
+            r.iter().zip(u).step_by(17).map(shown).collect()
+        }),
     };
-    let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
-    let exact = |k: u32| {
-        let r = flow.inner + (flow.outer - flow.inner) * f64::from(k) / 100.0;
-        (r, flow.velocity(r))
+    let lines = |is_difference: bool| {
+        let rows = table.rows.iter().filter(|row| row.settings.layers == finest);
+        rows.map(|row| line(row, is_difference)).collect()
     };
-    let lines = table.rows.iter().filter(|row| row.settings.layers == finest).map(line).collect();
-    let (axes, exact) = (["r/inner radius [-]", "u/V [-]"], (0..=100).map(exact).collect());
-    let panel = CurvePanel::linear("", axes, lines, ("exact", exact));
-    let panel = CurvePanel { symbols: true, ..panel };
+    let ends = [flow.inner, flow.outer];
+    let exact = (0..=100).map(|k| ends[0] + (ends[1] - ends[0]) * f64::from(k) / 100.0);
+    let exact = ("exact", exact.map(|r| (r, flow.velocity(r))).collect());
+    let axis = "r/inner radius [-]";
+    let velocity = CurvePanel::linear("velocity", [axis, "u/V [-]"], lines(false), exact);
+    let title = "computed minus exact";
+    let axes = [axis, "(u − u_exact)/V [%]"];
+    let difference = CurvePanel::of_differences(title, axes, lines(true), ends);
+    let panels = [velocity, difference].map(|panel| CurvePanel { symbols: true, ..panel });
     let title = "Velocity between the cylinders";
-    Curves::new("taylor-couette-profiles", title, caption, vec![panel])
+    Curves::new("taylor-couette-profiles", title, caption, panels.into())
 }
 
 #[cfg(test)]

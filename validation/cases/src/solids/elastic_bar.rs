@@ -346,7 +346,8 @@ fn table(tier: Tier) -> Table<BarSettings, Group> {
     };
     let mut table = Table::new(&ELASTIC_BAR, tier);
     table.over(Group::Pulse, &["seed", "bare", LAGRANGIAN], [&[40], &[40]], spacings);
-    table.over(Group::Order, &["seed", "bare"], [&[20, 80], &[20, 80, 160, 320]], spacings);
+    let all = ["seed", "bare", LAGRANGIAN];
+    table.over(Group::Order, &all, [&[20, 80], &[20, 80, 160, 320]], spacings);
     table.over(Group::Meeting, &["seed"], [&[1e-4], &[1e-4]], touching);
     table.over(Group::Meeting, &["bare", LAGRANGIAN], [&[1e-4, 0.1], &[1e-4, 0.1]], touching);
     table.over(Group::Meeting, &["seed", "bare", LAGRANGIAN], [&[(1e-2, 4.0)]; 2], apart);
@@ -480,7 +481,11 @@ fn studies(tier: Tier) -> Studies {
                 .into(),
         spacing: "dx/L [-]",
         slope: Some(1.0),
-        ladders: table.ladders(&[Group::Pulse, Group::Order], &["seed", "bare"], spacing),
+        ladders: table.ladders(
+            &[Group::Pulse, Group::Order],
+            &["seed", "bare", LAGRANGIAN],
+            spacing,
+        ),
         ..Accuracy::new("elastic-bar", PULSE_RMS, "rms distance from the exact pulse [-]")
     };
     Studies::judging(table.plan()).with(accuracy)

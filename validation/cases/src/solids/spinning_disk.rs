@@ -261,6 +261,7 @@ fn table(tier: Tier) -> Table<DiskSettings, Group> {
     table.over(Group::Braked, &["seed", "bare"], [&[8], &[8]], spacings);
     table.over(Group::Order, &["seed"], [&[4], &[4, 16]], spacings);
     table.over(Group::Order, &["bare"], [&[4, 16], &[4, 16]], spacings);
+    table.over(Group::Order, &[LAGRANGIAN], [&[4, 8, 16]; 2], spacings);
     table.over(Group::Kept, &[LAGRANGIAN], [&[8], &[8]], |s, n| (s.n, s.end) = (n, 10.0));
     table.over(Group::Steps, &["bare"], [&[0.4, 0.1, 0.8], &[0.4, 0.1, 0.8]], |s, courant| {
         (s.n, s.end, s.solid.courant) = (8, 0.1, Some(courant));
@@ -335,7 +336,11 @@ fn studies(tier: Tier) -> Studies {
                 .into(),
         spacing: "dx/R [-]",
         slope: None,
-        ladders: table.ladders(&[Group::Braked, Group::Order], &["seed", "bare"], spacing),
+        ladders: table.ladders(
+            &[Group::Braked, Group::Order],
+            &["seed", "bare", LAGRANGIAN],
+            spacing,
+        ),
         ..Accuracy::new("spinning-disk", error, "change of angular momentum a revolution [-]")
     };
     let changes = ["none", "dt/4", "2 dt"].into_iter().zip(table.specs(Group::Steps));

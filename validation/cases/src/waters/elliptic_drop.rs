@@ -354,8 +354,9 @@ fn studies(tier: Tier) -> Studies {
         ),
         ..Accuracy::new("elliptic-drop", AXES_RMS, "error of both semi-axes, rms over time [-]")
     };
-    let caption = "The drop of `modern` at the end, 40 particles across, coloured by pressure over the exact \
-                   initial pressure at its centre; its rows are two initial spacings apart.";
+    let caption = "Does the drop keep its shape and a smooth pressure? `modern` at the end, 40 particles \
+                   across, pressure over the exact one at the centre of the start; its rows are two \
+                   initial spacings apart.";
     let texts = ["elliptic-drop-picture", "A free drop at the end", caption];
     let colours = ("p/p(0) [-]", ColourMap::Sequential);
     let picture =

@@ -334,7 +334,7 @@ fn studies(tier: Tier) -> Studies {
     let watched = [Watched::new(Constant::BodyForce).quick(), Watched::new(Constant::Density)];
     let run = STILL_WEDGE.spec("modern", |_| {});
     let sensitivity = Sensitivity::new(tier, [run], watched);
-    let caption = "Mean error of the pressure of each particle over the last quarter of the run, with 20 \
+    let caption = "Where is the pressure of water at rest wrong? Mean over the last quarter of the run, 20 \
                    spacings along the depth.";
     let texts = ["still-wedge-errors", "Errors of still water over a wedge", caption];
     let colours = ("p − p_exact [ρ g H]", ColourMap::Diverging);

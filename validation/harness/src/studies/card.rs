@@ -31,10 +31,8 @@ pub struct Card {
     /// The figure with the picture: its first panel that shows the first of the runs, at any resolution
     /// ([`Card::pictured`]).
     pub picture: &'static str,
-    /// The error.
+    /// The error, also of the ladders of the case ([`Accuracy::error`]).
     pub metric: MetricName,
-    /// Name of its magnitude with its unit, for axes.
-    pub axis: &'static str,
     /// The words for the error of a run with these settings.
     pub stated: fn(&Value) -> Stated,
     /// Further numbers of a run in a sentence, if it has them.
@@ -90,7 +88,7 @@ impl Card {
         };
         let breaks = Breaks { setting, words: ["", ""], has_broken: |_| Some(false), sign: "" };
         let (title, picture, metric) = ("Main", "none", metric.into());
-        Card { title, picture, metric, axis: "error [-]", stated, beside: None, runs, breaks }
+        Card { title, picture, metric, stated, beside: None, runs, breaks }
     }
 }
 
@@ -192,8 +190,14 @@ struct Answer<'a> {
     studies: &'a Studies,
     runs: &'a Runs,
     metric: &'a MetricName,
-    /// The run of the recommended variant, and the run of the paper's if there is one.
-    shown: Vec<RunSpec>,
+    /// The run of the recommended variant, and the run of the paper's, if they are in the plan.
+    shown: [Option<RunSpec>; 2],
+}
+
+/// The recommended variant and the paper's.
+fn shown_variants(case: &dyn Case) -> [Option<&'static str>; 2] {
+    let recommended = case.recommended();
+    [Some(recommended.variant), recommended.papers]
 }
 
 /// The row of a case; none if no number is the error of the case.
@@ -204,17 +208,18 @@ pub fn row(
     runs: &Runs,
 ) -> Option<Subject> {
     let card = studies.first::<Card>();
-    let shown = match card {
+    let names = shown_variants(case);
+    let planned = match card {
         Some(card) => card.runs.clone(),
         None => {
-            let recommended = case.recommended();
-            let named = [Some(recommended.variant), recommended.papers];
-            studies.first::<Accuracy>()?.finest(&named.into_iter().flatten().collect::<Vec<_>>())
+            studies.first::<Accuracy>()?.finest(&names.into_iter().flatten().collect::<Vec<_>>())
         }
     };
-    let first = shown.first()?;
-    let about = match card {
-        Some(card) => (card.stated)(&first.settings).name,
+    let run_of = |name| planned.iter().find(|run| Some(&*run.variant) == name).cloned();
+    let shown = names.map(run_of);
+    shown.iter().flatten().next()?;
+    let about = match card.zip(shown[0].as_ref()) {
+        Some((card, first)) => (card.stated)(&first.settings).name,
         None => case.problem().into(),
     };
     let answer = Answer { case, studies, runs, metric: studies.error()?, shown };
@@ -229,7 +234,7 @@ pub fn row(
 
 impl Answer<'_> {
     fn cells(&self) -> Vec<Cell> {
-        let [first, second] = [0, 1].map(|k| self.shown.get(k));
+        let [first, second] = self.shown.each_ref().map(Option::as_ref);
         let size = |spec: Option<&RunSpec>| {
             let record = self.runs.completed(spec?)?;
             record.value(self.metric.clone()).map(f64::abs)
@@ -288,7 +293,7 @@ impl Answer<'_> {
 
     /// The ladder of the recommended variant, if the run of the table is its finest.
     fn ladder(&self) -> Result<(&Accuracy, &Ladder), String> {
-        let first = self.shown.first().ok_or("not run")?;
+        let first = self.shown[0].as_ref().ok_or("not run")?;
         let accuracy = self.studies.first::<Accuracy>().ok_or("one resolution")?;
         let ladder = accuracy.ladders.iter().find(|ladder| ladder.variant == first.variant);
         let ladder = ladder.filter(|ladder| ladder.levels.len() > 1).ok_or("one resolution")?;
@@ -326,7 +331,7 @@ impl Answer<'_> {
         let levels: Vec<_> = points.iter().map(cost::LadderPoint::level).collect();
         let found = convergence(&levels, accuracy.slope);
         let found = found.map_err(|_| format!("{} resolutions", levels.len()))?;
-        let compared = self.shown.first().and_then(|spec| self.compared(spec));
+        let compared = self.shown[0].as_ref().and_then(|spec| self.compared(spec));
         let is_sure = compared.is_none_or(|found| found.tells());
         if !is_sure || found.label == Label::FloorReached || found.interval[0] <= 0.0 {
             return Err("the ladder does not tell".into());
@@ -435,7 +440,6 @@ mod tests {
             title: "Made up",
             picture: "none",
             metric: ERROR.into(),
-            axis: "error [a]",
             stated: |settings| Stated {
                 name: format!("distance at n = {}", settings["n"]),
                 against: "nothing",
@@ -564,6 +568,20 @@ mod tests {
         assert_eq!(texts(&floor)[2..6], ["–", "0.010 a", "–", "–"]);
         assert_eq!(floor[2].remark, "the ladder does not tell");
         assert!(floor[3].text.starts_with("**["), "the paper's is better: {:?}", floor[3]);
+    }
+
+    /// A case whose recommended variant had no ladder showed the error of the paper's as its own.
+    #[test]
+    fn a_variant_without_a_run_has_no_error() {
+        let bad = run(spec("bad", 40), |record| record.put(ERROR, 0.5));
+        let refine = std::sync::Arc::new(|_: &RunSpec, _| None);
+        let levels = comparison("bad", &[40]).levels;
+        let ladder = Ladder { variant: "bad", levels, order: None, refine };
+        let accuracy =
+            Accuracy { ladders: vec![ladder], ..Accuracy::new("case", ERROR, "Error [-]") };
+        let studies = Studies::default().with(accuracy);
+        let cells = row(&MadeUp, &studies, &[], &Runs::new(vec![bad])).expect("a row").cells;
+        assert_eq!(texts(&cells)[..4], ["`good`", "–", "–", "50 %"]);
     }
 
     /// The uncertainty of an error is u_val, of which the reference's is a part: here (0.6² + 0.4²)^(1/2),

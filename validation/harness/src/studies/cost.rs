@@ -17,6 +17,7 @@ use crate::{
     case::Case,
     columns::TableColumns,
     convergence::{ErrorLevel, convergence},
+    looks,
     orders::{self, FittedOrder},
     runs::{Planned, Runs},
     section::Section,
@@ -31,6 +32,8 @@ pub struct Accuracy {
     /// The error: the distance from an exact solution or a reference. For a metric with a sign, its
     /// magnitude.
     pub error: MetricName,
+    /// The error whose orders gates judge, if it is not the one that is shown.
+    pub judged: Option<MetricName>,
     /// Name of the error with its unit, for axes.
     pub label: String,
     /// Runs and comparison, in one or two sentences.
@@ -57,7 +60,7 @@ impl Accuracy {
         let (id, label, about) = (id.to_string(), label.to_string(), String::new());
         let error = error.into();
         let (spacing, slope) = ("Δx [-]", Some(2.0));
-        Self { id, error, label, about, spacing, slope, ladders: Vec::new() }
+        Self { id, error, judged: None, label, about, spacing, slope, ladders: Vec::new() }
     }
 
     /// The runs of these variants with the finest spacing of their ladders.
@@ -214,18 +217,22 @@ impl Study for Accuracy {
 
     /// The errors of all ladders, if one of them has several levels.
     fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
+        let levels_of =
+            |points: &[LadderPoint]| points.iter().map(LadderPoint::level).collect::<Vec<_>>();
         let row = |of| {
             let points = points(&self.error, of, runs);
-            let levels: Vec<ErrorLevel> = points.iter().map(LadderPoint::level).collect();
+            let levels = levels_of(&points);
             let found = convergence(&levels, self.slope);
             LadderRow { of, points, levels, found }
         };
         let rows: Vec<LadderRow> = self.ladders.iter().map(row).collect();
         let id = format!("{}-work-precision", self.id);
         let section = Section::new(&id, "What a smaller error costs");
-        let judged = rows.iter().filter_map(|row| Some((row.of.order.clone()?, &row.found)));
-        let section = judged.fold(section, |section, (gate, found)| {
-            section.judge(gate, found.as_ref().map_or(f64::NAN, |found| found.order))
+        let judged = self.judged.as_ref().unwrap_or(&self.error);
+        let section = self.ladders.iter().fold(section, |section, ladder| {
+            let Some(gate) = ladder.order.clone() else { return section };
+            let found = convergence(&levels_of(&points(judged, ladder, runs)), self.slope);
+            section.judge(gate, found.map_or(f64::NAN, |found| found.order))
         });
         let has_levels = rows.iter().any(|row| row.points.len() > 1);
         let summary = "Error against spacing and pair interactions".into();
@@ -263,17 +270,19 @@ pub fn against_run_time(
     let [before, after] = card.breaks.words;
     let other = other.map_or(String::new(), |value| format!(", {before}{}{after}", exact(value)));
     let title = format!("{title}{other}");
-    let plot = Plot::new(title, Axis::log("run time [s]"), Axis::log(card.axis));
-    let peers = runs.peers.iter().filter_map(|run| {
-        let of = run.record.run.submission.as_ref().filter(|of| of.code != OURS)?;
-        let error = error_of(metric, &run.record)?;
-        Some((of.to_string(), (run.record.cost.cpu_s, error)))
-    });
-    let peers: Vec<_> = peers.filter(|(_, (seconds, _))| seconds.is_finite()).collect();
-    let (names, marks) = peers.into_iter().unzip();
-    let others =
-        Series::line("other codes", marks).colour(Colour::GREY).open_markers(Shape::Diamond);
-    let others = Series { names, ..others };
+    let plot = Plot::new(title, Axis::log("run time [s]"), Axis::log(&accuracy.label));
+    let session = |name: &str, are_ours: bool| {
+        let peers = runs.peers.iter().filter_map(|run| {
+            let (record, of) = (&run.record, run.record.run.submission.as_ref()?);
+            let is_shown = (of.code == OURS) == are_ours && record.cost.cpu_s.is_finite();
+            let what = if are_ours { record.run.variant.clone() } else { of.to_string() };
+            is_shown.then_some((what, (record.cost.cpu_s, error_of(metric, record)?)))
+        });
+        let (names, marks) = peers.unzip();
+        Series { names, ..Series::line(name, marks) }
+    };
+    let others = session("other codes", false).colour(Colour::GREY).open_markers(Shape::Diamond);
+    let ours = session("ours in the session of the others", true).open_markers(Shape::Circle);
     let recommended = case.recommended();
     let named = [
         Some(("recommended", recommended.variant)),
@@ -285,30 +294,23 @@ pub fn against_run_time(
         let known = points.iter().filter(|point| point.error.is_finite());
         let line = known.clone().map(|point| (point.median(), point.error)).collect();
         let names = known.map(|point| format!("{variant}, {}", point.label)).collect();
-        Some(Series { names, ..Series::line(name, line).cycle(k) })
+        Some(Series { names, ..looks::line(name, line, k) })
     });
-    Some(lines.fold(plot.layer(others), Plot::layer))
+    Some(lines.fold(plot.layer(others).layer(ours), Plot::layer))
 }
 
 /// Error over run time.
 fn timed(id: &str, accuracy: &Accuracy, rows: &[LadderRow]) -> Figure {
     let about = first_sentence(&accuracy.about).0;
-    let caption = format!(
-        "{about} Error over run time on one core. Numbers at the ends of lines are resolutions; no point \
-         beats the pale line in both error and time."
-    );
+    let caption =
+        format!("Which variant is cheapest for an error? {about} Numbers are resolutions.");
     let axes = ["", "run time on one core [s]", &accuracy.label];
     Figure::new(id, caption).panel(panel(axes, &lines(rows), LadderPoint::median, true))
 }
 
 /// Error over spacing and over pair interactions.
 fn refined(id: &str, accuracy: &Accuracy, rows: &[LadderRow]) -> Figure {
-    let slope = accuracy.slope.map(|order| format!(" The grey line has order {}.", exact(order)));
-    let about = first_sentence(&accuracy.about).0;
-    let caption = format!(
-        "{about} Error over spacing (left) and pair interactions (right).{}",
-        slope.unwrap_or_default()
-    );
+    let caption = "How fast does the error fall with the spacing and with the work?";
     let levels = rows.iter().map(|row| (row.of.variant, row.levels.as_slice()));
     let axes = [accuracy.spacing, &accuracy.label];
     let spacing = orders::plot("", axes, levels, accuracy.slope.as_slice());
@@ -333,11 +335,11 @@ pub(super) fn panel(
     let mut plot = Plot::new(title, Axis::log(axis), Axis::log(error));
     let all = lines.iter().flat_map(|line| line.points);
     let front = pareto(all, cost).iter().map(|p| (cost(p), p.error)).collect();
-    plot = plot.layer(Series::line("best of all", front).colour(PALE).width(7.0));
+    plot = plot.layer(Series::line("best in error and cost", front).colour(PALE).width(7.0));
     for (k, Line { name, points }) in lines.iter().enumerate() {
         let own: Vec<&LadderPoint> = points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = Series::line(*name, line).cycle(k);
+        let mut series = looks::line(*name, line, k);
         series.names = own.iter().map(|p| p.label.clone()).collect();
         if is_named {
             let last = own.len().saturating_sub(1);
@@ -504,7 +506,11 @@ mod tests {
         assert_eq!(seed.x_bars, [(0.25, 1.0), (0.5, 2.0), (1.0, 4.0), (2.0, 8.0)], "over run time");
         assert_eq!(seed.labels, ["0", "", "", "0"], "the ends of lines alone are named");
         let [Block::Figure(refined)] = &blocks[..] else { panic!("a folded figure") };
-        assert!(refined.caption.ends_with(" The grey line has order 2."), "{}", refined.caption);
+        let slope = refined.panels[0].layers.last();
+        let Some(touchstone_report::Layer::Series(slope)) = slope else {
+            panic!("the formal order")
+        };
+        assert_eq!(slope.labels, ["order 2"]);
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Profiles or histories, plotted together with their reference.
 
 use touchstone_base::{record::Record, spec::RunSpec};
-use touchstone_report::{Axis, Colour, Figure, Plot, Series, Shape};
+use touchstone_maths::metrics::history::differences;
+use touchstone_report::{Axis, Colour, Dash, Figure, Look, Plot, Series, Shape};
 
 use crate::{
+    looks,
     runs::{Planned, Runs},
     section::Section,
     study::Study,
@@ -43,7 +45,8 @@ pub struct CurvePanel {
     pub y: Axis,
     /// Curves of runs.
     pub lines: Vec<CurveOf>,
-    /// Curves of references: name and points. A curve without name is drawn as a guide.
+    /// Curves of references: name and points. The first name is black, others are grey; a curve without name
+    /// is a guide.
     pub references: Vec<(String, Vec<(f64, f64)>)>,
     /// Are curves of runs drawn as symbols?
     pub symbols: bool,
@@ -76,6 +79,17 @@ impl CurveOf {
         };
         Self { name: name.into(), spec, points: Box::new(points) }
     }
+
+    /// The differences of this curve from a reference, which is sampled at the drawn places x, times
+    /// `factor`; no points if the curve does not reach all of them.
+    #[must_use]
+    pub fn minus(self, reference: Vec<(f64, f64)>, factor: f64) -> Self {
+        let points = move |record: &Record| {
+            let found = differences(&(self.points)(record), &reference).unwrap_or_default();
+            reference.iter().zip(found).map(|((x, _), y)| (*x, factor * y)).collect()
+        };
+        Self { points: Box::new(points), ..self }
+    }
 }
 
 impl CurvePanel {
@@ -89,6 +103,11 @@ impl CurvePanel {
         let (title, references) = (title.into(), vec![(name.into(), points)]);
         let (x, y) = (Axis::linear(x), Axis::linear(y));
         Self { title, x, y, lines, references, symbols: false }
+    }
+
+    /// Differences from a reference on linear axes, with a guide at 0.
+    pub fn of_differences(title: &str, axes: [&str; 2], lines: Vec<CurveOf>, x: [f64; 2]) -> Self {
+        Self::linear(title, axes, lines, ("", x.map(|x| (x, 0.0)).into()))
     }
 }
 
@@ -109,29 +128,49 @@ impl Study for Curves {
         }
         let panels = self.panels.iter().map(|of| panel(of, &names, runs));
         let figure = panels.fold(figure, Figure::panel);
-        Some(Section::new(&self.id, &self.title).block(figure.panel_size(360.0, 270.0)))
+        Some(Section::new(&self.id, &self.title).block(figure.panel_size(300.0, 230.0)))
     }
 }
 
-/// A name has one colour in all panels, by its position among `names`.
+/// The look of a reference among the references of a panel.
+fn reference(name: &str, all: &[(String, Vec<(f64, f64)>)], points: Vec<(f64, f64)>) -> Series {
+    let line = Series::line(name, points);
+    let first = all.iter().map(|of| &of.0).find(|of| !of.is_empty());
+    match name {
+        "" => line.colour(Colour::GREY).width(0.8),
+        _ if first.is_some_and(|first| first == name) => line.colour(Colour::BLACK),
+        _ => line.colour(Colour::GREY),
+    }
+}
+
+/// The look of a curve of a run, by its name among the names of all panels: the last of several curves of one
+/// variant is a solid line.
+fn look(name: &str, names: &[&str], symbols: bool) -> Look {
+    let subject = |name: &str| name.split(',').next().map(str::to_string);
+    let k = names.iter().position(|of| *of == name).unwrap_or_default();
+    let after = names[k..].iter().skip(1).filter(|of| subject(of) == subject(name)).count();
+    let look = looks::look_of(name, k);
+    match symbols {
+        true => Look { line: None, marker: Some(Shape::cycle(k)), open: true, ..look },
+        false => {
+            let line = Some([Dash::Solid, Dash::Dashed, Dash::Dotted][after.min(2)]);
+            Look { line, marker: None, ..look }
+        }
+    }
+}
+
+/// A name has one look in all panels, by its position among `names`.
 fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
-    let mut plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
-    for (name, points) in &of.references {
-        let line = Series::line(name, points.clone());
-        plot = plot.layer(match name.is_empty() {
-            true => line.colour(Colour::GREY).width(0.8),
-            false => line.colour(Colour::BLACK),
-        });
-    }
-    for (k, line) in of.lines.iter().enumerate() {
-        let Some(record) = runs.record(&line.spec) else { continue };
-        let points = (line.points)(record);
-        let named = names.iter().position(|name| !name.is_empty() && *name == line.name);
-        let k = named.unwrap_or(k);
-        let line = Series::line(&line.name, points).colour(Colour::cycle(k));
-        plot = plot.layer(if of.symbols { line.open_markers(Shape::cycle(k)) } else { line });
-    }
-    plot
+    let plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
+    let references = of.references.iter();
+    let references =
+        references.map(|(name, points)| reference(name, &of.references, points.clone()));
+    let lines = of.lines.iter().filter_map(|line| {
+        let points = (line.points)(runs.record(&line.spec)?);
+        let look = look(&line.name, names, of.symbols);
+        Some(Series { look, ..Series::line(&line.name, points) })
+    });
+    references.chain(lines).fold(plot, Plot::layer)
 }
 
 #[cfg(test)]
@@ -199,8 +238,9 @@ mod tests {
         assert_eq!(panels[1], [run("b", 2.5, 1)]);
     }
 
+    /// Curves of one name, none here, have one look; a reference is black, and a guide is grey.
     #[test]
-    fn symbols_stand_on_grey_lines_that_have_no_name() {
+    fn symbols_stand_on_lines() {
         let both = vec![line("", "seed", 1), line("", "best", 1)];
         let panels = drawn(vec![panel_of(both, &["", "exact"], true)]);
         let shown = panels[0].iter().map(|(_, _, colour, is_marks)| (*colour, *is_marks));
@@ -208,7 +248,7 @@ mod tests {
             (Colour::GREY, false),
             (Colour::BLACK, false),
             (Colour::cycle(0), true),
-            (Colour::cycle(1), true),
+            (Colour::cycle(0), true),
         ];
         assert!(shown.eq(expected));
     }

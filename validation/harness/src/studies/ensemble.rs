@@ -252,9 +252,10 @@ fn figure(id: &str, time: &[&str; 2], all: &[(&CompletedEnsemble, Followed)]) ->
     let drawn = all.iter().filter(|(made, of)| made.of.is_drawn && of.of.is_drawn);
     let drawn: Vec<_> = drawn.collect();
     let columns = drawn.iter().filter(|(made, _)| made.of.id == drawn[0].0.of.id).count();
-    let caption = "Median, quartiles (dark band) and range (pale band) of the members over time, of the \
-                   ensembles with the finest spacing. Black is the experiment, each series for itself. The \
-                   dashed line is the horizon: to its right a run is one draw.";
+    let caption = "How far is a run of chaotic water determined? Median, quartiles (dark band) and range \
+                   (pale band) of members that differ by round-off, finest spacing. Black is the \
+                   experiment, each series for itself. To the right of the dashed line, the horizon, a run \
+                   is one draw.";
     let figure = Figure::new(id, caption).columns(columns.max(1));
     let panels = drawn.iter().map(|(made, followed)| panel(time, made, followed));
     panels.fold(figure, Figure::panel).panel_size(300.0, 220.0)

@@ -2,14 +2,14 @@
 
 use touchstone_base::{
     gate::Verdict,
-    record::Record,
-    submission::{Division, OURS, SESSION, Submission},
+    submission::{Division, OURS, Submission},
 };
-use touchstone_report::{Axis, Cell, Colour, Figure, Plot, Series, Shape, percent, plain, seconds};
+use touchstone_report::{Axis, Cell, Figure, Plot, Series, Shape, percent, plain, seconds};
 
 use super::{Accuracy, Card, Comparisons, anchor, cost::error_of};
 use crate::{
     columns::TableColumns,
+    looks,
     runs::{Judged, JudgedRun, Runs},
     section::Section,
     study::Studies,
@@ -36,25 +36,20 @@ impl SubmissionMark<'_> {
     }
 }
 
-/// The day on which a record that the program contains was made with others.
-fn session(record: &Record) -> Option<&str> {
-    record.numerics.get(SESSION)?.as_str()
-}
-
 /// The submissions with an error of this study; for equal methods and numbers of particles only the fastest,
 /// because a longer run has no other error.
 fn marks<'a>(accuracy: &Accuracy, runs: &'a Runs) -> Vec<SubmissionMark<'a>> {
     let of = |run: &'a JudgedRun| {
         let (record, of) = (&run.record, run.record.run.submission.as_ref()?);
         let name = match of.code.as_str() {
-            OURS if session(record).is_some() => format!("ours, {}", record.run.variant),
+            OURS if record.session().is_some() => format!("ours, {}", record.run.variant),
             code => format!("{code}, {} ({})", of.scheme, record.run.variant),
         };
         Some(SubmissionMark {
             of,
             name,
             particles: record.cost.particles,
-            session: session(record),
+            session: record.session(),
             error: error_of(&accuracy.error, record)?,
             seconds: record.cost.cpu_s,
         })
@@ -133,17 +128,14 @@ fn named<'m, 'a>(
 
 /// Error against run time, a panel for each division in which other codes are.
 fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
-    let mut caption =
-        "Runs of other codes (in parentheses the variant whose problem they ran): error over the time of \
-         the loop on one core, as submitted. Labels are numbers of particles."
-            .to_string();
-    if marks.iter().any(SubmissionMark::is_ours) {
-        caption += " Ours of the session in which the records of the program were made are black.";
-    }
-    if marks.iter().any(|mark| mark.session.is_none()) {
-        caption += " Runs from the store were made on other machines, so their seconds compare with no \
-                    others.";
-    }
+    let elsewhere = match marks.iter().any(|mark| mark.session.is_none()) {
+        true => " Runs from the store were made elsewhere: their seconds compare with no others.",
+        false => "",
+    };
+    let caption = format!(
+        "Which code is cheapest for an error? In parentheses the variant whose problem a code ran; labels \
+         are numbers of particles; ours of the same session are black.{elsewhere}"
+    );
     let figure = Figure::new(id, caption).panel_size(480.0, 330.0);
     let panel = |division: Division| {
         let is_of = |mark: &&SubmissionMark| mark.of.division == division || mark.is_ours();
@@ -158,8 +150,9 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
                 0 => String::new(),
                 particles => particles.to_string(),
             });
-            let series = Series::line(&all[0].name, points).cycle(k).labels(labels);
-            if all[0].is_ours() { series.colour(Colour::BLACK) } else { series }
+            // Schemes of one code differ in line and marker.
+            let colour = looks::look_of(&all[0].name, k).colour;
+            Series::line(&all[0].name, points).cycle(k).colour(colour).labels(labels)
         };
         let (named, others) = named(marks);
         let others: Vec<_> = others.into_iter().flatten().filter(is_shown).collect();
@@ -178,7 +171,7 @@ const FEW: usize = 120;
 
 /// Place and time of the runs that the program contains, and notes for their reader.
 fn provenance(runs: &Runs) -> Option<String> {
-    let day = runs.peers.iter().find_map(|run| session(&run.record))?;
+    let day = runs.peers.iter().find_map(|run| run.record.session())?;
     let mut words = format!(
         "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
          turn with ours, each on one thread while other programs were at work. Their seconds compare only \
@@ -336,7 +329,7 @@ fn all_gates(run: &JudgedRun) -> String {
 mod tests {
     use touchstone_base::{
         gate::{Bound, Evidence, Gate},
-        record::Metric,
+        record::{Metric, Record},
     };
 
     use super::*;

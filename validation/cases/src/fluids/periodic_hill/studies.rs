@@ -124,7 +124,6 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         title: "Periodic hill",
         picture: "periodic-hill-pictures",
         metric: L2_U.into(),
-        axis: "error of the velocity [U_b]",
         stated: |settings| Stated {
             name: {
                 let [re, t, n] = ["re", "end", "n"].map(|name| Stated::setting(settings, name));
@@ -185,7 +184,7 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
         spacing: "dx/H [-]",
         slope: Some(1.0),
         ladders,
-        ..Accuracy::new("periodic-hill", L2_U, "rms error of u [U_b]")
+        ..Accuracy::new("periodic-hill", L2_U, "error of the velocity [U_b]")
     }
 }
 
@@ -218,10 +217,9 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
 
 /// Profiles at their stations, symbols on lines, and shear along the hill.
 fn profiles(table: &Table) -> Curves {
-    let caption = "Velocity u along the channel at ten stations: lines are finite elements, symbols the \
-                   finest run of variant `carried`. A velocity is drawn from the place of its station. \
-                   Right: shear stress on the hill at several spacings and of finite elements (black), \
-                   negative where the flow goes backwards.";
+    let caption = "Does the flow over the hills follow finite elements? Velocity u at ten stations of the \
+                   finest run of `carried`, each drawn from the place of its station, and shear stress on \
+                   the hill, negative where the flow goes backwards.";
     let mut panels = Vec::new();
     for re in REYNOLDS {
         let rows = shown(table, re);
@@ -229,14 +227,14 @@ fn profiles(table: &Table) -> Curves {
         panels.push(profile(finest, reference));
         panels.push(shear(&rows, reference));
     }
-    Curves::new("periodic-hill-profiles", "Profiles over finite elements", caption, panels)
+    Curves::new("periodic-hill-profiles", "Velocity and shear stress", caption, panels)
 }
 
 /// The velocity along the channel, every tenth point of a station.
 fn profile(row: &Row, reference: &HillReference) -> CurvePanel {
     const SCALE: f64 = 0.8;
     let line = |k: usize| CurveOf {
-        name: String::new(),
+        name: name(row),
         spec: row.run.spec.clone(),
         points: Box::new(move |record: &Record| {
             let [x, y, u] = ["x", "y", "u"].map(|name| record.column("stations", name));
@@ -246,7 +244,7 @@ fn profile(row: &Row, reference: &HillReference) -> CurvePanel {
     };
     let exact = reference.stations.iter().map(|station| {
         let at = |(y, v): (&f64, &Vector2<f64>)| (station.x + SCALE * v.x, *y);
-        (String::new(), station.y.iter().zip(&station.v).map(at).collect())
+        ("finite elements".to_string(), station.y.iter().zip(&station.v).map(at).collect())
     });
     CurvePanel {
         title: format!("Re {}, {}", row.settings.re, name(row)),
@@ -360,10 +358,10 @@ fn starts(table: &Table) -> Option<impl Study + use<>> {
 /// Particles of the finest run at each Reynolds number, the floor, and the line that encloses the fluid that
 /// circulates.
 fn picture(table: &Table) -> Picture {
-    let caption = "Particles of the finest run of variant `carried`, coloured by their velocity u along the \
-                   channel. Black lines are the floor and, where the flow separates, the border of the \
-                   fluid that circulates in finite elements.";
-    let texts = ["periodic-hill-pictures", "Pictures", caption];
+    let caption = "Where does the flow separate? Particles of the finest run of `carried`, coloured by their \
+                   velocity u along the channel. Black lines are the floor and the border of the fluid that \
+                   circulates in finite elements.";
+    let texts = ["periodic-hill-pictures", "Where the flow separates", caption];
     let panel = |row: &Row| {
         let HillSettings { re, n, .. } = row.settings;
         let panel = row.panel(format!("Re {re}, {}", name(row)), 1.0 / n as f64);

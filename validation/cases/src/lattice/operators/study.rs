@@ -146,9 +146,9 @@ fn section(tier: Tier, table: &Table, runs: &Runs) -> Section {
         "An operator applied to a wave gives a gain times the exact value, plus noise. On a lattice there \
          is no noise, and theory gives the gain to 1e-5, so these gates identify a wrong operator.",
     );
-    let figure = "Operators of the quintic spline on a wave in a periodic square of side L: bias on a \
-                  lattice (h/dx 1.5), and noise on disordered particles over h (h/dx 1), over dx/h (h = \
-                  L/24) and over the displacement.";
+    let figure = "Which operator converges? The quintic spline on a wave in a periodic square of side L: \
+                  bias on a lattice (h/dx 1.5), and noise on disordered particles, which grows as h falls \
+                  at h/dx 1, over dx/h (h = L/24) and over the displacement.";
     let caption = "Orders of the parts of the error. The bias is that of the gain on a lattice; noise is \
                    that of lattices that are displaced by up to 0.2 dx, over the rms of the exact values. \
                    With an order below 1 in h an operator does not converge at a fixed number of neighbours.";

@@ -30,6 +30,8 @@ pub enum Group {
     Unstressed,
     /// Few layers, which only show how the error falls.
     Coarse,
+    /// Cells of the map of outcomes that no other group has.
+    Map,
 }
 
 /// The runs of a tier.
@@ -42,7 +44,7 @@ pub const SPEED: f64 = 0.059;
 
 /// The runs of a tier, with their gates.
 pub fn table(tier: Tier) -> Table {
-    use Group::{Coarse, Paper, Speed, Unstressed};
+    use Group::{Coarse, Map, Paper, Speed, Unstressed};
     const COARSE: &[f64] = &[1.0 / 3.0, 0.25];
     let mut table = Table::new(&RUBBER_RINGS, tier);
     let dx = |s: &mut RingSettings, spacing| s.spacing = spacing;
@@ -66,6 +68,11 @@ pub fn table(tier: Tier) -> Table {
     };
     let all = [(0.2, 0.12), (0.2, SPEED), (0.1, SPEED), (0.1, 0.12)];
     table.over(Unstressed, &["seed"], [&all[..1], &all], unstressed);
+    let more = [(0.2, 0.03), (0.2, 0.3)];
+    table.over(Map, &["seed"], [&more, &more[1..]], at);
+    table.over(Map, &[LAGRANGIAN], [&[(0.2, 0.12)], &[(0.2, 0.12), (0.2, 0.2)]], at);
+    let quick = [(0.2, 0.03), (0.2, SPEED), (0.2, 0.3)];
+    table.over(Map, &["seed"], [&quick, &[(0.2, 0.03), (0.2, 0.2), (0.2, 0.3)]], unstressed);
     table.over(Coarse, &["seed", LAGRANGIAN], [COARSE; 2], dx);
     table.over(Coarse, &["leapfrog"], [&[], COARSE], dx);
     table.keep_particles(|row| {
@@ -81,7 +88,7 @@ pub fn table(tier: Tier) -> Table {
 
 /// Gates of a run: properties for any settings, whether the rings stay whole, distances from finite elements.
 fn gates(row: &Row) -> Vec<Gate> {
-    if row.group == Group::Coarse {
+    if matches!(row.group, Group::Coarse | Group::Map) {
         return Vec::new();
     }
     let (gates, s, is_lagrangian) = (gates_of(row), &row.settings, row.variant == LAGRANGIAN);

@@ -42,7 +42,7 @@ fn panel(
         x: Axis::linear(x).range(0.0, end),
         y: Axis::linear(y),
         lines: shown.map(line).collect(),
-        references: vec![("experiment".into(), measured), (String::new(), other)],
+        references: vec![("experiment".into(), measured), ("volume of fluid".into(), other)],
         symbols: false,
     }
 }
@@ -66,10 +66,10 @@ fn column(tier: Tier) -> Curves {
     let model = model_height.iter().map(|(t, y)| (t / FRAC_1_SQRT_2, *y)).collect();
     let axes = (["time τ = t √(g/a) [-]", "height [2a]"], 2.6);
     let heights = panel(of, "residual height", axes, fallen, [measured_height, &model]);
-    let caption = "Front from the back wall (left) and height near it, at 0.2 a (right), of a water column \
-                   of width a = 57.15 mm and height 2a. Black is the experiment of Martin & Moyce 1952, \
-                   whose fronts are digitised within 0.1 a, and grey volume of fluid, which solves the same \
-                   model. No clock is shifted.";
+    let caption = "Does the water run as in the experiment and as by volume of fluid? Front from the back \
+                   wall, and height at 0.2 a, of a column of width a = 57.15 mm and height 2a. Fronts of \
+                   Martin & Moyce 1952 are digitised within 0.1 a; volume of fluid solves the same model. \
+                   No clock is shifted.";
     let title = "Martin & Moyce 1952: front and height";
     Curves::new("dam-break-martin-moyce", title, caption, vec![fronts, heights])
 }
@@ -106,15 +106,14 @@ fn tank(tier: Tier) -> Curves {
         let mut panel = panel(of, &title, axes, arrived, curves.each_ref());
         panel.y = panel.y.range(-0.2, 3.5);
         if k == 1 {
-            panel.references.push((String::new(), since(&aside(), theirs)));
+            panel.references.push(("experiment, second sensor".into(), since(&aside(), theirs)));
         }
         panels.push(panel);
     }
-    let caption = "Front, depth at four stations, and pressure on four sensors in the far wall, of a column \
-                   600 mm long and 300 mm high in a tank of 1610 mm. Black is the experiment of Lobovsky et \
-                   al. 2014 (levels: the mean of two series), and grey volume of fluid and a second sensor \
-                   at the height of P2. Peaks of the pressure scatter and are cut at 3.5 ρ g H; impulses are \
-                   judged instead. The clock of pressures begins when the wave arrives at P1.";
+    let caption = "Do front, levels and pressures in the tank follow the experiment of Lobovsky et al. \
+                   2014? A column 600 mm long and 300 mm high in a tank of 1610 mm. Pressures are cut at \
+                   3.5 ρ g H: their peaks scatter, and impulses are judged instead; their clock begins when \
+                   the wave arrives at P1.";
     let title = "Lobovsky et al. 2014: front, levels, pressures";
     Curves::new("dam-break-lobovsky", title, caption, panels)
 }
