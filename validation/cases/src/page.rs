@@ -254,10 +254,10 @@ fn verdicts(suite: &Suite) -> Section {
     Section::new(VERDICTS, "All verdicts")
         .prose(
             "A gate compares a number with a bound that has a stated reason. It passes inside the bound, is \
-             a known limitation if it lies outside and inside of a second bound, which follows from the \
-             cause, or is fitted to own runs and says so, and fails otherwise; controls must lie outside. \
-             The margin is the unused share of what a bound allows: 100 % is far inside, 0 % is at the \
-             bound. For a limitation, the wider bound counts. Select a gate to read its reasons.",
+             a known limitation between this bound and a second one, which follows from the cause or is \
+             marked as fitted to own runs, and fails otherwise; controls must lie outside. The margin is \
+             the unused share of the bound: 100 % is far inside, 0 % is at the bound. For a limitation, \
+             the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
         .block(Block::Details {
@@ -332,10 +332,10 @@ fn measured(value: f64) -> Cell {
 
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
     let caption = "All runs, the settings that are not the defaults of their variant (`touchstone list` and \
-                   the name of the case show these), and their cost. Seconds alone are the median of timings \
-                   with nothing else of this program at work; other seconds were taken side by side and are \
-                   only rough. The state is a digest of the bits at the end: the same for any number of \
-                   threads.";
+                   the name of the case show these), and their cost. Seconds alone are the median of \
+                   timings with nothing else of this program at work; other seconds were measured while \
+                   runs were made in parallel, and are only rough. The state is a digest of the bits at \
+                   the end: the same for any number of threads.";
     let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
     TableColumns::<Record>::default()
         .code("variant", |record| record.run.variant.clone())

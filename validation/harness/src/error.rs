@@ -68,9 +68,9 @@ pub enum RunError {
     NoRules(String),
     /// A time step beyond the theoretical limit.
     #[error(
-        "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} for this \
-         run on a lattice at rest; where particles move, at most {:.4e} s is advised; change dt, courant or \
-         what else sets the step (--allow-unstable permits more)",
+        "dt is {dt:.4e} s, but must be at most {limit:.4e} s, the theoretical limit of {integrator} for \
+         this run on a lattice at rest; where particles move, at most {:.4e} s is advised; change dt, \
+         courant or another setting of the step (--allow-unstable permits more)",
         ADVISED_SHARE * limit
     )]
     TimeStep {

@@ -208,9 +208,9 @@ fn has_ghosts(variant: &str) -> bool {
 }
 
 fn gate(of: Group, variant: &str) -> Gate {
-    let smooth = "Smoothing is of second order, and so is what ghosts leave out: the curvature of the \
-                  velocity across the wall, of order 1 in the Laplacian within h of it. All else is 0 or of \
-                  higher order.";
+    let smooth = "Smoothing is of second order, and so is the error of ghosts: they omit the curvature of \
+                  the velocity across the wall, of order 1 in the Laplacian within h of it. All else is 0 \
+                  or of higher order.";
     let slip = "Second order as with ghosts, and a part of first order: the fluid slips along interface and \
                 wall particles as if the wall were 0.04 dx behind them, by the theory of rows. At 34 \
                 particles that is a third of the error at most, which takes 0.4 from the order.";

@@ -224,10 +224,10 @@ fn facts() -> Facts {
 
 /// Both walls with the order that they should have.
 fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
-    let because = "As in the row-reduced matrix of flat walls, interface particles and the rows behind them, \
-                   which carry the velocity of the wall, are of first order, and walls that extrapolate \
-                   linearly of second. A tolerance of 0.3 tells one from the other, whatever the number of \
-                   levels, but not an order that falls slowly.";
+    let because = "As in the row-reduced matrix of flat walls, interface particles and the rows behind \
+                   them, which carry the velocity of the wall, are of first order, and walls that \
+                   extrapolate linearly of second. A tolerance of 0.3 distinguishes them for any number of \
+                   levels, but does not detect an order that falls slowly.";
     let spacing = Spacing::count(|s: &mut CylinderSettings| &mut s.layers, "{} spacings across");
     let ladder = |(variant, expected): (&'static str, f64)| {
         let bound = Bound::Within(expected - 0.3, expected + 0.3);

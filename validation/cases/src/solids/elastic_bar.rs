@@ -428,10 +428,11 @@ fn pulse(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
 
 /// Of two bars.
 fn meeting(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
-    let jump = "The jump conditions hold whatever dissipates: equal bars exchange their velocities, and \
-                meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 %.";
+    let jump = "The jump conditions hold with any dissipation: equal bars exchange their velocities, and \
+                meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 \
+                %.";
     let welded = "The contact pulls as soon as the first expansion returns, whose front is as wide as the \
-                  kernel: what it has not delivered is missing. The bound: 20 spacings exchange 0.93, with \
+                  kernel, so a part of the exchange is missing. The bound: 20 spacings exchange 0.93, with \
                   viscosity 0.85.";
     let swings = "Behind a front of a few spacings stress swings, for short waves are slower. The bound: \
                   twice the swing of 20 spacings (--set n=20), which is -6 %, at half of their spacing.";

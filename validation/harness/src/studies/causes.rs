@@ -4,8 +4,8 @@ use touchstone_base::gate::Cause;
 
 /// The metrics do not depend on the constant.
 pub static NOT_MEASURED: Cause = Cause::new(
-    "Some constants, such as the density of an incompressible flow, hardly affect what is measured, so no \
-     gate detects an error in them.",
+    "Some constants, such as the density of an incompressible flow, hardly affect the metrics, so no gate \
+     detects an error in them.",
     "Gates on quantities that depend on these constants, such as stresses in pascals.",
 );
 

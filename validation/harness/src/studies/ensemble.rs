@@ -155,7 +155,7 @@ fn evaluate(case: &str, ensembles: &Ensembles, runs: &Runs) -> Section {
         numbers.extend(made.of.numbers.iter().map(|of| (made, of, values(of))));
     }
     let id = anchor(case, "ensembles");
-    let mut section = Section::new(&id, "Ensembles: what a run predicts and what is a draw")
+    let mut section = Section::new(&id, "Ensembles: predictable results and chance")
         .prose(&*ensembles.about)
         .block(figure(&id, &ensembles.time, &followed))
         .block(horizons(ensembles.time[1], &followed))
@@ -214,7 +214,7 @@ fn horizons(unit: &str, all: &[(&CompletedEnsemble, Followed)]) -> Table {
 fn distributions(all: &[Numbered]) -> Table {
     let caption = format!(
         "Distributions over the members. Intervals of median and quartiles lie between order statistics and \
-         hold with at least {} % whatever the distribution is. Measured is each repetition that there is.",
+         hold with at least {} % for any distribution. Every existing repetition is measured.",
         sig(100.0 * CONFIDENCE, 2)
     );
     let show = |value| Cell::num(value, 3);

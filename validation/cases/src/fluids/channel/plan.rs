@@ -108,8 +108,7 @@ fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         }
         (Flow::Couette, "modern" | "single-sweep", 20) => {
             let because = "The bound is the larger error by the row-reduced matrices of the walls, 6.6e-4, \
-                           and as much again for shifting and density diffusion, which the matrices leave \
-                           out.";
+                           doubled for shifting and density diffusion, which the matrices omit.";
             let most = 1.3e-3;
             vec![of_others(error(L2.at(flow.compared_at()), most, because), most)]
         }

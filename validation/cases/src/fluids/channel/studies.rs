@@ -138,8 +138,8 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
 
 /// The ladders at Re 0.5.
 fn at_half(flow: Flow, table: &ChannelTable) -> Accuracy {
-    let because = "Mirrored walls and the kernel are of second order. Levels whose error is near what the \
-                   lattice leaves at any spacing are not in the fit.";
+    let because = "Mirrored walls and the kernel are of second order. Levels whose error is near the \
+                   lattice error, which no spacing reduces, are not in the fit.";
     let (id, bound) = ("poiseuille.plain.order", Bound::Within(1.8, 2.2));
     let order = Gate::new(id, "order", bound, Evidence::Theory, because);
     let spacing = Spacing::count(|s: &mut ChannelSettings| &mut s.rows, "{} rows");
@@ -321,8 +321,8 @@ const ORDER: &str =
     "At Re 0.5 particles stay in straight rows, and this term acts on disorder alone.";
 const REACH: &str = "The error that a longer reach adds to a parabolic profile at 20 rows is inside the \
                      bounds until the reach is wrong by 20 %.";
-const LISTS: &str = "A list that is kept 30 % too long still holds every neighbour, for it is built again \
-                     before a particle has crossed half of the skin.";
+const LISTS: &str = "A list that is kept 30 % too long still has every neighbour, because it is rebuilt \
+                     before a particle crosses half of the skin.";
 
 /// The runs with the most gates, one without and one with density diffusion and shifting.
 fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {

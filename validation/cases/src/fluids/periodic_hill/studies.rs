@@ -76,8 +76,9 @@ fn drive(settings: &serde_json::Value) -> Vec<Parameter> {
     let flux = "the flux of volume through every section, the integral of u over y from the hill to the \
                 lid, that the force keeps: 2.035 U_b H times the setting `flux`, U_b = 1 m/s the mean \
                 velocity over the crest and H = 1 m the height of the hill";
-    let force = "at the start, of the acceleration f(t) along x, uniform over the fluid: dv/dt = -(1/ρ) ∇p + \
-                 ν ∇²v + (f, 0). Any f(t) that leads to this flux will do, for the steady flow has one force";
+    let force = "at the start, of the acceleration f(t) along x, uniform over the fluid: dv/dt = -(1/ρ) ∇p \
+                 + ν ∇²v + (f, 0). Any f(t) that leads to this flux is allowed, because the steady flow \
+                 has one force";
     let response = "T of our controller: f' = ((u* - u)/T - u')/(T/4), u the mean of the velocity along x \
                     over the fluid, u* that of the flux, looked at every ten steps; 0 keeps the force";
     vec![
@@ -305,7 +306,7 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
 }
 
 const BOUNDS: &str = "The error of the method at ten spacings a hill takes up most of the bounds.";
-const CONTROLLED: &str = "A controller sets the force, whatever force it begins with.";
+const CONTROLLED: &str = "A controller sets the force, for any initial force.";
 const SOUND: &str = "Compressibility changes the velocity by less than the spacing does.";
 const REACH: &str =
     "Sums are valid for any reach; its error is inside the bounds at ten spacings a hill.";
@@ -340,8 +341,8 @@ fn starts(table: &Table) -> Option<impl Study + use<>> {
     let pairs: Vec<(f64, [Planned; 2])> = REYNOLDS.into_iter().filter_map(pair).collect();
     let runs: Vec<Planned> = pairs.iter().flat_map(|(_, runs)| runs.clone()).collect();
     let section = move |runs: &Runs| {
-        let because =
-            "Both starts lead to the same steady flow, but for what disorder leaves in averages.";
+        let because = "Both starts lead to the same steady flow, except for the effect of disorder on \
+                       averages.";
         let section = Section::new("periodic-hill-starts", "Whether the start matters");
         pairs.iter().fold(section, |section, (re, [rest, other])| {
             let u = |run: &Planned| Some(runs.completed(&run.spec)?.column("stations", "u"));

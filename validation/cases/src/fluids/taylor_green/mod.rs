@@ -174,8 +174,8 @@ fn of_best(gates: &RunGates, n: usize) -> Vec<Gate> {
     let energy = "At the end e^-3.2 of the energy is left, so 1 % of it is 0.3 % of the viscosity, if \
                   shifting keeps particles evenly spread.";
     let apart = "Shifting keeps particles apart, and half a spacing is far from pairing.";
-    let drift =
-        "Terms that are exact for linear fields may add what their error of about 1 % adds.";
+    let drift = "Terms that are exact for linear fields may add energy in proportion to their error of \
+                 about 1 %.";
     let mut all = vec![
         gates.analytic(L2, Bound::Below(most_error(n)), goal),
         // Particles that the exact flow carries come nearer, and sample its momentum and energy worse.
@@ -247,9 +247,9 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
     // The picture shows the unchanged run.
     changes[0].spec.keep.particles = true;
     let about = "Runs have 50 x 50 particles from the disturbed lattice at Re 100, to t = 2 L/U. The last \
-                 row, with another disturbance, shows what is chance. A shorter step, faster sound and less \
-                 diffusion all raise the error, because their parts have the sign opposite to that of the \
-                 spacing and cancel some of it.";
+                 row, with another disturbance, shows the effect of chance. A shorter step, faster sound \
+                 and less diffusion all raise the error, because their parts have the sign opposite to \
+                 that of the spacing and cancel some of it.";
     Budgets::new(accuracy, about, vec![changes])
 }
 

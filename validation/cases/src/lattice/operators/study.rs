@@ -104,8 +104,8 @@ impl Group {
             Group::Resolution if expected <= 0.0 => {
                 let reason = format!(
                     "The order of noise is {expected} by theory: the lowest order of the field that the sum \
-                     does not cancel, minus the order of the derivative that is sought. The limitation is \
-                     this number with 0.25 either way, for the rms of few independent samples."
+                     does not cancel, minus the order of the derivative. The limitation is this number \
+                     with 0.25 either way, because the rms is of few independent samples."
                 );
                 gate.with_limitation(within(0.25), reason, &DISORDERED)
             }

@@ -61,7 +61,7 @@ fn gates(row: &Row<CantileverSettings, Group>) -> Vec<Gate> {
     let near = |metric, most: f64| gates.reference(metric, Bound::magnitude(most * wider), reach);
     // One uncertainty is the finite elements', and one is for the clamp and for large rotations.
     let theory = "A bar that bends as finite elements do, with the stiffness of its layers by theory. The \
-                  bound is the uncertainty of finite elements, and as much again for the clamp and for large \
+                  bound is the uncertainty of finite elements, doubled for the clamp and for large \
                   rotations.";
     let bending = |metric, doubt: f64| gates.theory(metric, Bound::magnitude(2.0 * doubt), theory);
     let stored = "The forces derive from the stored energy and from that of the weight. The leapfrog keeps \

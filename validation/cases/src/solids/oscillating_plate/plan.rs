@@ -152,8 +152,8 @@ fn of_elements(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
                spacing away swings 0.34 % less far with 20 layers and 1.4 % with 5.";
     let path = "A relative error e of the period, here its bound, shifts the phase by 2 pi e in every \
                 period: over three periods a root mean square of 6 pi e/6^(1/2) extremes.";
-    let theory = "With the stiffness of its layers by theory, what is left is the clamp, whose plane lies \
-                  between two rows of particles, and shear, 1 %, in which the lattice is little wrong.";
+    let theory = "With the theoretical stiffness of its layers, two errors remain: the clamp, whose plane \
+                  lies between two rows of particles, and shear, 1 %, which the lattice reproduces well.";
     let rms = 6.0 * std::f64::consts::PI / 6.0_f64.sqrt() * period;
     let gates = of(row);
     vec![
@@ -165,9 +165,9 @@ fn of_elements(row: &Row<PlateSettings, Group>) -> Vec<Gate> {
 }
 
 /// Why plates of nearly incompressible rubber are too stiff.
-const LOCKS: &str = "The displacements of an even number of layers cannot keep the volume of every layer, so \
-    that a share of the bulk modulus resists bending. The bound is the theory of a bent lattice, which is of \
-    an endless plate: one of finite length is a little less stiff, for its end is free.";
+const LOCKS: &str = "The displacements of an even number of layers cannot keep the volume of every layer, \
+    so that a share of the bulk modulus resists bending. The bound is the theory of a bent lattice, which \
+    is of an endless plate: one of finite length is a little less stiff, because its end is free.";
 
 /// A total Lagrangian plate that hardly changes its volume.
 fn locked(row: &Row<PlateSettings, Group>) -> Gate {

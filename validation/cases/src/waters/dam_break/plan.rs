@@ -140,8 +140,8 @@ fn invariants(gates: &RunGates, dx: f64) -> Vec<Gate> {
     let still = "Walls at rest do no work. The bound allows for the energy that their pressure stores and \
                  returns.";
     let ends = "A run that ends early has no later results.";
-    let filled = "The column is H high, so its centre is at H/2. Its lowest row is half a spacing to a whole \
-                  one above the wall, which is dx/2 or nothing of difference.";
+    let filled = "The column is H high, so its centre is at H/2. Its lowest row is half a spacing to a \
+                  whole one above the wall, a difference of up to dx/2.";
     // The small compressibility of water is not a theory of a method.
     let of_water =
         |metric, bound, because| gates.theory(metric, bound, because).of_others(bound, because);
@@ -223,7 +223,7 @@ fn tank_references(gates: &RunGates) -> Vec<Gate> {
     let levels =
         "The bound is twice the rms distance of two series of the experiment at H4, 0.024 H.";
     let impulse = "Two sensors side by side at 15 mm differ by 6 %, which is √2 times the standard \
-                   uncertainty of one. The bound is twice this, 8.5 %, for the other heights too.";
+                   uncertainty of one. The bound is twice this, 8.5 %, also at the other heights.";
     let model = "By volume of fluid this model differs from the experiment by 26, 17, -7 and -60 % at P1 to \
                  P4. The bound adds, either way, 10 % of that impulse, 9 % at P2, and its uncertainty, which \
                  is 3, 3, 2 and 18 %.";
@@ -292,10 +292,11 @@ fn known(row: &Row) -> Vec<(MetricName, f64, Why)> {
 
 const MIRRORED: Why = (
     &NO_SLIP_IMAGES,
-    "Such runs are chaotic: in ten, at a/dx = 10, 14, 17 to 22, 24 and 28, the walls do work of 0.57 M g H/2 \
-     on the water, with a scatter of 0.16, and energy is off by 0.016 with a scatter of 0.013. The bounds of \
-     both are what a further run of that mean and scatter stays below with a probability of 97.5 % \
-     (Student's distribution, 9 degrees of freedom), and that of the Mach number is its largest in the tank.",
+    "Such runs are chaotic: in ten, at a/dx = 10, 14, 17 to 22, 24 and 28, the walls do work of 0.57 M g \
+     H/2 on the water, with a scatter of 0.16, and energy is off by 0.016 with a scatter of 0.013. The \
+     bounds of both are the limits below which a further run of that mean and scatter stays with a \
+     probability of 97.5 % (Student's distribution, 9 degrees of freedom), and that of the Mach number is \
+     its largest in the tank.",
 );
 const CROSSED: Why = (
     &PRESSED_THROUGH,
@@ -310,8 +311,8 @@ const AHEAD: Why = (
 );
 const THICK: Why = (
     &VISCOSITY,
-    "The bounds are what `modern-sticking` has at a/dx = 20 with 1.4 times the artificial viscosity of this \
-     run, by a sound speed of 100 √(g H).",
+    "The bounds are the results of `modern-sticking` at a/dx = 20 with 1.4 times the artificial viscosity \
+     of this run, by a sound speed of 100 √(g H).",
 );
 const LAYER: Why = (
     &VISCOSITY,

@@ -169,8 +169,8 @@ fn picture(table: &Table) -> Picture {
 fn front() -> SubmittedCurve {
     SubmittedCurve {
         columns: &[("front", "m")],
-        about: "front is the x of the foremost water below H/4, from the back wall: of particles that of the \
-                foremost one plus what it lacks of the width of the column at the start, which is dx/2",
+        about: "front is the x of the foremost water below H/4, from the back wall: for particles that of \
+                the foremost one plus dx/2, its distance from the face of the column at the start",
         least: 0,
         rows: |_| 1,
         place: |settings, at, starts| {
@@ -264,9 +264,9 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let spacing = Spacing::count(|s: &mut DamSettings| &mut s.n, "a/dx {}");
     let mut ladders = table.ladders(&[Group::Ladder], &["seed", "modern"], spacing);
     if tier == Tier::Full {
-        let because = "Artificial viscosity, the place of a surface and what a wall sees of it are of first \
-                       order in dx. A front is known to a quarter of a spacing, so the order is uncertain by \
-                       0.5.";
+        let because = "Errors of artificial viscosity, of the place of a surface and of the pressure on a \
+                       wall are of first order in dx. A front is known to a quarter of a spacing, so the \
+                       order is uncertain by 0.5.";
         let id = format!("{NAME}.martin-moyce.modern.front.order");
         let bound = Bound::Within(0.5, 1.5);
         ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
@@ -345,8 +345,8 @@ fn limits(tier: Tier) -> StepLimits {
 fn limit(variant: &'static str) -> StepLimit {
     // A run is stable if it keeps its energy.
     let spec = DAM_BREAK.spec(variant, |s| s.n = 15).measure_all();
-    let because = "Theory is the limit of a lattice at rest. Moving, disordered water is expected at 0.7 \
-                   to 1.0 of it, and the step of the case must be below what is measured. A run that holds \
+    let because = "Theory is the limit of a lattice at rest. Moving, disordered water is expected at 0.7 to \
+                   1.0 of it, and the step of the case must be below the measured limit. A run that holds \
                    at 1.2 would measure another limit, because the stiffest mode of leapfrog grows \
                    3.5-fold a step there.";
     let gate = |default| {
@@ -360,8 +360,8 @@ fn limit(variant: &'static str) -> StepLimit {
 
 const DENSITY: &str = "Times and lengths of a collapse do not depend on the density. Water at rest \
                        (`hydrostatic`) detects 0.1 % by its exact pressure.";
-const SOUND: &str = "The model holds for any sound speed that is large compared with the speed of the water, \
-                     so what is compared with the experiment must not depend on it.";
+const SOUND: &str = "The model holds for any sound speed that is large compared with the speed of the \
+                     water, so the comparison with the experiment must not depend on it.";
 const PLACE: &str = "An error of 10 % moves the front by less than 0.1 a, to which the experiment fixes it, \
                      a being the width of the column. The error budget shows how much each part of the \
                      method moves it.";
