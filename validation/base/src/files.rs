@@ -249,7 +249,7 @@ fn is_opened(path: &Path) -> bool {
         if above.starts_with("/proc") {
             return true;
         }
-        path = above.join(target); // not in a circle, for the path leads to something
+        path = above.join(target); // not in a circle, because the path leads to something
     }
     false
 }

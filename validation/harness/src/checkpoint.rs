@@ -22,8 +22,8 @@ use touchstone_solver::{
 
 use crate::error::RunError;
 
-/// A simulation and everything observed of it. Only the build that wrote the bytes can read them, for they
-/// name no fields.
+/// A simulation and everything observed of it. Only the build that wrote the bytes can read them, because
+/// they name no fields.
 #[derive(Serialize, Deserialize)]
 struct Stored {
     state: StoredState,

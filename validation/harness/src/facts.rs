@@ -113,7 +113,7 @@ pub struct Draws {
     pub set: &'static [&'static str],
     /// Other settings that are drawn.
     pub others: &'static [(&'static str, Drawn)],
-    /// Settings in which judged runs may differ, for they change none of the errors.
+    /// Settings in which judged runs may differ, because they change none of the errors.
     pub free: &'static [&'static str],
 }
 

@@ -108,7 +108,7 @@ impl Rules {
 }
 
 /// Times of samples, of about this number of equal intervals, without the start: a step that the settings
-/// give is not shortened to reach them, for they are whole numbers of such steps apart.
+/// give is not shortened to reach them, because they are whole numbers of such steps apart.
 pub fn samples(end: f64, count: usize, given: Option<f64>) -> Vec<f64> {
     let Some(dt) = given else {
         return (1..=count).map(|k| end * k as f64 / count as f64).collect();

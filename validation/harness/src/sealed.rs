@@ -144,7 +144,7 @@ pub fn draw(index: &GateIndex, variant: &str, random: &mut Random) -> Result<Vec
     let levels = draws.metrics.iter().map(|metric| draws.levels(index, variant, metric));
     let Some(levels) = levels.into_iter().find(|levels| !levels.is_empty()) else {
         return Err(format!(
-            "{} {variant} has no sealed problems, for no bound of its errors is known at other settings; \
+            "{} {variant} has no sealed problems, because no bound of its errors is known at other settings; \
              variants that have: {}",
             case.name(),
             draws.variants.join(", ")

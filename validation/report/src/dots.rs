@@ -26,7 +26,7 @@ impl<'a> Scaled<'a> {
     }
 
     pub fn draw(&self, canvas: &mut Canvas, frame: &Frame) {
-        // Dots of one colour after each other, for they are one element of an SVG.
+        // Dots of one colour after each other, because they are one element of an SVG.
         let mut all = vec![Vec::new(); STEPS];
         for &(x, y, value) in &self.dots.points {
             let Some(at) = frame.place((x, y)).filter(|at| frame.area.contains(*at)) else {

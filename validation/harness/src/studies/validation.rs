@@ -106,7 +106,7 @@ pub struct ComparisonResult {
 /// Verdict on a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Conclusion {
-    /// Against an exact reference: the error falls, for the interval of its order is above 0.
+    /// Against an exact reference: the error falls, because the interval of its order is above 0.
     Converges,
     /// Against an exact reference: the error tends to another limit than 0, or fell and then stopped falling.
     Stops,

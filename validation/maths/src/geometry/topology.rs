@@ -300,7 +300,7 @@ mod tests {
         assert_eq!(of(&[Point::zeros()]), (1, 0));
     }
 
-    /// In every direction, for the scan lines have one.
+    /// In every direction, because the scan lines have one.
     #[test]
     fn a_cut_is_open_before_it_is_two_spacings_wide_and_closed_at_one_and_a_half() {
         for k in 0..24 {
