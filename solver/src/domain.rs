@@ -27,6 +27,14 @@ impl Domain {
         Self { low: Vector2::zeros(), period: [Some(length), Some(height)] }
     }
 
+    /// A difference of two places \[m\] between the nearest images of both.
+    pub fn nearest(&self, mut apart: Vector2<f64>) -> Vector2<f64> {
+        for (of, period) in apart.iter_mut().zip(self.period) {
+            *of -= period.map_or(0.0, |period| (*of / period).round() * period);
+        }
+        apart
+    }
+
     /// The copy of a point inside the period. A point already inside keeps its bits.
     pub fn wrap(&self, mut point: Vector2<f64>) -> Vector2<f64> {
         for axis in 0..2 {

@@ -17,8 +17,8 @@ use nalgebra::{Complex, Matrix2, Rotation2};
 
 #[doc(no_inline)]
 pub use libm::{
-    acos, cos, cosh, erfc, exp, exp2, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p, log2,
-    log10, pow as powf, sin, sinh,
+    acos, atan2, cos, cosh, erfc, exp, exp2, expm1 as exp_m1, hypot, log as ln, log1p as ln_1p,
+    log2, log10, pow as powf, sin, sinh,
 };
 
 /// Sine and cosine of an angle in radians.

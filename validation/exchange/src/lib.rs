@@ -12,6 +12,7 @@ pub mod challenge;
 mod digits;
 pub mod flaw;
 pub mod library;
+pub mod probe;
 pub mod problem;
 pub mod read;
 pub mod submission;

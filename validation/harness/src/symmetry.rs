@@ -126,14 +126,7 @@ pub fn far_away((outline, frames): Seen) -> Option<(usize, usize, String)> {
 /// the last time.
 pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
     let Outline { medium, times, domain, .. } = base.0;
-    let near = |mut apart: Vector2<f64>| {
-        for axis in 0..2 {
-            let period = domain.period[axis].unwrap_or(f64::INFINITY);
-            apart[axis] -=
-                if period.is_finite() { (apart[axis] / period).round() * period } else { 0.0 };
-        }
-        apart.amax() / medium.h
-    };
+    let near = |apart: Vector2<f64>| domain.nearest(apart).amax() / medium.h;
     let size = floor(base.0, other.0, 1.0);
     let (quantity, particle) = ("place", 0);
     let mut worst = Difference { time: 0.0, value: 0.0, floor: size, quantity, particle };

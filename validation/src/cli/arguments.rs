@@ -1,11 +1,12 @@
 //! The arguments of each command.
 
+use std::ffi::OsString;
 use std::ops::Range;
 use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand};
-use touchstone_base::{gate::Verdict, spec::Measure};
+use clap::{ArgGroup, Args, Parser, Subcommand};
+use touchstone_base::{gate::Verdict, mutation::Mutation, spec::Measure};
 use touchstone_exchange::write::Format;
 use touchstone_harness::{case::Tier, relation::Relation};
 
@@ -47,6 +48,11 @@ pub enum Command {
     Challenge(Earlier),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
+    /// Ask a code twenty plain questions, each with one short problem, and say what is wrong by which factor
+    Probe(Probe),
+    /// Solve an exported problem by the method that it was exported from, as another code would
+    #[command(hide = true)]
+    Solve(Solve),
     /// Test symmetry: compare results in rotated, mirrored, moving and other reference frames, of our own
     /// runs or of another code
     Symmetry(Symmetry),
@@ -288,6 +294,67 @@ pub struct Export {
     /// Continue even if the estimate exceeds 4 GB of memory or, with --solve, 24 hours on one core
     #[arg(long)]
     pub allow_long: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("code under test").required(true).args(["command", "code", "variant"]))]
+pub struct Probe {
+    /// The code: a program and its first arguments, called once for each problem with the folder of the
+    /// problem as its last argument
+    #[arg(last = true, value_name = "COMMAND")]
+    pub command: Vec<OsString>,
+    /// A folder with a probe.json that names the command: `{"command": ["python", "run.py"]}`
+    #[arg(long, value_name = "DIR")]
+    pub code: Option<PathBuf>,
+    /// Ask our own variant of this name, and the recommended one of each case that has none of this name
+    #[arg(long, value_name = "NAME")]
+    pub variant: Option<String>,
+    /// With one constant of our own variant multiplied by a factor: a question that has the same answer does
+    /// not see it
+    #[arg(long, value_name = "CONSTANT=FACTOR", requires = "variant")]
+    pub mutate: Option<String>,
+    /// Ask these questions alone
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// List the questions, and the errors that each of them finds
+    #[arg(long, group = "code under test")]
+    pub list: bool,
+    /// State walls as particles; otherwise they are planes
+    #[arg(long)]
+    pub wall_particles: bool,
+    /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
+    #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
+    pub map: Vec<(String, String)>,
+    /// Wall time after which a call has failed \[s\]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub timeout: u32,
+    /// Keep the folders of all problems in this new folder
+    #[arg(long, value_name = "DIR")]
+    pub keep: Option<PathBuf>,
+    /// Print the answers as JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Write the answers as JUnit XML, one test case a question
+    #[arg(long, value_name = "FILE")]
+    pub junit: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct Solve {
+    /// The folder of the problem, into which the results are written
+    pub folder: PathBuf,
+    /// One constant of the method multiplied by a factor
+    #[arg(long, value_name = "CONSTANT=FACTOR", value_parser = mutation)]
+    pub mutate: Option<Mutation>,
+}
+
+/// `CONSTANT=FACTOR`, as in `viscosity=2`.
+fn mutation(text: &str) -> Result<Mutation, String> {
+    let (of, factor) = text.split_once('=').ok_or("expected CONSTANT=FACTOR, as in viscosity=2")?;
+    let of = serde_json::from_value(of.into()).map_err(|error| error.to_string())?;
+    let factor =
+        factor.parse().map_err(|_| format!("the factor is {factor:?}; expected a number"))?;
+    Ok(Mutation { of, factor })
 }
 
 #[derive(Debug, Args)]

@@ -2,28 +2,24 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
-use serde_json::{Value, json};
 use touchstone_base::{
     files,
     files::OutputFolder,
-    record::{Profile, Record, Status},
+    record::{Record, Status},
     spec::RunSpec,
-    submission::OURS,
     text::short,
 };
 use touchstone_exchange::{
     challenge,
     flaw::{Flaw, lines},
     problem::{CURVE, ExportedProblem, PROBLEM, ProblemDocument, Sealed},
-    read::{COLUMNS, Head, RESULTS, Renamed},
+    read::{RESULTS, Renamed},
     submission::{self, Entry, METHOD, SYSTEM},
     write,
 };
 use touchstone_harness::{
     case::{self, Case},
-    context::Context,
     gates::GateIndex,
     problem::Steps,
     relation::Relation,
@@ -31,7 +27,11 @@ use touchstone_harness::{
     suite, symmetry,
 };
 
-use super::{Exit, Failure, Outcome, Session, arguments, output, submitted};
+use super::{
+    Exit, Failure, Outcome, Session, arguments, output,
+    solve::{self, How},
+    submitted,
+};
 
 pub fn export(arguments: &arguments::Export, session: &Session) -> Result<(), Failure> {
     let of = &arguments.of;
@@ -47,13 +47,22 @@ pub fn export(arguments: &arguments::Export, session: &Session) -> Result<(), Fa
     let problem = ExportedProblem::seen(case, spec, arguments.relation, arguments.allow_long)?;
     problem.unjudged().iter().for_each(|why| output::say(&format!("note: {why}")));
     let mut files = write::files(&problem, of.format)?;
-    let method = solved_by(&problem);
+    let method = solve::method(&problem);
     let own = arguments.solve.then_some((METHOD, method.as_bytes()));
     files.extend(own.map(|(name, bytes)| (name, bytes.to_vec())));
     let folder = prepare(of, &files, if arguments.solve { &RESULTING } else { &[] })?;
     let mut names = put(&files, &folder)?;
     if arguments.solve {
-        names.extend(solve(case, &problem, &folder, arguments.allow_long, session)?);
+        names.extend(
+            solve::results(
+                case,
+                &problem,
+                &folder,
+                &How { allow_long: arguments.allow_long, ..How::default() },
+                session,
+            )?
+            .0,
+        );
     }
     output::say(&format!("{}: {}", folder.path().display(), names.join(", ")));
     Ok(())
@@ -115,91 +124,6 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
         folder.write(name, bytes)?;
     }
     Ok(files.iter().map(|(name, _)| name.to_string()).collect())
-}
-
-/// The description of this program's method in a submission.
-fn solved_by(problem: &ExportedProblem) -> String {
-    let read = problem.settings().map(|(field, value)| (field.name.to_string(), value.clone()));
-    let (mut settings, own) = (Value::Object(read.collect()), &problem.outline.method);
-    // With these settings the gates on the theory of our own method apply.
-    settings["kernel"] = json!(own.kernel);
-    settings["support"] = json!(own.support * problem.outline.medium.h);
-    settings["dt"] = json!(problem.outline.dt);
-    let method = json!({
-        "code": OURS,
-        "version": env!("CARGO_PKG_VERSION"),
-        "scheme": problem.spec.variant,
-        "division": "closed",
-        "settings": settings,
-        "changed": "nothing",
-    });
-    format!("{method:#}\n")
-}
-
-/// Makes the run and writes it as another code would: an example of a submission.
-fn solve(
-    case: &dyn Case,
-    problem: &ExportedProblem,
-    folder: &OutputFolder,
-    allow_long: bool,
-    session: &Session,
-) -> Result<Vec<String>, Failure> {
-    let spec = &problem.spec;
-    // Mass and role are for codes that choose their own particles.
-    let written = COLUMNS.iter().filter(|(name, ..)| !["mass", "role"].contains(name));
-    let add = |results: Profile, (name, unit, _): &Head| results.with(name, unit, Vec::new());
-    let results = Mutex::new(written.fold(Profile::default(), add));
-    let tell = |time: f64, particles: Profile| {
-        let mut results = touchstone_base::lock(&results);
-        if results.column("t").last() == Some(&time) {
-            return; // stated twice
-        }
-        let times = vec![time; particles.column("id").len()];
-        let particles = particles.with("t", "s", times);
-        for column in &mut results.columns {
-            column.values.extend(particles.column(&column.name));
-        }
-    };
-    let interrupt = Some(session.interrupt);
-    let context = Context { spec: spec.clone(), allow_long, interrupt, ..Context::default() };
-    let record = match problem.relation {
-        Some(relation) => {
-            case.pose(spec)?.seen_by(relation, &context, &mut |time, particles| {
-                tell(time, particles);
-            })?;
-            // A record without metrics or work: the seen particles were not measured.
-            Record::of(spec, 1)
-        }
-        None => case.run(spec, &Context { at_times: Some(&tell), ..context })?,
-    };
-    session.go_on("the problem is written, its results are not")?;
-    let Record { cost, manifest, .. } = &record;
-    let counted = |of: Value| if of.as_f64() > Some(0.0) { of } else { json!("unknown") };
-    let system = json!({
-        "machine": manifest.cpu,
-        "threads": cost.threads,
-        "seconds": counted(json!(cost.cpu_s / cost.threads.max(1) as f64)),
-        "steps": counted(json!(cost.steps)),
-        "interactions": counted(json!(cost.pair_interactions)),
-    });
-    let (name, table) = match series(case, &record) {
-        Some(series) => (CURVE, series),
-        None => (RESULTS, results.into_inner().unwrap_or_else(PoisonError::into_inner)),
-    };
-    let told = |what| Failure::usage(format!("{name} was not written: {what}"));
-    table.check_finite().map_err(told)?;
-    folder.write(name, table.to_csv().as_bytes())?;
-    folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
-    Ok([name, SYSTEM].map(String::from).into())
-}
-
-/// The series from which a case measures more than from particles at its few times, if it has one.
-fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
-    let curve = case.facts().curve.filter(|curve| curve.coarsen.is_some())?;
-    let (name, columns) = curve.shown;
-    let mut series = record.profiles.get(name)?.clone();
-    series.columns.retain(|column| columns.contains(&&*column.name));
-    Some(series)
 }
 
 /// Writes a problem whose settings are drawn from a seed and a method.
@@ -310,8 +234,11 @@ fn differences(before: &Record, now: &Record) -> Vec<String> {
 /// Number of different metrics that are named.
 const MOST_DIFFERENCES: usize = 3;
 
-/// The submission in a folder, with columns of other names.
-fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
+/// Names of columns, ours by theirs.
+///
+/// # Errors
+/// If one is given twice.
+pub fn renamed(map: &[(String, String)]) -> Result<Renamed, Failure> {
     let mut renamed = Renamed::new();
     for (ours, theirs) in map {
         let is_named = renamed.values().any(|of| of == ours);
@@ -321,7 +248,12 @@ fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
             return Err(Failure::usage(words));
         }
     }
-    submission::read(folder, &renamed).map_err(refused)
+    Ok(renamed)
+}
+
+/// The submission in a folder, with columns of other names.
+fn read(folder: &Path, map: &[(String, String)]) -> Result<Entry, Failure> {
+    submission::read(folder, &renamed(map)?).map_err(refused)
 }
 
 /// The run that a document asks for.
@@ -445,7 +377,7 @@ fn problem(
 }
 
 /// All flaws as the reason why nothing is judged.
-fn refused(flaws: Vec<Flaw>) -> Failure {
+pub fn refused(flaws: Vec<Flaw>) -> Failure {
     let lines: Vec<String> = lines(&flaws).iter().map(|line| format!("  {line}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",

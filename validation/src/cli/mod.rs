@@ -25,10 +25,12 @@ mod man;
 mod output;
 mod partial;
 mod plan;
+mod probe;
 mod profile;
 mod progress;
 mod report;
 mod run;
+mod solve;
 mod stability;
 mod submitted;
 mod summary;
@@ -336,6 +338,8 @@ fn dispatch(command: &Command, session: &Session) -> Outcome {
         Command::Export(arguments) => exchange::export(arguments, session).map(done),
         Command::Challenge(_) => Err(renamed("challenge", "export --sealed SEED --method FILE")),
         Command::Submit(arguments) => exchange::submit(arguments, session),
+        Command::Probe(arguments) => probe::probe(arguments, session),
+        Command::Solve(arguments) => solve::solve(arguments, session),
         Command::Symmetry(of) => match of.results.as_deref() {
             Some([same, other]) => match &of.cases[..] {
                 [case] => exchange::relate(case, [same, other], &of.map, of.allow_long, session),

@@ -1,0 +1,53 @@
+//! Fits of one factor.
+
+use nalgebra::Vector2;
+
+use super::{Factor, code::Moment};
+
+/// The factor s that makes Σ (found − s expected)² least, with its standard error.
+pub fn factor(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> Factor {
+    let (mut both, mut square, mut count) = (0.0, 0.0, 0.0);
+    for [found, expected] in pairs.clone() {
+        both += found * expected;
+        square += expected * expected;
+        count += 1.0;
+    }
+    let value = both / square;
+    let off = pairs.fold(0.0, |sum, [found, expected]| sum + (found - value * expected).powi(2));
+    Factor { value, uncertainty: (off / square / f64::max(count - 1.0, 1.0)).sqrt() }
+}
+
+/// The straight line a + b x through points by least squares: a and b.
+pub fn line(points: &[[f64; 2]]) -> [f64; 2] {
+    let n = points.len() as f64;
+    let mean = |k: usize| points.iter().fold(0.0, |sum, of| sum + of[k]) / n;
+    let [x, y] = [mean(0), mean(1)];
+    let (both, square) = points.iter().fold((0.0, 0.0), |(both, square), of| {
+        (both + (of[0] - x) * (of[1] - y), square + (of[0] - x).powi(2))
+    });
+    let slope = both / square;
+    [y - slope * x, slope]
+}
+
+/// Components of two lists of vectors, pair by pair.
+pub fn components<'a>(
+    pairs: impl Iterator<Item = [Vector2<f64>; 2]> + Clone + 'a,
+) -> impl Iterator<Item = [f64; 2]> + Clone + 'a {
+    pairs.flat_map(|[a, b]| [[a.x, b.x], [a.y, b.y]])
+}
+
+/// The rms of lengths.
+pub fn rms(lengths: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = lengths.fold((0.0, 0.0), |(sum, count), of| (sum + of * of, count + 1.0));
+    f64::sqrt(sum / f64::max(count, 1.0))
+}
+
+/// Total momentum per unit depth \[kg/s\].
+pub fn momentum(at: &Moment) -> Vector2<f64> {
+    at.states.iter().fold(Vector2::zeros(), |sum, of| sum + of.velocity * of.mass)
+}
+
+/// Kinetic energy per unit depth \[J/m\].
+pub fn kinetic(at: &Moment) -> f64 {
+    at.states.iter().fold(0.0, |sum, of| sum + 0.5 * of.mass * of.velocity.norm_squared())
+}

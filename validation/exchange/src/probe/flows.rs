@@ -1,0 +1,286 @@
+//! Short flows with an exact solution.
+
+use std::f64::consts::PI;
+
+use nalgebra::Vector2;
+use touchstone_base::functions::{exp, sin};
+use touchstone_solver::EquationOfState;
+
+use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
+
+/// Number of a setting of the problem.
+fn setting(of: &Solved, name: &str) -> Result<f64, NotApplicable> {
+    let value = of.problem.spec.settings[name].as_f64();
+    value.ok_or_else(|| format!("the problem has no number {name}"))
+}
+
+pub fn did_it_run() -> Question {
+    Question {
+        id: "ran",
+        text: "Did it run? Are times, steps and particles those of a run?",
+        poses: || {
+            let set = ["n=16", "perturb=0.2", "re=100", "end=0.1", "seed=20261128"];
+            vec![Pose::of("taylor_green", "plain", &set)]
+        },
+        answer: Reads::Results(|of| {
+            let (of, outline) = (of[0], &of[0].problem.outline);
+            let end = of.end();
+            let pairs = of.start.states.iter().zip(&end.states);
+            // By the velocities at both ends.
+            let moved = pairs.map(|(a, b)| {
+                let way = outline.domain.nearest(b.position - a.position);
+                [way, (a.velocity + b.velocity) * (0.5 * end.time)]
+            });
+            let factor = fit::factor(fit::components(moved.clone()));
+            let off = fit::rms(moved.clone().map(|[way, expected]| (way - expected).norm()));
+            let off = off / fit::rms(moved.map(|[_, expected]| expected.norm()));
+            let mut words =
+                format!("particles moved {factor} times the way that their velocities make");
+            let mut criteria = vec![
+                Criterion::new(
+                    "way over velocity times time",
+                    factor.value,
+                    [0.9, 1.1],
+                    "a mean of both velocities gives the way to 2 %; a copy of the start has 0",
+                ),
+                Criterion::at_most(
+                    "distance from that way",
+                    off,
+                    0.2,
+                    "acceleration over 0.1 L/U and disorder take up to 0.1; other results have 1 and more",
+                ),
+            ];
+            if let Some(steps) = of.steps() {
+                let medium = &outline.medium;
+                let least = end.time * medium.sound_speed / (4.0 * medium.h);
+                words += &format!("; it states {steps} steps");
+                criteria.push(Criterion::at_least(
+                    "steps over the least number",
+                    steps / least,
+                    1.0,
+                    "no explicit step is longer than four times h/c0",
+                ));
+            }
+            Ok(Finding::new(words, criteria).with(factor))
+        }),
+        finds: &["copy-of-start", "other-results", "no-run"],
+    }
+}
+
+pub fn conservation() -> Question {
+    Question {
+        id: "conservation",
+        text: "Is momentum kept, and energy lost only to the viscosity?",
+        poses: || {
+            let set = ["n=24", "perturb=0.02", "re=1000", "end=0.1"];
+            vec![Pose::of("taylor_green", "plain", &set)]
+        },
+        answer: Reads::Results(|of| {
+            let of = of[0];
+            let sizes =
+                of.start.states.iter().fold(0.0, |sum, at| sum + at.mass * at.velocity.norm());
+            let momentum = (fit::momentum(of.end()) - fit::momentum(&of.start)).norm() / sizes;
+            let (nu, k) = (of.problem.outline.medium.nu, 2.0 * PI);
+            let expected = exp(-4.0 * nu * k * k * of.end().time);
+            let energy = fit::kinetic(of.end()) / fit::kinetic(&of.start) / expected;
+            let words = format!(
+                "momentum changed by {momentum:.1e} of its size, kinetic energy is {energy:.4} times that which \
+                 viscosity leaves"
+            );
+            let criteria = [
+                Criterion::at_most(
+                    "change of momentum",
+                    momentum,
+                    1e-6,
+                    "forces of pairs that are equal and opposite change it by round-off",
+                ),
+                Criterion::new(
+                    "energy over that which viscosity leaves",
+                    energy,
+                    [0.97, 1.01],
+                    "disorder of 0.02 spacings and sound take up to 2 %",
+                ),
+            ];
+            Ok(Finding::new(words, criteria))
+        }),
+        finds: &["one-sided", "twice-counted", "missed-neighbours", "artificial-viscosity"],
+    }
+}
+
+/// Distance from the lower plate over the width, and velocity along the plates.
+fn profile(of: &Solved, states: &[super::code::State]) -> Result<Vec<[f64; 2]>, NotApplicable> {
+    let width = setting(of, "width")?;
+    Ok(states.iter().map(|at| [at.position.y / width, at.velocity.x]).collect())
+}
+
+fn couette() -> Pose {
+    Pose::of("couette", "plain", &["rows=10"]).or("extrapolating-wall")
+}
+
+pub fn drag() -> Question {
+    Question {
+        id: "moving-wall",
+        text: "Does a moving wall drag the fluid, at its own speed?",
+        poses: || vec![couette()],
+        answer: Reads::Results(|of| {
+            let of = of[0];
+            let speed = setting(of, "re")? * setting(of, "nu")? / setting(of, "width")?;
+            let all = profile(of, &of.end().states)?;
+            let [low, slope] = fit::line(&all);
+            let off = fit::rms(all.iter().map(|[y, u]| u - low - slope * y));
+            let [low, high] = [low / speed, (low + slope) / speed];
+            let factor = Factor { value: high, uncertainty: 0.005 + off / speed };
+            // u(0) = V δ/(L + 2 δ) of walls that act δ behind their place, and as much less at the other.
+            let behind = low / (high - low);
+            let is_symmetric = (low - (1.0 - high)).abs() < 0.01 && low.abs() > 0.01;
+            let rows = setting(of, "rows")?;
+            let words = match is_symmetric {
+                true => format!("the walls act {:.2} spacings behind their place", behind * rows),
+                false => {
+                    factor.of("the speed of the moving wall")
+                        + &format!(", that of the other wall is {low:.3} of it")
+                }
+            };
+            let because = "the steady profile is a straight line, which second-order sums have to 1 % with ten rows";
+            let criteria = [
+                Criterion::new("velocity at the moving wall", high, [0.98, 1.02], because),
+                Criterion::new("velocity at the resting wall", low, [-0.02, 0.02], because),
+            ];
+            Ok(Finding::new(words, criteria).with(factor))
+        }),
+        finds: &["wall-speed", "wall-at-rest", "wall-sign", "wall-place"],
+    }
+}
+
+pub fn stick() -> Question {
+    Question {
+        id: "no-slip",
+        text: "Does the fluid stick to the wall, as asked?",
+        poses: || vec![couette()],
+        answer: Reads::Results(|of| {
+            let of = of[0];
+            let (nu, width) = (setting(of, "nu")?, setting(of, "width")?);
+            let speed = setting(of, "re")? * nu / width;
+            let time = 0.1 * width * width / nu;
+            let at = of
+                .moments
+                .iter()
+                .min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()));
+            let at = at.unwrap_or(&of.start);
+            let exact = |y: f64| {
+                (1..30).fold(y, |sum, n| {
+                    let k = f64::from(n) * PI;
+                    let sign = if n % 2 == 0 { 2.0 } else { -2.0 };
+                    sum + sign / k * sin(k * y) * exp(-k * k * nu * at.time / (width * width))
+                })
+            };
+            let row = 1.0 / setting(of, "rows")?;
+            let [mut beside, mut inside] = [0.0_f64; 2];
+            for [y, u] in profile(of, &at.states)? {
+                let off = (u / speed - exact(y)).abs();
+                let place = if y.min(1.0 - y) < row { &mut beside } else { &mut inside };
+                *place = if off.is_nan() { f64::NAN } else { place.max(off) };
+            }
+            let words = format!(
+                "at νt/L² = 0.1 the rows beside the walls are off by {beside:.3} of the wall's speed, the others \
+                 by {inside:.3}"
+            );
+            let because = "ten rows of a second-order method have the exact velocity to 1 %";
+            let criteria = [
+                Criterion::at_most("error beside the walls", beside, 0.03, because),
+                Criterion::at_most("error inside", inside, 0.03, because),
+            ];
+            Ok(Finding::new(words, criteria))
+        }),
+        finds: &["slip", "wall-term"],
+    }
+}
+
+pub fn force() -> Question {
+    Question {
+        id: "body-force",
+        text: "Does a body force drive the right flow?",
+        poses: || {
+            vec![Pose::of("poiseuille", "plain", &["rows=20", "end=0.02"]).or("extrapolating-wall")]
+        },
+        answer: Reads::Results(|of| {
+            let of = of[0];
+            let medium = &of.problem.outline.medium;
+            let (width, time) = (setting(of, "width")?, of.end().time);
+            // Beyond the layers that the walls have slowed: F t (1 − 4/π Σ …) is F t to 1 % in the middle.
+            let exact = |y: f64| {
+                (0..30).fold(0.0, |sum, m| {
+                    let n = f64::from(2 * m + 1);
+                    let rate = (n * PI / width).powi(2) * medium.nu;
+                    sum + 4.0 / (n * PI) * sin(n * PI * y) * (1.0 - exp(-rate * time)) / rate
+                })
+            };
+            let middle = profile(of, &of.end().states)?;
+            let middle = middle.into_iter().filter(|[y, _]| (y - 0.5).abs() < 0.25);
+            let factor = fit::factor(middle.map(|[y, u]| [u, medium.acceleration.x * exact(y)]));
+            let factor = Factor { uncertainty: factor.uncertainty + 0.005, ..factor };
+            let because = "before the walls' layers meet, the middle has u = F t: a method needs no order for it";
+            let criterion =
+                Criterion::new("factor of the body force", factor.value, [0.98, 1.02], because);
+            Ok(Finding::new(factor.of("the body force"), [criterion]).with(factor))
+        }),
+        finds: &["body-force", "force-twice"],
+    }
+}
+
+fn tank(end: &str) -> Pose {
+    Pose::of("hydrostatic", "ghosts", &["rows=10", "columns=10", end]).or("modern")
+}
+
+pub fn still() -> Question {
+    Question {
+        id: "still-water",
+        text: "Does still water stay still, with p = ρ g d?",
+        poses: || vec![tank("end=0.25"), tank("end=1")],
+        answer: Reads::Results(|of| {
+            // After H/c0 the waves of a wrong gravity have just built up its own hydrostatic pressure.
+            let eos = &of[0].problem.outline.medium.eos;
+            let densities = |at: &super::code::Moment| at.densities();
+            let [before, after] = [densities(&of[0].start)?, densities(of[0].end())?];
+            let pressure = |density: &f64| eos.pressure(*density);
+            let fitted =
+                fit::factor(after.iter().zip(&before).map(|(a, b)| [pressure(a), pressure(b)]));
+            let factor = Factor { uncertainty: fitted.uncertainty + 0.02, ..fitted };
+            let (late, medium) = (of[1].end(), &of[1].problem.outline.medium);
+            let depth = setting(of[1], "depth")?;
+            let speeds: Vec<(Vector2<f64>, f64)> =
+                late.states.iter().map(|at| (at.position, at.velocity.norm())).collect();
+            let unit = (medium.acceleration.norm() * depth).sqrt();
+            let speed = fit::rms(speeds.iter().map(|(_, speed)| speed / unit));
+            let fastest = speeds.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+            let place = fastest.map_or(String::new(), |(x, speed)| {
+                format!(
+                    "; the fastest particle, {:.3} (gH)^(1/2), is at x = {:.2}, y = {:.2} m",
+                    speed / unit,
+                    x.x,
+                    x.y
+                )
+            });
+            let words = format!(
+                "{}; after 4 H/c0 the speed is {speed:.4} (gH)^(1/2) rms{place}",
+                factor.of("the hydrostatic pressure")
+            );
+            let criteria = [
+                Criterion::new(
+                    "factor of the hydrostatic pressure",
+                    factor.value,
+                    [0.9, 1.1],
+                    "the start is the exact solution; ten rows of a surface without particles above take 5 %",
+                ),
+                Criterion::at_most(
+                    "speed over (gH)^(1/2)",
+                    speed,
+                    0.02,
+                    "particles of a lattice settle at the walls with a few thousandths",
+                ),
+            ];
+            Ok(Finding::new(words, criteria).with(factor))
+        }),
+        finds: &["gravity", "corner"],
+    }
+}

@@ -1,0 +1,203 @@
+//! One operator at a time: sums over neighbours on a lattice and on disordered particles.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+use touchstone_base::functions::{cos, sin};
+
+use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
+
+/// Spacings along the sides of the two lattices.
+const SIDES: [f64; 2] = [24.0, 44.0];
+
+fn lattices(variant: &'static str) -> [Pose; 2] {
+    let on = |n: &'static str| Pose::of("operators", variant, &[n, "disorder=0"]);
+    [on("n=24"), on("n=44")]
+}
+
+/// Rates of change of velocity or density, and their exact values, as fields on the start.
+type Field = fn(&Solved) -> Result<Vec<[Vector2<f64>; 2]>, NotApplicable>;
+
+/// The factor of an operator in the limit of fine lattices: with an error c dx², g(dx) = g0 − c dx² of two
+/// lattices gives g0. Its uncertainty is what remains of the fourth order, (1 − g)² of the finer one.
+fn limit(coarse: &Solved, fine: &Solved, field: Field) -> Result<Factor, NotApplicable> {
+    let gain = |of: &Solved| {
+        if let Some(few) = of.entry.few_digits(&of.problem) {
+            return Err(format!("rates over a short time need all digits of a double: {few}"));
+        }
+        Ok(fit::factor(fit::components(field(of)?.into_iter())))
+    };
+    let [coarse, fine] = [gain(coarse)?, gain(fine)?];
+    let ratio = (SIDES[1] / SIDES[0]).powi(2);
+    let value = fine.value + (fine.value - coarse.value) / (ratio - 1.0);
+    let uncertainty = (value - fine.value).powi(2) + fine.uncertainty;
+    Ok(Factor { value, uncertainty })
+}
+
+/// (sin Kx cos Ky, cos Kx sin Ky), K = 2π per side 1 m.
+fn wave(x: Vector2<f64>) -> Vector2<f64> {
+    let [kx, ky] = [TAU * x.x, TAU * x.y];
+    Vector2::new(sin(kx) * cos(ky), cos(kx) * sin(ky))
+}
+
+fn accelerations(
+    of: &Solved,
+    exact: impl Fn(usize, Vector2<f64>) -> Vector2<f64>,
+) -> Vec<[Vector2<f64>; 2]> {
+    let time = of.end().time;
+    let pairs = of.start.states.iter().zip(&of.end().states).enumerate();
+    pairs.map(|(k, (a, b))| [(b.velocity - a.velocity) / time, exact(k, a.position)]).collect()
+}
+
+/// −∇p/ρ of p = 10⁻⁶ ρ0 c0² sin Kx cos Ky.
+fn pressure_force(of: &Solved) -> Result<Vec<[Vector2<f64>; 2]>, NotApplicable> {
+    let eos = &of.problem.outline.medium.eos;
+    let amplitude = 1e-6 * eos.density * eos.sound_speed.powi(2) * TAU;
+    Ok(accelerations(of, |k, x| {
+        let [kx, ky] = [TAU * x.x, TAU * x.y];
+        let density = of.start.states[k].density.unwrap_or(eos.density);
+        Vector2::new(-cos(kx) * cos(ky), sin(kx) * sin(ky)) * (amplitude / density)
+    }))
+}
+
+/// ν ∇²v of v = 0.1 c0 (sin Kx cos Ky, cos Kx sin Ky).
+fn viscous_force(of: &Solved) -> Result<Vec<[Vector2<f64>; 2]>, NotApplicable> {
+    let medium = &of.problem.outline.medium;
+    let rate = -2.0 * TAU * TAU * medium.nu * 0.1 * medium.eos.sound_speed;
+    Ok(accelerations(of, |_, x| wave(x) * rate))
+}
+
+/// Mean of the density over the mean at the start: the sum of the kernel over the particles.
+fn normalisation(of: &Solved) -> Result<(f64, bool), NotApplicable> {
+    let [start, end] = [of.start.densities()?, of.end().densities()?];
+    let mean = |all: &[f64]| all.iter().fold(0.0, |sum, one| sum + one) / all.len() as f64;
+    let has_changed = start.iter().zip(&end).any(|(a, b)| (a - b).abs() > 1e-9 * a);
+    Ok((mean(&end) / mean(&start), has_changed))
+}
+
+pub fn density() -> Question {
+    Question {
+        id: "density",
+        text: "Does the sum of the kernel give the density of a lattice, and of disordered particles?",
+        poses: || {
+            let [_, fine] = lattices("quintic-density");
+            vec![fine, Pose::of("operators", "quintic-density", &["n=44", "disorder=0.2"])]
+        },
+        answer: Reads::Results(|of| {
+            let [(lattice, has_changed), (disordered, _)] =
+                [normalisation(of[0])?, normalisation(of[1])?];
+            if !has_changed {
+                return Err("the code integrates the density and does not sum it: the density of particles \
+                            at rest has not changed"
+                    .into());
+            }
+            let own = own_part(of[0]);
+            let lacks_self = (lattice - (1.0 - own)).abs() < 0.02;
+            let mut words = format!(
+                "the kernel sums to {lattice:.4} on a lattice, to {disordered:.3} on disorder"
+            );
+            if lacks_self {
+                words += ": the particle itself is missing in its sum";
+            }
+            let factor = Factor { value: lattice, uncertainty: 5e-3 };
+            let lattice = Criterion::new(
+                "sum on a lattice",
+                lattice,
+                [0.99, 1.01],
+                "with a support of 2 to 4 spacings the sum of a smooth kernel differs from its integral by up to 0.5 %",
+            );
+            let disordered = Criterion::new(
+                "sum on disordered particles",
+                disordered,
+                [0.95, 1.05],
+                "displacements of up to 0.2 spacings change the mean by up to 2 %",
+            );
+            Ok(Finding::new(words, [lattice, disordered]).with(factor))
+        }),
+        finds: &["normalisation", "no-self"],
+    }
+}
+
+/// Share of a particle in its own sum, m W(0)/ρ, of the kernel of the problem: 478/239 · 7/π … for the
+/// quintic spline with h = dx, W(0) = 66 · 7/(478 π h²).
+fn own_part(of: &Solved) -> f64 {
+    let medium = &of.problem.outline.medium;
+    66.0 * 7.0 / (478.0 * std::f64::consts::PI) * (medium.dx / medium.h).powi(2)
+}
+
+/// Why factors of lattices are near 1.
+const LATTICE: &str = "on a fine lattice the sums of usual kernels are exact to 1.1 % (a cubic spline with \
+                       h/dx = 1.3 is the worst)";
+
+pub fn gradient() -> Question {
+    Question {
+        id: "gradient",
+        text: "Is the gradient of a linear and of a quadratic pressure right?",
+        poses: || {
+            let [coarse, fine] = lattices("quintic-gradient");
+            vec![coarse, fine, Pose::of("operators", "quintic-gradient", &["n=24", "disorder=0.2"])]
+        },
+        answer: Reads::Results(|of| {
+            let factor = limit(of[0], of[1], pressure_force)?;
+            let pairs = pressure_force(of[2])?;
+            let disordered = fit::factor(fit::components(pairs.iter().copied()));
+            let off = pairs.iter().map(|[a, b]| (a - b * disordered.value).norm());
+            let noise = fit::rms(off) / fit::rms(pairs.iter().map(|[_, b]| b.norm()));
+            let mut criteria = vec![
+                Criterion::new(
+                    "factor of the pressure force",
+                    factor.value,
+                    [0.985, 1.015],
+                    LATTICE,
+                ),
+                Criterion::new(
+                    "factor on disordered particles",
+                    disordered.value,
+                    [0.85, 1.15],
+                    "disorder of 0.2 spacings and 24 spacings a wave take up to 5 %",
+                ),
+            ];
+            if of[2].entry.method.settings.get("gradient_correction") == Some(&true.into()) {
+                criteria.push(Criterion::at_most("scatter on disordered particles", noise, 0.1,
+                    "method.json states gradient_correction: a corrected gradient is exact for linear fields"));
+            }
+            let words = format!(
+                "{}; on disordered particles it scatters by {noise:.2} of its size",
+                factor.of("the pressure force")
+            );
+            Ok(Finding::new(words, criteria).with(factor))
+        }),
+        finds: &["pressure-factor", "normalisation", "smoothing-length", "no-correction"],
+    }
+}
+
+pub fn viscous() -> Question {
+    Question {
+        id: "viscous-force",
+        text: "Is the viscous force of a shear ν ∇²u?",
+        poses: || {
+            let [coarse, fine] = lattices("quintic-laplacian");
+            let [other, last] = lattices("quintic-gradient");
+            vec![coarse, fine, other, last]
+        },
+        answer: Reads::Results(|of| {
+            let factor = limit(of[0], of[1], viscous_force)?;
+            let gradient = limit(of[2], of[3], pressure_force)?;
+            let ratio = factor.value / gradient.value;
+            let guard = "on a lattice both are the sum −½ Σ V r W': a guard η² = 0.01 h² against 0/0 lowers the \
+                         viscosity alone, by 0.7 %";
+            let criteria = [
+                Criterion::new("factor of the viscous force", factor.value, [0.98, 1.02], LATTICE),
+                Criterion::new("viscous over pressure force", ratio, [0.997, 1.003], guard),
+            ];
+            let mut words = factor.of("the viscous force");
+            if !criteria[1].passes() && criteria[0].passes() {
+                words += &format!(
+                    ", and {ratio:.4} times that of the same sum for the pressure: a guard η² is too large"
+                );
+            }
+            Ok(Finding::new(words, criteria).with(factor))
+        }),
+        finds: &["viscosity", "eta"],
+    }
+}

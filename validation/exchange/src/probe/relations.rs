@@ -1,0 +1,121 @@
+//! One problem in two reference frames: the results agree to round-off, whatever the method.
+
+use touchstone_harness::{relation::Relation, symmetry};
+
+use super::{Criterion, Finding, NotApplicable, Pose, Question, Reads, Solved};
+
+/// The difference of results for two frames, the first of them ours, over what round-off explains, and its
+/// place in words.
+fn apart(ours: &Solved, other: &Solved) -> Result<(f64, String), NotApplicable> {
+    let mut steps: f64 = 1.0;
+    for of in [ours, other] {
+        let outline = &of.problem.outline;
+        if let Some(few) = of.entry.few_digits(&of.problem) {
+            return Err(format!("frames are compared to round-off, which needs all digits: {few}"));
+        }
+        if let Some((_, _, far)) = symmetry::far_away((outline, &of.entry.results.frames)) {
+            return Err(far);
+        }
+        steps = steps.max(of.steps().unwrap_or(of.end().time / outline.dt));
+    }
+    let most = symmetry::most_steps(&ours.problem.outline, &other.problem.outline);
+    if steps > most {
+        return Err(format!(
+            "after {steps} steps round-off explains any difference; at most {most} can be compared"
+        ));
+    }
+    let seen = |of: &'_ Solved| (of.problem.outline.clone(), of.entry.results.frames.clone());
+    let ((a, first), (b, second)) = (seen(ours), seen(other));
+    let found = symmetry::difference((&a, &first), (&b, &second), steps);
+    let place =
+        format!("{} of particle {} at t = {} s", found.quantity, found.particle, found.time);
+    Ok((found.value / found.floor, place))
+}
+
+/// The answer for frames that are compared with the first one.
+fn agree(of: &[&Solved], others: &[(usize, &str)]) -> Result<Finding, NotApplicable> {
+    let (mut worst, mut words) = (0.0_f64, Vec::new());
+    for (k, name) in others {
+        let (over, place) = apart(of[0], of[*k])?;
+        if !(over <= 1.0) {
+            words.push(format!("{name}: differs in the {place}"));
+        }
+        worst = if over.is_nan() { f64::NAN } else { worst.max(over) };
+    }
+    let words = if words.is_empty() { "equal to round-off".into() } else { words.join("; ") };
+    let because =
+        "the equations have the symmetry, so only round-off may differ: ε n² after n steps";
+    Ok(Finding::new(words, [Criterion::at_most("difference over round-off", worst, 1.0, because)]))
+}
+
+/// Vortices on disordered particles.
+fn vortices() -> Pose {
+    Pose::of("taylor_green", "plain", &["n=16", "perturb=0.2"])
+}
+
+pub fn units() -> Question {
+    Question {
+        id: "units",
+        text: "Other units, same flow?",
+        poses: || {
+            // A density of 1 kg/m³ is 0.06 lb/ft³: an absolute floor shows.
+            let set = ["n=16", "rho=1", "jitter=0.1", "amplitude=0.05", "nu=0.01"];
+            let wave = Pose::of("shear_wave", "cubic-leapfrog", &set);
+            vec![wave.seen(Relation::Same), wave.seen(Relation::OtherUnits)]
+        },
+        answer: Reads::Results(|of| agree(of, &[(1, "feet, minutes and pounds")])),
+        finds: &["density-floor"],
+    }
+}
+
+pub fn frames() -> Question {
+    Question {
+        id: "frames",
+        text: "Mirrored, boosted, shifted by a third of a period: the same flow?",
+        poses: || {
+            let by = [Relation::Same, Relation::Mirrored, Relation::Boosted, Relation::Shifted];
+            by.map(|by| vortices().seen(by)).into()
+        },
+        answer: Reads::Results(|of| agree(of, &[(1, "mirrored"), (2, "boosted"), (3, "shifted")])),
+        finds: &["border"],
+    }
+}
+
+pub fn turned() -> Question {
+    Question {
+        id: "turned",
+        text: "Turned by 37°: the same motion of colliding solids?",
+        poses: || {
+            let rings = Pose::of("rubber_rings", "lagrangian", &["spacing=0.25", "centre=4.12"]);
+            vec![rings.seen(Relation::Same), rings.seen(Relation::Turned)]
+        },
+        answer: Reads::Results(|of| agree(of, &[(1, "turned")])),
+        finds: &["componentwise-stress"],
+    }
+}
+
+pub fn numbers() -> Question {
+    Question {
+        id: "numbers",
+        text: "Numbered otherwise, on two threads, twice: the same flow?",
+        poses: || {
+            let same = vortices().seen(Relation::Same);
+            let threads = Pose { threads: Some(2), ..same.clone() };
+            let again = Pose { again: 1, ..same.clone() };
+            vec![same, vortices().seen(Relation::Renumbered), threads, again]
+        },
+        answer: Reads::Results(|of| {
+            let found =
+                agree(of, &[(1, "numbered otherwise"), (2, "on two threads"), (3, "twice")])?;
+            let is_equal = |k: usize| of[0].moments == of[k].moments;
+            let bits = match [is_equal(2), is_equal(3)] {
+                [true, true] => "two runs have equal bits, on one thread and on two",
+                [false, true] => "two runs have equal bits, but not on two threads",
+                _ => "two runs do not have equal bits",
+            };
+            let diagnosis = format!("{}; {bits}", found.diagnosis);
+            Ok(Finding { diagnosis, ..found })
+        }),
+        finds: &["race", "order-of-numbers"],
+    }
+}

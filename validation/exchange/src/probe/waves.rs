@@ -1,0 +1,169 @@
+//! Waves of small amplitude in a periodic box: viscosity, sound, order in time.
+
+use std::f64::consts::TAU;
+
+use nalgebra::Vector2;
+use touchstone_base::functions::{atan2, cos, hypot, ln, log2, sin};
+
+use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
+
+/// Wave number of one wave in the box \[1/m\].
+fn wave_number(of: &Solved) -> f64 {
+    TAU / of.problem.outline.domain.period[0].unwrap_or(1.0)
+}
+
+/// The velocity at the end as a multiple of the velocity at the start: particles hardly move.
+fn amplitude(of: &Solved) -> Factor {
+    let pairs = of.end().states.iter().zip(&of.start.states);
+    fit::factor(fit::components(pairs.map(|(end, start)| [end.velocity, start.velocity])))
+}
+
+pub fn shear() -> Question {
+    Question {
+        id: "shear-wave",
+        text: "Does a shear wave decay as exp(-νk²t)?",
+        poses: || {
+            let set = ["n=32", "nu=0.01", "amplitude=1e-3", "span=0.3"];
+            vec![Pose::of("shear_wave", "cubic-leapfrog", &set)]
+        },
+        answer: Reads::Results(|of| {
+            let (of, gain) = (of[0], amplitude(of[0]));
+            let outline = &of.problem.outline;
+            let k = wave_number(of);
+            let decay = outline.medium.nu * k * k * of.end().time;
+            // Sums of second order over about two spacings: (k dx)²/2.
+            let order = (k * outline.medium.dx).powi(2) / 2.0;
+            let uncertainty = gain.uncertainty / (gain.value * decay) + order;
+            let factor = Factor { value: -ln(gain.value) / decay, uncertainty };
+            let bound = "sums of second order take 1 to 4 % at 32 spacings a wave";
+            let criterion =
+                Criterion::new("factor of the viscosity", factor.value, [0.95, 1.04], bound);
+            Ok(Finding::new(factor.of("the viscosity"), [criterion]).with(factor))
+        }),
+        finds: &["viscosity", "dynamic-viscosity", "artificial-viscosity"],
+    }
+}
+
+/// Phase and amplitude of a standing wave v = v0 cos ωt, ρ = ρ0 − (ρ0/c0) v0' sin ωt, where v0' is v0 a
+/// quarter of a wave further on.
+fn standing(of: &Solved) -> Result<[f64; 2], NotApplicable> {
+    let outline = &of.problem.outline;
+    let (eos, k) = (&outline.medium.eos, wave_number(of));
+    let states = &of.start.states;
+    let (a, b) = states.iter().fold((0.0, 0.0), |(a, b), at| {
+        let phase = k * at.position.x;
+        (a + at.velocity.x * sin(phase), b + at.velocity.x * cos(phase))
+    });
+    let scale = 2.0 / states.len() as f64;
+    let [a, b] = [a * scale, b * scale];
+    let densities = of.end().densities()?;
+    let pairs = densities.iter().zip(states).map(|(density, at)| {
+        let phase = k * at.position.x;
+        let shape = -(a * cos(phase) - b * sin(phase)) / eos.sound_speed;
+        [density / eos.density - 1.0, shape]
+    });
+    let [velocity, density] = [amplitude(of).value, fit::factor(pairs).value];
+    Ok([atan2(density, velocity), hypot(density, velocity)])
+}
+
+pub fn sound() -> Question {
+    Question {
+        id: "sound",
+        text: "Does sound travel at c0, undamped?",
+        poses: || {
+            let wave = |span| {
+                Pose::of(
+                    "acoustic_wave",
+                    "cubic-leapfrog",
+                    &["n=32", "nu=0", "amplitude=1e-3", span],
+                )
+            };
+            vec![wave("span=0.15"), wave("span=1")]
+        },
+        answer: Reads::Results(|of| {
+            let expected = |of: &Solved| {
+                wave_number(of) * of.problem.outline.medium.eos.sound_speed * of.end().time
+            };
+            let [early, _] = standing(of[0])?;
+            let [late, height] = standing(of[1])?;
+            // The early phase, less than half a turn, says how many whole turns the late one has made.
+            let about = early / expected(of[0]) * expected(of[1]);
+            let phase = late + ((about - late) / TAU).round() * TAU;
+            let order = (wave_number(of[1]) * of[1].problem.outline.medium.dx).powi(2) / 2.0;
+            let factor = Factor { value: phase / expected(of[1]), uncertainty: order };
+            let words = format!(
+                "{}; after one period the amplitude is {height:.3} of that at the start",
+                factor.of("the sound speed")
+            );
+            let criteria = [
+                Criterion::new(
+                    "factor of the sound speed",
+                    factor.value,
+                    [0.95, 1.03],
+                    "sums of second order take 1 to 4 % at 32 spacings a wave",
+                ),
+                Criterion::new(
+                    "amplitude after a period",
+                    height,
+                    [0.97, 1.03],
+                    "without viscosity nothing damps, and a stable step amplifies nothing",
+                ),
+            ];
+            Ok(Finding::new(words, criteria).with(factor))
+        }),
+        finds: &["sound-speed", "gamma", "artificial-viscosity", "euler"],
+    }
+}
+
+pub fn order() -> Question {
+    Question {
+        id: "order-in-time",
+        text: "Halve the step: does the error of time fall with the stated order?",
+        poses: || {
+            let wave = |dt| {
+                Pose::of(
+                    "acoustic_wave",
+                    "cubic-leapfrog",
+                    &["n=16", "nu=0", "amplitude=1e-3", "span=0.3", dt],
+                )
+            };
+            vec![wave("dt=0.02"), wave("dt=0.01"), wave("dt=0.005")]
+        },
+        answer: Reads::Results(|of| {
+            if let Some(few) = of.iter().find_map(|of| of.entry.few_digits(&of.problem)) {
+                return Err(format!(
+                    "differences of small steps need all digits of a double: {few}"
+                ));
+            }
+            let steps: Option<Vec<f64>> = of.iter().map(|of| of.steps()).collect();
+            let steps = steps.ok_or("system.json states no steps")?;
+            let halves = |k: usize| (1.8..=2.2).contains(&(steps[k + 1] / steps[k]));
+            if !(halves(0) && halves(1)) {
+                return Err(format!(
+                    "the code does not take the step of `our_method`: its steps are {steps:?}"
+                ));
+            }
+            let velocities = |of: &Solved| {
+                of.end().states.iter().map(|at| at.velocity).collect::<Vec<Vector2<f64>>>()
+            };
+            let apart = |a: &Solved, b: &Solved| {
+                fit::rms(velocities(a).iter().zip(velocities(b)).map(|(a, b)| (a - b).norm()))
+            };
+            let order = log2(apart(of[0], of[1]) / apart(of[1], of[2]));
+            let stated =
+                of[0].entry.method.settings.get("time_order").and_then(serde_json::Value::as_f64);
+            let words = match stated {
+                Some(stated) => {
+                    format!("the error of time has the order {order:.2}, stated is {stated}")
+                }
+                None => format!(
+                    "the error of time has the order {order:.2}; method.json states no `time_order`"
+                ),
+            };
+            let least = stated.unwrap_or(1.0) - 0.3;
+            let because = "three steps, each half the one before, show an order to 0.3";
+            Ok(Finding::new(words, [Criterion::at_least("order in time", order, least, because)]))
+        }),
+        finds: &["late-output", "euler"],
+    }
+}
