@@ -7,6 +7,7 @@
 //! | 2 | invalid command or settings, or a file that cannot be written, whatever the verdicts |
 //! | 3 | the simulation of `run` diverged |
 //! | 4 | a bug in touchstone |
+//! | 77 | `solve` cannot solve the problem |
 //! | 130 | interrupted; files may have been written, and each is complete |
 //!
 //! Results go to standard output; progress, estimates and messages go to standard error.
@@ -71,6 +72,8 @@ pub enum Exit {
     Diverged = 3,
     /// A bug in touchstone.
     Bug = 4,
+    /// `solve` cannot solve the problem.
+    Declines = 77,
     /// By the user.
     Interrupted = 130,
 }

@@ -22,7 +22,7 @@ use touchstone_exchange::{
     submission::{METHOD, SYSTEM},
 };
 use touchstone_harness::{
-    case::{self, Case},
+    case::{self, Case, RunError},
     checkpoint::Checkpoints,
     context::Context,
     relation::Relation,
@@ -55,6 +55,7 @@ pub fn method(problem: &Problem) -> String {
     settings["kernel"] = json!(own.kernel);
     settings["support"] = json!(own.support * problem.outline.medium.h);
     settings["dt"] = json!(problem.outline.dt);
+    settings["time_order"] = json!(2);
     let method = json!({
         "code": OURS,
         "version": env!("CARGO_PKG_VERSION"),
@@ -86,9 +87,9 @@ pub fn results(
     let results = Mutex::new(table);
     let stop = AtomicBool::new(false);
     let tell = |time: f64, particles: Profile| {
-        if how.stop_after.is_some_and(|last| time > last) {
+        let next = problem.outline.times.iter().find(|next| **next > time);
+        if how.stop_after.zip(next).is_some_and(|(last, next)| *next > last) {
             stop.store(true, Ordering::Relaxed);
-            return;
         }
         let mut results = lock(&results);
         if results.column("t").last() == Some(&time) {
@@ -119,9 +120,8 @@ pub fn results(
     };
     let record = match problem.relation {
         Some(relation) => {
-            case.pose(&spec)?.seen_by(relation, &context, &mut |time, particles| {
-                tell(time, particles);
-            })?;
+            let told = &mut |time, particles| tell(time, particles);
+            case.pose(&spec)?.seen_by(relation, &context, told).map_err(declined)?;
             // A record without metrics or work: the seen particles were not measured.
             Record::of(&spec, 1)
         }
@@ -146,6 +146,14 @@ pub fn results(
     folder.write(name, table.to_csv().as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
     Ok(([name, SYSTEM].map(String::from).into(), record.status))
+}
+
+/// A relation that does not hold for our method is a problem that it cannot solve.
+fn declined(error: RunError) -> Failure {
+    match error {
+        RunError::NoSymmetry { .. } => Failure { exit: Exit::Declines, reason: error.to_string() },
+        error => error.into(),
+    }
 }
 
 /// The series from which a case measures more than from particles at its few times, if it has one.

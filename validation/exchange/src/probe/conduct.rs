@@ -1,11 +1,6 @@
 //! How a code behaves: settings, restart, divergence.
 
-use super::{Answer, Criterion, Finding, Pose, Question, Ran, Reads, Solved, fit};
-
-fn vortices(more: &[&str]) -> Pose {
-    let set = ["n=16", "perturb=0.05", "end=0.05"];
-    Pose::of("taylor_green", "plain", &[&set[..], more].concat())
-}
+use super::{Answer, Criterion, Finding, Pose, Question, Ran, Reads, Solved, fit, vortices};
 
 pub fn settings() -> Question {
     Question {
@@ -13,7 +8,7 @@ pub fn settings() -> Question {
         text: "Change viscosity, sound speed or force: do the bits change?",
         poses: || {
             let channel = |more| {
-                let set = ["rows=10", "end=0.02", more];
+                let set = ["rows=20", "end=0.02", more];
                 Pose::of("poiseuille", "plain", &set).or("extrapolating-wall")
             };
             let [first, viscous, fast] =

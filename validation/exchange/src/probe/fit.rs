@@ -2,6 +2,8 @@
 
 use nalgebra::Vector2;
 
+use touchstone_solver::Tait;
+
 use super::{Factor, code::Moment};
 
 /// The factor s that makes Σ (found − s expected)² least, with its standard error.
@@ -50,4 +52,12 @@ pub fn momentum(at: &Moment) -> Vector2<f64> {
 /// Kinetic energy per unit depth \[J/m\].
 pub fn kinetic(at: &Moment) -> f64 {
     at.states.iter().fold(0.0, |sum, of| sum + 0.5 * of.mass * of.velocity.norm_squared())
+}
+
+/// Elastic energy per unit depth, to second order in the change of density \[J/m\]; 0 without densities.
+pub fn elastic(at: &Moment, eos: &Tait) -> f64 {
+    at.states.iter().fold(0.0, |sum, of| {
+        let change = of.density.map_or(0.0, |density| density / eos.density - 1.0);
+        sum + 0.5 * of.mass * (eos.sound_speed * change).powi(2)
+    })
 }

@@ -51,8 +51,10 @@ pub fn spin() -> Question {
     }
 }
 
-/// Frequency of the first mode over that of thin plates, of a plate ten... see the tests.
-const BEND: f64 = 1.0;
+/// Frequency of the first mode over that of thin plates, of a plate seven times as long as thick: 20 layers
+/// of the total Lagrangian method, whose frequency for a plate ten times as long is that of finite elements
+/// to 0.05 %.
+const BEND: f64 = 0.9915;
 
 pub fn bend() -> Question {
     Question {
@@ -89,8 +91,8 @@ pub fn bend() -> Question {
                     _ => "as it should be",
                 }
             );
-            let because = "a total Lagrangian method has the frequency of 20 layers to 1 % with five, and of finite \
-                           elements to 0.2 %";
+            let because =
+                "five layers of a consistent method have the frequency of finite elements to 1 %";
             let criterion =
                 Criterion::new("factor of the frequency", factor.value, [0.96, 1.04], because);
             Ok(Finding::new(words, [criterion]).with(factor))

@@ -45,8 +45,8 @@ pub fn shear() -> Question {
 }
 
 /// Phase and amplitude of a standing wave v = v0 cos ωt, ρ = ρ0 − (ρ0/c0) v0' sin ωt, where v0' is v0 a
-/// quarter of a wave further on.
-fn standing(of: &Solved) -> Result<[f64; 2], NotApplicable> {
+/// quarter of a wave further on, of sound that is `factor` times as fast.
+fn standing(of: &Solved, factor: f64) -> Result<[f64; 2], NotApplicable> {
     let outline = &of.problem.outline;
     let (eos, k) = (&outline.medium.eos, wave_number(of));
     let states = &of.start.states;
@@ -59,7 +59,7 @@ fn standing(of: &Solved) -> Result<[f64; 2], NotApplicable> {
     let densities = of.end().densities()?;
     let pairs = densities.iter().zip(states).map(|(density, at)| {
         let phase = k * at.position.x;
-        let shape = -(a * cos(phase) - b * sin(phase)) / eos.sound_speed;
+        let shape = -(a * cos(phase) - b * sin(phase)) / (eos.sound_speed * factor);
         [density / eos.density - 1.0, shape]
     });
     let [velocity, density] = [amplitude(of).value, fit::factor(pairs).value];
@@ -84,10 +84,14 @@ pub fn sound() -> Question {
             let expected = |of: &Solved| {
                 wave_number(of) * of.problem.outline.medium.eos.sound_speed * of.end().time
             };
-            let [early, _] = standing(of[0])?;
-            let [late, height] = standing(of[1])?;
-            // The early phase, less than half a turn, says how many whole turns the late one has made.
-            let about = early / expected(of[0]) * expected(of[1]);
+            // The factor of c0 scales the densities from which it follows: three corrections suffice.
+            let mut guess = 1.0;
+            for _ in 0..4 {
+                guess = standing(of[0], guess)?[0] / expected(of[0]);
+            }
+            let [late, height] = standing(of[1], guess)?;
+            // The early phase, less than half a turn, gives the whole turns that the late one has made.
+            let about = guess * expected(of[1]);
             let phase = late + ((about - late) / TAU).round() * TAU;
             let order = (wave_number(of[1]) * of[1].problem.outline.medium.dx).powi(2) / 2.0;
             let factor = Factor { value: phase / expected(of[1]), uncertainty: order };
