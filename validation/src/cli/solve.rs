@@ -17,7 +17,7 @@ use touchstone_base::{
     submission::OURS,
 };
 use touchstone_exchange::{
-    problem::{CURVE, PROBLEM, Problem},
+    problem::{CURVE, ExportedProblem, PROBLEM},
     read::{self, COLUMNS, Head, RESULTS, Renamed},
     submission::{METHOD, SYSTEM},
 };
@@ -30,7 +30,7 @@ use touchstone_harness::{
 
 use super::{
     Exit, Failure, Outcome, Session, arguments,
-    checkpoint::{self, Asked},
+    checkpoint::{self, ResumableRun},
     exchange::refused,
 };
 
@@ -48,7 +48,7 @@ pub struct How {
 }
 
 /// The description of this program's method in a submission.
-pub fn method(problem: &Problem) -> String {
+pub fn method(problem: &ExportedProblem) -> String {
     let read = problem.settings().map(|(field, value)| (field.name.to_string(), value.clone()));
     let (mut settings, own) = (Value::Object(read.collect()), &problem.outline.method);
     // With these settings the gates on the theory of our own method apply.
@@ -71,7 +71,7 @@ pub fn method(problem: &Problem) -> String {
 /// files, and how the run ended.
 pub fn results(
     case: &dyn Case,
-    problem: &Problem,
+    problem: &ExportedProblem,
     folder: &OutputFolder,
     how: &How,
     session: &Session,
@@ -102,8 +102,13 @@ pub fn results(
         }
     };
     let sources = (session.sources)(case.name());
-    let asked =
-        Asked { spec: spec.clone(), sources, every: None, vtk: None, allow_long: how.allow_long };
+    let asked = ResumableRun {
+        spec: spec.clone(),
+        sources,
+        every: None,
+        vtk: None,
+        allow_long: how.allow_long,
+    };
     let keep = |simulations: &[Vec<u8>]| checkpoint::write(folder, &asked, simulations);
     let earlier = match how.resume {
         true => checkpoint::read(folder.path(), session.sources)?.1,
@@ -141,7 +146,7 @@ pub fn results(
         Some(series) => (CURVE, series),
         None => (RESULTS, results.into_inner().unwrap_or_else(PoisonError::into_inner)),
     };
-    let told = |what| Failure::usage(format!("{name} is not written: {what}"));
+    let told = |what| Failure::usage(format!("{name} was not written: {what}"));
     table.check_finite().map_err(told)?;
     folder.write(name, table.to_csv().as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
@@ -219,7 +224,7 @@ pub fn solve(arguments: &arguments::Solve, session: &Session) -> Outcome {
     let case = touchstone_cases::find_in(session.cases, &spec.case)?;
     let relation =
         relation.map(|name| Relation::named(&name)).transpose().map_err(Failure::usage)?;
-    let problem = Problem::seen(case, case::resolved(case, spec)?, relation, false)?;
+    let problem = ExportedProblem::seen(case, case::resolved(case, spec)?, relation, false)?;
     let folder = OutputFolder::create(&arguments.folder)?;
     folder.write(METHOD, method(&problem).as_bytes())?;
     let (stop_after, resume) = (probe.stop_after.map(|stop| stop.value), probe.resume);

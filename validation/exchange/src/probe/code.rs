@@ -18,7 +18,7 @@ use touchstone_harness::{
 use super::Pose;
 use crate::{
     flaw,
-    problem::{PROBLEM, Problem},
+    problem::{ExportedProblem, PROBLEM},
     read::{RESULTS, Renamed},
     submission::{self, Entry},
     write::{self, Format},
@@ -73,7 +73,7 @@ pub struct Moment {
 /// Results of one problem.
 pub struct Solved {
     /// The problem.
-    pub problem: Problem,
+    pub problem: ExportedProblem,
     /// The folder as it was read.
     pub entry: Entry,
     /// Wall time of the call \[s\].
@@ -150,8 +150,8 @@ impl Code {
     /// The problem of a pose.
     ///
     /// # Errors
-    /// As [`Problem::seen`].
-    pub fn problem(&self, cases: &[&dyn Case], pose: &Pose) -> Result<Problem, RunError> {
+    /// As [`ExportedProblem::seen`].
+    pub fn problem(&self, cases: &[&dyn Case], pose: &Pose) -> Result<ExportedProblem, RunError> {
         let named = cases.iter().find(|case| case.name() == pose.case);
         let case =
             *named.ok_or_else(|| RunError::Foreign(format!("there is no case {}", pose.case)))?;
@@ -160,7 +160,7 @@ impl Code {
         let usual = if self.walls_of_particles { pose.particles } else { pose.planes };
         let mut spec = case::spec(case, asked.filter(has).unwrap_or(usual), &pose.set)?;
         spec.allow_unstable = pose.set.iter().any(|set| set.starts_with("dt="));
-        Problem::seen(case, spec, pose.relation, false)
+        ExportedProblem::seen(case, spec, pose.relation, false)
     }
 
     /// Lets the code solve the problem of a pose in a new folder.
@@ -252,7 +252,7 @@ fn end(child: &mut Child) {
 }
 
 /// Writes a problem. `probe` is for this call alone.
-fn put(problem: &Problem, probe: Value, folder: &Path) -> Result<(), String> {
+fn put(problem: &ExportedProblem, probe: Value, folder: &Path) -> Result<(), String> {
     let words = |error: &dyn std::fmt::Display| error.to_string();
     let output = files::OutputFolder::create(folder).map_err(|error| words(&error))?;
     let mut files = write::files(problem, Format::Csv).map_err(|error| words(&error))?;
@@ -277,7 +277,12 @@ fn stopped(folder: &Path, time: f64, map: &Renamed) -> bool {
 }
 
 /// Reads the results of a problem.
-fn read(problem: Problem, folder: &Path, map: &Renamed, wall: f64) -> Result<Solved, String> {
+fn read(
+    problem: ExportedProblem,
+    folder: &Path,
+    map: &Renamed,
+    wall: f64,
+) -> Result<Solved, String> {
     let told = |flaws: Vec<flaw::Flaw>| {
         let mut lines = flaw::lines(&flaws);
         let others = lines.split_off(lines.len().min(1)).len();
