@@ -98,18 +98,20 @@ fn recommended(suite: &Suite) -> Vec<String> {
         });
     let but = worst.map(|(_, error)| {
         format!(
-            ": in [vortices from a lattice](#taylor_green) `modern`, which two main cases recommend, is \
-             wrong by **{error}**"
+            ": in [vortices from a lattice](#taylor_green) `modern`, recommended in two main cases, has an \
+             error of **{error}**"
         )
     });
     vec![
         format!(
-            "*Recommended* is the variant that a case runs unless another one is named; its section says \
-             why. No variant is the best everywhere{}.",
+            "*Recommended* is the variant that a case runs unless another one is named, the *paper's* the \
+             one of the model; sections give reasons. No variant is best everywhere{}.",
             but.unwrap_or_default()
         ),
-        "A number links to its gate; the smaller error is bold. *A tenth of the error*: factors by the \
-         orders of the ladder."
+        "A number links to its gate; the smaller error is bold; ± is the standard uncertainty of the \
+         comparison. *Order*: power of the spacing with which the error falls. *1/10 error*: factor in \
+         cost for a tenth of the error, from the observed orders; *pairs* are pair interactions, a cost \
+         that does not depend on the machine. a is the width of the water column, c0 the sound speed."
             .into(),
     ]
 }

@@ -172,11 +172,11 @@ pub struct Breaks {
 /// The columns of the table on the first screen.
 pub fn columns() -> Vec<TableColumn> {
     let numbers = [
-        "its error",
+        "error",
         "order",
         "paper's error",
-        "a tenth of the error: pairs",
-        "a tenth: run time",
+        "pairs for 1/10 error",
+        "time for 1/10 error",
         "breaks at",
         "paper's breaks at",
     ];
@@ -299,9 +299,7 @@ impl Answer<'_> {
         let ladder = ladder.filter(|ladder| ladder.levels.len() > 1).ok_or("one resolution")?;
         let finest = ladder.levels.last().map(|level| level.run.spec.key());
         let is_own = finest == Some(first.key());
-        is_own
-            .then_some((accuracy, ladder))
-            .ok_or_else(|| "one resolution at these settings".into())
+        is_own.then_some((accuracy, ladder)).ok_or_else(|| "one resolution".into())
     }
 
     /// The observed order p of the error in the spacing, if its interval of 95 % is above 0 and the levels
@@ -334,7 +332,7 @@ impl Answer<'_> {
         let compared = self.shown[0].as_ref().and_then(|spec| self.compared(spec));
         let is_sure = compared.is_none_or(|found| found.tells());
         if !is_sure || found.label == Label::FloorReached || found.interval[0] <= 0.0 {
-            return Err("the ladder does not tell".into());
+            return Err("not determined".into());
         }
         let x: Vec<f64> = points.iter().map(|point| ln(point.spacing)).collect();
         let growth = |of: fn(&cost::LadderPoint) -> f64| {
@@ -356,9 +354,9 @@ impl Answer<'_> {
         match broken_at(card, &spec.variant, self.runs) {
             Some(Broken::At(value)) => link("", value).because(sign),
             Some(Broken::NotFrom(low, high)) if low == high => {
-                Cell::text("–").because(format!("tried at {before}{}{after} alone", exact(low)))
+                Cell::text("–").because(format!("only {before}{}{after} was run", exact(low)))
             }
-            Some(Broken::NotFrom(_, high)) => link("not up to ", high),
+            Some(Broken::NotFrom(_, high)) => link("none up to ", high),
             None => Cell::text("–").because("not tried"),
         }
     }
@@ -566,7 +564,7 @@ mod tests {
         // An error that a finer level does not lower has no price; the reason is below the dash.
         let floor = cells([coarse, middle, middle], 0.01, 0.0);
         assert_eq!(texts(&floor)[2..6], ["–", "0.010 a", "–", "–"]);
-        assert_eq!(floor[2].remark, "the ladder does not tell");
+        assert_eq!(floor[2].remark, "not determined");
         assert!(floor[3].text.starts_with("**["), "the paper's is better: {:?}", floor[3]);
     }
 
@@ -591,7 +589,7 @@ mod tests {
         let cells = cells([0.6, 0.2, 0.2], 0.5, 0.4);
         assert_eq!(cells[1].remark, "± 0.72\u{a0}a");
         assert_eq!(cells[3].remark, "", "a run that is compared nowhere has none");
-        assert_eq!(cells[2].remark, "the ladder does not tell");
+        assert_eq!(cells[2].remark, "not determined");
     }
 
     /// An error has the unit and the words of the run that has it.
