@@ -104,14 +104,17 @@ fn recommended(suite: &Suite) -> Vec<String> {
     });
     vec![
         format!(
-            "*Recommended* is the variant that a case runs unless another one is named, the *paper's* the \
-             one of the model; sections give reasons. No variant is best everywhere{}.",
+            "*Recommended* is the variant (a choice of kernel, walls, terms and integrator) that a case \
+             runs unless another one is named, the *paper's* the one of the model. No variant is best \
+             everywhere{}.",
             but.unwrap_or_default()
         ),
-        "A number links to its gate; the smaller error is bold; ± is the standard uncertainty of the \
-         comparison. *Order*: power of the spacing with which the error falls. *1/10 error*: factor in \
-         cost for a tenth of the error, from the observed orders; *pairs* are pair interactions, a cost \
-         that does not depend on the machine. a is the width of the water column, c0 the sound speed."
+        "A number links to its gate, a bound with a reason; a *known limitation* is outside its bound and \
+         inside a wider one. The smaller error is bold; ± is the standard uncertainty of the comparison. \
+         *Order*: power of the spacing with which the error falls. *1/10 error*: factor in cost for a \
+         tenth of the error, from the observed orders; *pairs* are pair interactions, a cost that does not \
+         depend on the machine. *No break up to* states the largest value that was run. a is the width of \
+         the water column, c0 the sound speed."
             .into(),
     ]
 }
