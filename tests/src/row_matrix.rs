@@ -7,7 +7,8 @@
 //! uⱼ' = -Σ_m a_m (uⱼ - uⱼ₊ₘ) + F_body,  a_m = 2ν Σ_x V F(r) r²/(r²+η²),  r² = x² + (m dx)²,
 //!
 //! with x over the particles of a row. The wall rule replaces u beyond a wall; it is linear, so u' = A u + b.
-//! Rows shifted by the shear have other a_m, see [`Alignment`].
+//! Rows shifted by the shear have other a_m, see [`Alignment`]. Sums that are exact for linear fields have
+//! a_m / (½ tr M) and η = 0, M = Σ V F r ⊗ r, see [`Sums`].
 
 use nalgebra::{DMatrix, DVector};
 use touchstone_solver::kernel::{Kernel, Smoothing};
@@ -52,6 +53,16 @@ pub enum Alignment {
     Slid,
 }
 
+/// The sums of the viscous force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sums {
+    /// Of Morris, over pairs.
+    Pairs,
+    /// Exact for linear fields (`ConsistentViscosity`). Their linear part is 0 where the rows continue
+    /// beyond a wall, as mirror particles do.
+    Consistent,
+}
+
 /// A channel of width `width`, cut into `rows` spacings.
 #[derive(Clone, Copy, Debug)]
 pub struct Channel {
@@ -69,6 +80,8 @@ pub struct Channel {
     pub wall_rule: WallRule,
     /// The relative alignment of the rows.
     pub alignment: Alignment,
+    /// The sums of the viscous force.
+    pub sums: Sums,
 }
 
 /// Why a channel cannot be reduced to rows.
@@ -116,24 +129,35 @@ impl RowSums {
         eta2: f64,
         nu_over_dx2: f64,
         alignment: Alignment,
+        kind: Sums,
     ) -> Self {
+        let eta2 = if kind == Sums::Consistent { 0.0 } else { eta2 };
         let offsets = if alignment == Alignment::Slid { 256 } else { 1 };
         let reach = kernel.support().ceil() as i32;
         let (mut viscosity, mut density) = (Vec::new(), Vec::new());
+        let mut half_trace = 0.0;
         for m in 0..=reach {
             let (mut a, mut w) = (0.0, 0.0);
+            let sides = if m == 0 { 1.0 } else { 2.0 };
             for x in -reach * offsets..=(reach + 1) * offsets {
                 let x = f64::from(x) / f64::from(offsets);
                 let r2 = x * x + f64::from(m * m);
                 w += kernel.w(r2);
+                // The own row stays in columns.
+                let is_there = m > 0 || x.fract() == 0.0;
                 if r2 > 0.0 {
                     a += 2.0 * kernel.f(r2) * r2 / (r2 + eta2);
+                    let weight = if m > 0 { 1.0 } else { f64::from(offsets) };
+                    half_trace += 0.5 * sides * weight * kernel.f(r2) * r2 * f64::from(is_there);
                 }
             }
             if w > 0.0 {
                 viscosity.push(nu_over_dx2 * a / f64::from(offsets));
                 density.push(w / f64::from(offsets));
             }
+        }
+        if kind == Sums::Consistent {
+            viscosity.iter_mut().for_each(|a| *a *= f64::from(offsets) / half_trace);
         }
         Self { viscosity, density }
     }
@@ -170,7 +194,7 @@ impl Channel {
         let dx = self.width / self.rows as f64;
         let kernel = Smoothing::<K>::new(h_over_dx);
         let eta2 = eta2_over_h2 * h_over_dx * h_over_dx;
-        let sums = RowSums::new(&kernel, eta2, self.nu / (dx * dx), self.alignment);
+        let sums = RowSums::new(&kernel, eta2, self.nu / (dx * dx), self.alignment, self.sums);
         let on_wall = self.wall_rule == WallRule::InterfaceWall;
         let rows = if on_wall { self.rows.saturating_sub(1) } else { self.rows };
         if rows < sums.reach().max(3) {

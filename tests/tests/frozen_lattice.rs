@@ -22,7 +22,7 @@ use touchstone_solver::{
     Kernel, Leapfrog, NoSlip, Outcome, PredictorCorrector, QuinticSpline, SingleSweep, Stepper,
     Tait, WendlandC2, integrator::stages,
 };
-use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, WallRule};
+use touchstone_tests::row_matrix::{Alignment, Channel, RowModel, Sums, WallRule};
 
 /// A channel flow with the kernel K, the walls W and the integrator I, without stabiliser: a combination that
 /// no variant has.
@@ -66,11 +66,11 @@ fn rule(setup: &ChannelSetup, walls: &str) -> WallRule {
     }
 }
 
-fn reduced(kernel: &str, setup: &ChannelSetup, wall_rule: WallRule) -> RowModel {
+fn reduced(kernel: &str, setup: &ChannelSetup, (wall_rule, sums): (WallRule, Sums)) -> RowModel {
     let (s, wall_velocity) = (&setup.settings, [0.0, setup.plate_speed()]);
     let (rows, width, nu, force) = (s.rows, s.width, s.nu, setup.force);
     let alignment = Alignment::Aligned;
-    let channel = Channel { rows, width, nu, wall_velocity, force, wall_rule, alignment };
+    let channel = Channel { rows, width, nu, wall_velocity, force, wall_rule, alignment, sums };
     let reduce = match kernel {
         CubicSpline::NAME => Channel::reduce::<CubicSpline>,
         QuinticSpline::NAME => Channel::reduce::<QuinticSpline>,
@@ -164,10 +164,11 @@ fn apart(setup: &ChannelSetup, fluid: &[(f64, f64)], model: &RowModel, u: &DVect
 
 /// From rest to each νt/L² in turn, against the matrix stepped alike; at the last one against the
 /// steady state too.
-fn check_steps(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) {
+fn check_steps(method: &Method, rows: usize, (wall_curvature, sums): (bool, Sums), flow: Flow) {
     let setup = setup(method, rows, wall_curvature, flow);
     let mut simulation = simulation(method, &setup);
-    let model = reduced(method.properties.kernel, &setup, rule(&setup, method.properties.walls));
+    let walls = rule(&setup, method.properties.walls);
+    let model = reduced(method.properties.kernel, &setup, (walls, sums));
     let Properties { kernel, walls, integrator, .. } = &method.properties;
     let name = format!("{flow:?}, {kernel}, {walls}, {integrator}, {:?}", setup.settings);
     let (mut lagging, mut before) = ((DVector::zeros(model.y.len()), 0.0), 0.0);
@@ -189,9 +190,13 @@ fn check_steps(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) {
 
 /// Both flows at two resolutions by each method.
 fn check_walls<const N: usize>(wall_curvature: bool, methods: [Method; N]) {
+    check_sums((wall_curvature, Sums::Pairs), methods);
+}
+
+fn check_sums<const N: usize>(like: (bool, Sums), methods: [Method; N]) {
     for (method, flow) in methods.iter().flat_map(|method| FLOWS.map(|flow| (method, flow))) {
-        check_steps(method, 10, wall_curvature, flow);
-        check_steps(method, 20, wall_curvature, flow);
+        check_steps(method, 10, like, flow);
+        check_steps(method, 20, like, flow);
     }
 }
 
@@ -209,6 +214,13 @@ fn ghosts_are_the_matrix_to_round_off() {
 fn curved_ghosts_are_the_matrix_to_round_off() {
     let flow::OfChannels { seed, plain, .. } = flow::poiseuille();
     check_walls(true, [seed, plain]);
+}
+
+#[test]
+fn sums_that_are_exact_for_linear_fields_are_the_matrix_to_round_off() {
+    let consistent = flow::poiseuille().consistent;
+    check_sums((true, Sums::Consistent), [consistent.clone()]);
+    check_sums((false, Sums::Consistent), [consistent]);
 }
 
 /// The leapfrog with interface and wall particles.
@@ -260,8 +272,8 @@ fn extrapolated(method: &Method, setup: &ChannelSetup, tau: f64) -> Vec<(f64, f6
 fn check_exponential(method: &Method, wall_curvature: bool) {
     for (flow, tau) in FLOWS.into_iter().flat_map(|flow| [(flow, 0.03), (flow, 0.1)]) {
         let setup = setup(method, 20, wall_curvature, flow);
-        let model =
-            reduced(method.properties.kernel, &setup, rule(&setup, method.properties.walls));
+        let walls = rule(&setup, method.properties.walls);
+        let model = reduced(method.properties.kernel, &setup, (walls, Sums::Pairs));
         let exact = model.at(setup.time(tau)).expect("regular");
         let apart = apart(&setup, &extrapolated(method, &setup, tau), &model, &exact);
         let Properties { kernel, walls, integrator, .. } = &method.properties;
@@ -288,7 +300,9 @@ fn with_dt_extrapolated_away_runs_are_the_exponential_of_the_matrix() {
 /// The matrix of a record, which knows its kernel and its walls by name.
 fn matrix_of(record: &Record, setup: &ChannelSetup) -> RowModel {
     let word = |key: &str| record.numerics[key].as_str().expect("a word");
-    reduced(word(KERNEL), setup, rule(setup, word(WALLS)))
+    let is_consistent = record.run.variant == "consistent";
+    let sums = if is_consistent { Sums::Consistent } else { Sums::Pairs };
+    reduced(word(KERNEL), setup, (rule(setup, word(WALLS)), sums))
 }
 
 /// u of a record at the times of comparison against the matrix: settings, ingredients, runner and
@@ -344,7 +358,7 @@ fn a_slightly_different_method_is_another_matrix() {
     let at = |eta2: f64, wall: WallRule| {
         let mut setup = setup(&flow::poiseuille().seed, 20, false, Flow::Poiseuille);
         setup.settings.eta2_over_h2 *= eta2;
-        let model = reduced(CubicSpline::NAME, &setup, wall);
+        let model = reduced(CubicSpline::NAME, &setup, (wall, Sums::Pairs));
         model.at(setup.time(0.1)).expect("regular") / setup.v
     };
     let as_it_is = at(1.0, WallRule::Ghosts);

@@ -9,7 +9,7 @@ use touchstone_maths::exact::StartUp;
 use touchstone_maths::theory::lattice::SquareLattice;
 use touchstone_solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 use touchstone_tests::row_matrix::{
-    Alignment, Channel, ChannelError, RowModel, WallRule, laplacian_factor,
+    Alignment, Channel, ChannelError, RowModel, Sums, WallRule, laplacian_factor,
     sheared_laplacian_factor,
 };
 
@@ -32,8 +32,9 @@ fn reduced<K: Kernel>(
     wall_velocity: [f64; 2],
     force: f64,
 ) -> RowModel {
-    let alignment = Alignment::Aligned;
-    let channel = Channel { rows, width: 1.0, nu: 1.0, wall_velocity, force, wall_rule, alignment };
+    let (alignment, sums) = (Alignment::Aligned, Sums::Pairs);
+    let channel =
+        Channel { rows, width: 1.0, nu: 1.0, wall_velocity, force, wall_rule, alignment, sums };
     channel.reduce::<K>(h, eta2).expect("a wide channel")
 }
 
@@ -149,6 +150,7 @@ fn slid_rows_have_the_sheared_floor() {
             force: FORCE,
             wall_rule: WallRule::Quadratic,
             alignment: Alignment::Slid,
+            sums: Sums::Pairs,
         };
         let model = channel.reduce::<CubicSpline>(h, eta2).expect("a wide channel");
         let steady = model.steady().expect("regular");
@@ -199,6 +201,7 @@ fn bad_channels_are_refused() {
         force: 0.0,
         wall_rule: WallRule::Ghosts,
         alignment: Alignment::Aligned,
+        sums: Sums::Pairs,
     };
     let narrow = channel.reduce::<QuinticSpline>(1.3, 0.0);
     assert_eq!(narrow.unwrap_err(), ChannelError::TooNarrow { rows: 2, reach: 3 });

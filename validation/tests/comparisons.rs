@@ -5,14 +5,14 @@ use serde_json::Value;
 
 use crate::common::touchstone;
 
-/// Whether a planned run belongs to the ladders of `seed` and `modern` in Couette flow, or to the ladders of
+/// Whether a planned run belongs to the ladders of `seed` and `consistent` in Couette flow, or to those of
 /// `modern` in the dam break without the tank.
 fn is_of_a_ladder(line: &str) -> bool {
     let run: Value = serde_json::from_str(line).unwrap();
     let set = &run["settings"];
     let is_plain = run["task"].is_null() && run["allow_unstable"].is_null();
     let is_compared = match (run["case"].as_str(), run["variant"].as_str()) {
-        (Some("couette"), Some("seed" | "modern")) => set["re"] == 0.5 && set["end"] == 1.0,
+        (Some("couette"), Some("seed" | "consistent")) => set["re"] == 0.5 && set["end"] == 1.0,
         (Some("dam_break"), Some("modern")) => {
             set["height"].as_f64() > Some(0.1) && set["width"] != 0.6
         }
@@ -44,17 +44,17 @@ fn comparisons_are_among_the_verdicts_with_their_numbers() {
         assert!((number(of) / expected - 1.0).abs() < 0.02, "{of} instead of {expected}");
     };
     // Exact: an order, and none of the uncertainties of V&V 20.
-    let [modern, seed] = ["modern", "seed"].map(|variant| of("l2_worst", variant));
-    near(&modern["E"], 6.19e-4);
-    for (found, expected) in modern["order"].as_array().unwrap().iter().zip([1.31, 1.21, 1.41]) {
+    let [exact, seed] = ["consistent", "seed"].map(|variant| of("l2_worst", variant));
+    near(&exact["E"], 4.10e-4);
+    for (found, expected) in exact["order"].as_array().unwrap().iter().zip([1.65, 1.59, 1.71]) {
         near(found, expected);
     }
-    assert_eq!(modern["verdict"], "converges");
+    assert_eq!(exact["verdict"], "converges");
     near(&seed["E"], 7.81e-3);
     assert_eq!(seed["verdict"], "stops");
     assert_eq!(seed["words"].as_str().unwrap().replace('\u{a0}', " "), "stops at 0.62 %");
     for key in ["u_num", "u_input", "u_D", "u_val"] {
-        assert!(modern[key].is_null() && seed[key].is_null(), "{key}");
+        assert!(exact[key].is_null() && seed[key].is_null(), "{key}");
     }
     // −0.158, −0.108, −0.058 have no order: u_num is three halves of their range.
     let front = of("front_away@2", "front");

@@ -30,6 +30,7 @@ pub type Stiff<E> = Modern<Split<E, Viscosity>, Stabilised, Ghosts, Leapfrog<Sup
 
 type Carried = (Pressure<Tait>, Viscosity, ShiftAdvection);
 type Consistent = (ConsistentPressure<Tait>, ConsistentViscosity, ShiftAdvection);
+type ConsistentDriven = (ConsistentPressure<Tait>, ConsistentViscosity, BodyForce, ShiftAdvection);
 /// Wall particles have minus the mean velocity of the fluid in reach.
 pub type Mean = ExtrapolatingWall<Tait, NoSlip>;
 
@@ -55,10 +56,17 @@ pub struct OfChannels {
     pub single_sweep: Method,
     /// `modern` with super-time-stepping.
     pub stiff: Method,
+    /// `modern` with sums that are exact for linear fields, and shifting that advects the velocity.
+    pub consistent: Method,
 }
 
-/// With the forces `F`, which with stiff viscosity are `E` and this.
-fn of_channels<F: FromMedium + Term<()>, E: FromMedium + Term<()>>() -> OfChannels {
+/// With the forces `F`, which with stiff viscosity are `E` and this, and `C`, exact for linear fields.
+fn of_channels<F, E, C>() -> OfChannels
+where
+    F: FromMedium + Term<()>,
+    E: FromMedium + Term<()>,
+    C: FromMedium + Term<()>,
+{
     OfChannels {
         seed: Method::of::<Seed<F, Continuity>>(),
         interface_wall: Method::of::<Seed<F, Continuity, InterfaceWall>>(),
@@ -68,14 +76,15 @@ fn of_channels<F: FromMedium + Term<()>, E: FromMedium + Term<()>>() -> OfChanne
         modern: Method::of::<Modern<F, Stabilised>>(),
         single_sweep: Method::of::<Modern<F, Stabilised, Ghosts, SingleSweep>>(),
         stiff: Method::of::<Stiff<E>>(),
+        consistent: Method::of::<Modern<C, ConsistentDrift>>(),
     }
 }
 
 methods! { of_channels => OfChannels:
     /// Flow driven by a plate.
-    couette: Pairs, Pressure<Tait>;
+    couette: Pairs, Pressure<Tait>, Consistent;
     /// Flow driven by a body force.
-    poiseuille: Fluid<BodyForce>, (Pressure<Tait>, BodyForce);
+    poiseuille: Fluid<BodyForce>, (Pressure<Tait>, BodyForce), ConsistentDriven;
 }
 methods! { stepped => Method:
     /// The seed's with artificial stress.

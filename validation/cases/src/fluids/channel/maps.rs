@@ -23,12 +23,12 @@ const REYNOLDS: [f64; 6] = [0.5, 1.0, 5.0, 10.0, 20.0, 50.0];
 const SOUND: [f64; 3] = [5.0, 10.0, 20.0];
 
 /// The variants of the map: the paper's, of which H4 and H5 speak, and the recommended one.
-const MAPPED: [&str; 2] = ["seed", "curved"];
+const MAPPED: [&str; 2] = ["seed", "consistent"];
 
 /// Remedies of the instability in the full tier (none, the paper's, remedies of others, and the rule), and
 /// their Reynolds numbers.
 const CURES: [&str; 7] =
-    ["seed", "cure-stress", "cure-viscosity", "cure-xsph", "cure-shifting", "modern", "curved"];
+    ["seed", "cure-stress", "cure-viscosity", "cure-xsph", "cure-shifting", "modern", "consistent"];
 const CURED: [f64; 3] = [5.0, 20.0, 50.0];
 
 /// Disorder of the starts \[dx\]; the quick tier, and Re above 20, have the middle one.

@@ -84,6 +84,8 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
         "modern with one pair sweep per step instead of two: does it cost less for equal error?";
     let steps = "modern with super-time-stepping: how much does it save if viscosity does not limit the \
                  step?";
+    let consistent =
+        "modern with sums that are exact for linear fields: does the error fall at any spacing?";
     Variants::of(move |m, s| ChannelSetup::new(flow, s, m))
         .with("seed", seed, methods.seed, |_| {})
         .with("interface-wall", interface, methods.interface_wall, |_| {})
@@ -93,4 +95,5 @@ fn both(flow: Flow, methods: OfChannels) -> Variants<ChannelSettings, Method> {
         .with("modern", modern_is, methods.modern, curved)
         .with("single-sweep", single, methods.single_sweep, single_sweep)
         .with("stiff", steps, methods.stiff, stiff)
+        .with("consistent", consistent, methods.consistent, curved)
 }
