@@ -38,7 +38,7 @@ fn pose(method: &Method, s: &Decay) -> Result<Simple, RunError> {
     let (n, end, dx) = (s.n, s.end, 1.0 / s.n as f64);
     let medium = method.properties.medium(Tait::new(1.0, 1.0), [dx, 1.3 * dx]);
     let medium = Medium { nu: 0.01, eta2_over_h2: 1e-6, ..medium };
-    let limits = method.properties.limits([1.3, 1e-6], 32, &medium.waves(&method.properties.uses));
+    let limits = method.properties.limits_in(&medium, 1.3, 32);
     let rules = Rules { step: Step::share(s.step, &limits), limits, sound_speed: 1.0, end };
     let scene = move || {
         let wave = |x: Vector2<f64>| Vector2::new(1e-3 * sin(TAU * x.y), 0.0);

@@ -82,8 +82,7 @@ impl Cylinders {
         let medium = method.properties.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
         let medium = Medium { nu: s.nu, ..medium };
         let step = Step::courant(s.courant, h, [sound_speed, speed]).viscous(s.viscous, h, s.nu);
-        let waves = medium.waves(&method.properties.uses);
-        let limits = method.properties.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let limits = method.properties.limits_in(&medium, s.h_over_dx, LIMIT_BOX);
         let (limits, end) = (limits.moving(h, speed, 0.0), s.end * s.gap * s.gap / s.nu);
         let rules = Rules { step, limits, sound_speed, end };
         let flow = TaylorCouette { inner, outer: inner + s.gap, speed };

@@ -84,9 +84,8 @@ impl UnitFlow {
         let acceleration = Vector2::new(force, 0.0);
         let medium = Medium { nu, acceleration, ..method.medium(eos, [dx, h]).set_by(numerics) };
         let step = Step::courant(numerics.courant, h, [c0, speed]).viscous(numerics.viscous, h, nu);
-        let waves = medium.waves(&method.uses);
-        let limits = method.limits([h / dx, medium.eta2_over_h2], LIMIT_BOX, &waves);
-        let (step, limits) = (step.or_given(dt), limits.moving(h, speed, force));
+        let limits = method.limits_in(&medium, h / dx, LIMIT_BOX).moving(h, speed, force);
+        let step = step.or_given(dt);
         let rules = Rules { step, limits, sound_speed: c0, end };
         let particles = area / (dx * dx);
         let (support, skin) = (method.support * h, numerics.skin * h);

@@ -7,6 +7,7 @@ pub mod manufactured;
 pub mod start_up;
 pub mod taylor_couette;
 pub mod taylor_green;
+pub mod thin_plate;
 
 pub use elliptic_drop::EllipticDrop;
 pub use hydrostatic::Hydrostatic;

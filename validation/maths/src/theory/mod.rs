@@ -2,8 +2,10 @@
 //! round-off: the part of the error that does not come from the program.
 
 pub mod bending;
+pub mod faces;
 pub mod lagrangian;
 pub mod lattice;
+pub mod steps;
 pub mod super_steps;
 pub mod time_step;
 

@@ -187,8 +187,7 @@ impl ChannelSetup {
             wall_acceleration: along,
             ..method.properties.medium(eos, [dx, h]).set_by(s)
         };
-        let waves = medium.waves(&method.properties.uses);
-        let limits = method.properties.limits([s.h_over_dx, s.eta2_over_h2], LIMIT_BOX, &waves);
+        let limits = method.properties.limits_in(&medium, s.h_over_dx, LIMIT_BOX);
         let both = || Step::courant(s.courant, h, [sound_speed, v]).viscous(s.viscous, h, s.nu);
         let stable = s.limit_share.map_or_else(both, |share| Step::share(share, &limits));
         let step = stable.forced(0.25, h, force).or_given(s.dt);

@@ -249,11 +249,7 @@ pub(super) struct Sampled {
 impl Sampled {
     pub fn new(of: &'static OperatorVariant, method: &Method, s: &OperatorSettings) -> Self {
         let medium = medium(method, s);
-        let limits = method.properties.limits(
-            [s.h_over_dx, ETA2],
-            32,
-            &medium.waves(&method.properties.uses),
-        );
+        let limits = method.properties.limits_in(&medium, s.h_over_dx, 32);
         let step = Step::given(summing_step(&medium));
         let rules = Rules { step, limits, sound_speed: 1.0, end: step.dt * s.steps as f64 };
         Self { of, method: method.clone(), settings: s.clone(), medium, rules }

@@ -11,7 +11,6 @@
 //! matrix known in closed form for each integrator, and the inverse of this form turns the measured matrix
 //! into ω and γ of continuous time. See `fit`.
 
-mod fit;
 mod run;
 
 use touchstone_base::record::MetricKey;

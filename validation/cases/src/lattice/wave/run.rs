@@ -17,13 +17,15 @@ use touchstone_harness::{
 };
 use touchstone_maths::{
     metrics::norms::largest,
-    theory::time_step::{self, Mode, modes},
+    theory::{
+        steps::{self, DampedMode},
+        time_step::{self, Mode, modes},
+    },
 };
 use touchstone_solver::{EquationOfState, Tait};
 
 use super::{
     DECAY_ERROR, FREQUENCY_ERROR, MOMENTUM_ERROR, Polarisation, TRAJECTORY_ERROR, WaveSettings,
-    fit::{self, DampedMode},
 };
 use crate::lattice::torus;
 
@@ -135,9 +137,9 @@ impl Wave {
     fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
         let (a, dt) = (self.settings.amplitude, self.rules.dt());
         let Mode { omega, longitudinal: gamma, transverse, density, .. } = self.mode;
-        let m = fit::step(&DampedMode { omega, gamma }, density, integrator, dt);
+        let m = steps::step(&DampedMode { omega, gamma }, density, integrator, dt);
         let shear_mode = DampedMode { omega: 0.0, gamma: transverse };
-        let factor = fit::step(&shear_mode, 0.0, integrator, dt).m22;
+        let factor = steps::step(&shear_mode, 0.0, integrator, dt).m22;
         let (mut y, mut shear) = match self.polarisation {
             Polarisation::Sound => (Vector2::new(0.0, a), 0.0),
             Polarisation::Shear => (Vector2::zeros(), a),
@@ -270,14 +272,15 @@ fn compare(
     let (dt, turn, s) = (wave.rules.dt(), wave.theta.norm(), &wave.settings);
     let (found, gamma) = match wave.polarisation {
         Polarisation::Sound => {
-            let found = fit::mode_of(series, integrator, dt);
+            let found = steps::mode_of(series, integrator, dt);
             record.put(FREQUENCY_ERROR, (found.omega - omega).abs() / omega);
             let sound = wave.medium.sound_speed * turn * s.n as f64 / s.length;
             record.put(SOUND_FACTOR, found.omega / sound);
             (found.gamma, longitudinal)
         }
         Polarisation::Shear => {
-            let (found, k) = (fit::decay_of(series, integrator, dt), turn * s.n as f64 / s.length);
+            let (found, k) =
+                (steps::decay_of(series, integrator, dt), turn * s.n as f64 / s.length);
             record.put(VISCOUS_FACTOR, found / (s.nu * k * k));
             (found, transverse)
         }

@@ -11,6 +11,7 @@ use touchstone_base::record::MetricKey;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{series::Series, snapshot::Snapshot};
 use touchstone_lagrangian::{Hencky, Law, SaintVenantKirchhoff};
+use touchstone_maths::exact::thin_plate;
 use touchstone_schemes::total;
 use touchstone_solver::{Role, Symmetric};
 
@@ -157,13 +158,13 @@ impl ElasticBody for CantileverSettings {
         let SolidSettings { young, poisson, rho, .. } = self.solid;
         let modulus = young / (1.0 - poisson * poisson);
         let slenderness = length * length / thickness;
-        let period = solid::thin_plate_period([length, thickness], [young, poisson, rho]);
+        let period = thin_plate::period([length, thickness], [young, poisson, rho]);
         let sag = 1.5 * rho * gravity / modulus * slenderness * slenderness;
         SolidScales {
             speed: (sag * (TAU / period)).min((3.0 * gravity * length).sqrt()),
             end: self.end,
             gravity: Vector2::new(0.0, -gravity),
-            ..solid::of_layers(self.n, [length, thickness])
+            ..SolidScales::of_layers(self.n, [length, thickness])
         }
     }
 

@@ -6,7 +6,6 @@ mod energy;
 pub mod faces;
 pub mod lagrangian;
 mod material;
-mod plates;
 mod problem;
 #[cfg(test)]
 pub mod tests;
@@ -15,9 +14,9 @@ pub use elements::{Elements, Path, Quantities, compare, quantities};
 pub use energy::{ElasticEnergy, angular_momentum, kinetic, norm_squared};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};
-pub use plates::{FIRST_MODE, clamp, of_layers, thin_plate_period};
 pub use problem::{
-    ElasticBody, SolidParameters, SolidScales, Watch, leave_out, medium, no_variants, variants,
+    ElasticBody, SolidParameters, SolidScales, Watch, clamp, leave_out, medium, no_variants,
+    variants,
 };
 pub use touchstone_maths::{geometry::corners, metrics::norms::largest};
 

@@ -8,10 +8,10 @@ use touchstone_base::settings::{self, Settings, Values};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{case::Step, method::Properties, relation::View, snapshot::Snapshot};
 use touchstone_maths::theory::time_step::Integrator;
-use touchstone_solver::{Role, Symmetric};
+use touchstone_solver::{PlaneWall, Role, Symmetric};
 
 use super::{
-    Material, clamp,
+    Material,
     lagrangian::{self, LAGRANGIAN, TOTAL},
     limits,
 };
@@ -55,6 +55,19 @@ pub struct SolidScales {
     pub domain: Domain,
     /// Densities and speeds beyond which a run counts as diverged.
     pub bounds: touchstone_solver::DivergenceBounds,
+}
+
+impl SolidScales {
+    /// Scales of a plate of `n` layers, of this length and thickness \[m\].
+    pub fn of_layers(n: usize, [length, thickness]: [f64; 2]) -> Self {
+        let (dx, decisive) = (thickness / n as f64, "end, dt, n, length or thickness");
+        Self { dx, length, count: length / dx * n as f64, decisive, ..Self::default() }
+    }
+}
+
+/// The plane at x = 0 that holds a plate without held particles.
+pub fn clamp() -> PlaneWall {
+    PlaneWall::new(Vector2::zeros(), Vector2::x(), Vector2::zeros())
 }
 
 /// Elastic bodies, stated by the settings of a case: the differences between cases of solids.

@@ -7,6 +7,7 @@ use touchstone_harness::{
     case::Tier,
     studies::{CurveOf, CurvePanel, Curves},
 };
+use touchstone_maths::metrics::curve::{Points, until};
 use touchstone_report::{Axis, sig};
 
 use super::{
@@ -15,8 +16,8 @@ use super::{
     metrics::ARRIVAL,
     plan::{self, Group, Row},
     reference::{
-        LOBOVSKY, MARTIN_MOYCE, MODEL, MODEL_OF_MARTIN_MOYCE, Points, arrival, aside, depth, front,
-        front_from, height, pressure, until,
+        LOBOVSKY, MARTIN_MOYCE, MODEL, MODEL_OF_MARTIN_MOYCE, arrival, aside, depth, front,
+        front_from, height, pressure,
     },
 };
 

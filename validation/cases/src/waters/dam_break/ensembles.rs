@@ -3,14 +3,15 @@
 
 use touchstone_harness::prelude::*;
 use touchstone_harness::studies::{Ensemble, Ensembles, History, MemberNumber};
+use touchstone_maths::metrics::curve::{Points, integral, integrals, mean};
 
 use super::{
     NAME,
     metrics::IMPULSE,
     plan::{self, Group, Table},
     reference::{
-        IMPULSE_SPREAD, LEVEL_SPREAD, LEVELS_UNTIL, LOBOVSKY, MODEL, Points, WINDOWS, arrival,
-        depth, impulse, mean, pressure, trapezoid,
+        IMPULSE_SPREAD, LEVEL_SPREAD, LEVELS_UNTIL, LOBOVSKY, MODEL, WINDOWS, arrival, depth,
+        pressure,
     },
 };
 
@@ -39,10 +40,9 @@ pub fn ensembles(tier: Tier, table: &Table) -> Option<Ensembles> {
                  of P2 a second sensor. Two spacings have different \
                  distributions, by more than their intervals: what comes beyond the horizon depends on the \
                  spacing too, so the scatter of an ensemble is not its error.";
+    let both = |n| ["modern", "seed"].map(|variant| ensemble((n, variant)));
+    let of = || plan::ENSEMBLES.into_iter().flat_map(both).collect();
     let time = ["time", "√(H/g)"];
-    let all =
-        plan::ENSEMBLES.into_iter().flat_map(|n| ["modern", "seed"].map(|variant| (n, variant)));
-    let of = || all.map(ensemble).collect();
     (tier != Tier::Quick).then(|| Ensembles { about: about.into(), time, of: of() })
 }
 
@@ -76,24 +76,14 @@ fn histories(id: &str, variant: &str) -> Vec<History> {
         let later = |(t, y): (f64, f64)| (t + models - theirs, y);
         History {
             name: format!("impulse on {name} [ρ g H √(H/g)]"),
-            points: Box::new(move |record| summed(&pressure(record, k))),
-            tolerance: IMPULSE_SPREAD * impulse(measured, theirs, WINDOWS[0]),
-            measured: vec![summed(measured).into_iter().map(later).collect()],
+            points: Box::new(move |record| integrals(&pressure(record, k))),
+            tolerance: IMPULSE_SPREAD * integral(measured, theirs, WINDOWS[0]),
+            measured: vec![integrals(measured).into_iter().map(later).collect()],
             is_drawn: k == 0,
             gate,
         }
     };
     (0..4).map(level).chain((0..3).map(pressed)).collect()
-}
-
-/// The impulse since the start, by the trapezoidal rule.
-fn summed(pressure: &Points) -> Points {
-    let mut sum = 0.0;
-    let add = |pair: &[(f64, f64)]| {
-        sum += trapezoid(pair);
-        (pair[1].0, sum)
-    };
-    pressure.windows(2).map(add).collect()
 }
 
 /// The mean of a curve over [`LATE`]; none if it does not reach so far.
@@ -247,7 +237,7 @@ mod tests {
         let rising: Points = (0..=800).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
         assert!(late(&rising).is_some_and(|mean| (mean - 7.0).abs() < 1e-9));
         assert_eq!(late(&rising[..500].to_vec()), None);
-        let sum = summed(&rising);
+        let sum = integrals(&rising);
         assert!(sum.last().is_some_and(|(t, y)| (t - 8.0).abs() < 1e-9 && (y - 32.0).abs() < 1e-9));
     }
 }

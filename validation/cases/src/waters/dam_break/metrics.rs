@@ -15,17 +15,21 @@ pub struct Distance {
 }
 
 impl Distance {
+    /// The metrics with their formulas, of the distance of curves in these words.
+    pub fn named(self, curves: &str) -> [MetricName; 3] {
+        let shifted = self.rms_shifted.of(String::from(self.shift));
+        [self.rms.of(curves), shifted, self.shift.into()]
+    }
+
     /// The metrics of the distance.
     pub fn metrics(self) -> [MetricKey; 3] {
         [self.rms, self.rms_shifted, self.shift]
     }
 }
 
-const fn distance(
-    [rms, rms_shifted, shift]: [&'static str; 3],
-    formula_shifted: &'static str,
-) -> Distance {
+const fn distance([rms, rms_shifted, shift]: [&'static str; 3]) -> Distance {
     let formula = "rms distance of {} over the points of the experiment";
+    let formula_shifted = "the same with the clock of the computation put forward by {}";
     let formula_shift = "that shift, of the least rms, in the experiment's unit of time";
     Distance {
         rms: MetricKey::new(rms, "-", formula),
@@ -35,20 +39,11 @@ const fn distance(
 }
 
 /// Metrics of the front.
-pub const FRONT: Distance = distance(
-    ["front_rms", "front_rms_shifted", "front_shift"],
-    "the same with the clock of the computation put forward by front_shift",
-);
+pub const FRONT: Distance = distance(["front_rms", "front_rms_shifted", "front_shift"]);
 /// Metrics of the residual height.
-pub const HEIGHT: Distance = distance(
-    ["height_rms", "height_rms_shifted", "height_shift"],
-    "the same with the clock of the computation put forward by height_shift",
-);
+pub const HEIGHT: Distance = distance(["height_rms", "height_rms_shifted", "height_shift"]);
 /// Metrics of the levels.
-pub const LEVELS: Distance = distance(
-    ["levels_rms", "levels_rms_shifted", "levels_shift"],
-    "the same with the clock of the computation put forward by levels_shift",
-);
+pub const LEVELS: Distance = distance(["levels_rms", "levels_rms_shifted", "levels_shift"]);
 
 touchstone_base::metrics! {
     all ALL;
@@ -121,7 +116,7 @@ pub fn every() -> Vec<MetricName> {
         (HEIGHT, "the depth at 0.2 a over H at equal t (g/a)^(1/2)"),
         (LEVELS, "all four levels/H"),
     ] {
-        all.extend([distance.rms.of(what), distance.rms_shifted.into(), distance.shift.into()]);
+        all.extend(distance.named(what));
     }
     let of_probes = [LEVEL_AWAY, IMPULSE_AWAY, IMPULSE].concat();
     all.extend(of_probes.into_iter().map(MetricName::from));

@@ -8,6 +8,9 @@ use touchstone_base::{
     reference::Reference as Package,
 };
 use touchstone_harness::snapshot::Snapshot;
+use touchstone_maths::metrics::curve::{
+    Points, best_shift, distance, end_of, integral, squares, until, value,
+};
 
 use super::{
     Dam, DamSettings,
@@ -30,44 +33,6 @@ pub const IMPULSE_SPREAD: f64 = 0.06 / SQRT_2;
 /// Results of three other particle codes for Z at T = 2 and 3, as the founders measured them in 2025-26:
 /// SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
 pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
-
-/// A curve: points in ascending order of the first number.
-pub type Points = Vec<(f64, f64)>;
-
-/// The value of a curve, linear between its points and constant beyond its ends.
-pub fn value(curve: &[(f64, f64)], t: f64) -> f64 {
-    let next = curve.partition_point(|(time, _)| *time < t);
-    match (next.checked_sub(1).map(|k| curve[k]), curve.get(next)) {
-        (Some((t0, y0)), Some(&(t1, y1))) => y0 + (t - t0) / (t1 - t0) * (y1 - y0),
-        (None, Some(&(_, y))) | (Some((_, y)), None) => y,
-        (None, None) => f64::NAN,
-    }
-}
-
-/// rms over the points of `measured` of the distance to `computed`, whose clock is put forward by
-/// `shift`.
-fn rms(computed: &[(f64, f64)], measured: &[(f64, f64)], shift: f64) -> f64 {
-    let square = |(t, y): &(f64, f64)| (value(computed, t - shift) - y).powi(2);
-    (measured.iter().map(square).sum::<f64>() / measured.len() as f64).sqrt()
-}
-
-/// Sum of squares of the distance over pairs of curves, computed and measured.
-fn squares(pairs: &[(Points, Points)], shift: f64) -> f64 {
-    pairs.iter().map(|(c, m)| rms(c, m, shift).powi(2) * m.len() as f64).sum()
-}
-
-/// The shift of the clock within ± `range` with the least sum of squares over pairs of curves.
-fn best_shift(pairs: &[(Points, Points)], range: f64) -> f64 {
-    let cost = |shift: f64| squares(pairs, shift);
-    let (mut best, mut step) = (0.0, range / 20.0);
-    for _ in 0..4 {
-        let trials = (-20..=20).map(|k| best + f64::from(k) * step);
-        let inside = trials.filter(|shift| shift.abs() <= range);
-        best = inside.min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(best);
-        step /= 10.0;
-    }
-    best
-}
 
 /// Front (T, Z) and residual height (τ, η) of Martin & Moyce. Packages are embedded and checked by a test.
 pub static MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
@@ -198,28 +163,6 @@ pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
     pressure.iter().find(|(_, p)| *p > ARRIVED).map_or(f64::NAN, |(t, _)| *t)
 }
 
-/// ∫ p dt from `from` for `window`, by the trapezoidal rule over the points in between; NaN of less than two.
-pub fn impulse(pressure: &[(f64, f64)], from: f64, window: f64) -> f64 {
-    let inside: Vec<(f64, f64)> =
-        pressure.iter().filter(|(t, _)| *t >= from && *t <= from + window).copied().collect();
-    if inside.len() < 2 {
-        return f64::NAN;
-    }
-    inside.windows(2).map(trapezoid).sum()
-}
-
-/// ∫ y dt between two points of a curve.
-pub fn trapezoid(pair: &[(f64, f64)]) -> f64 {
-    0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1)
-}
-
-/// The mean of the points of a curve between two times; NaN if there are none.
-pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
-    let inside = curve.iter().filter(|(t, _)| (from..=to).contains(t));
-    let (sum, count) = inside.fold((0.0, 0.0), |(sum, count), (_, y)| (sum + y, count + 1.0));
-    sum / count
-}
-
 /// Why a metric of a time that a run does not reach is absent.
 const TOO_SHORT: &str = "the run ends before the times that this is of";
 
@@ -238,11 +181,6 @@ fn put_if_reached(
     record.put_or(metric, is_reached.then(value), TOO_SHORT);
 }
 
-/// The time of the last point of a curve, 0 if it has none.
-fn end_of(curve: &[(f64, f64)]) -> f64 {
-    curve.last().map_or(0.0, |(t, _)| *t)
-}
-
 /// rms of curves as they are and after their best common shift.
 fn put_distance(
     record: &mut Record,
@@ -253,62 +191,50 @@ fn put_distance(
 ) {
     let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
     if count == 0.0 {
-        for metric in [of.rms.of(what), of.rms_shifted.into(), of.shift.into()] {
-            record.leave_out(metric, TOO_SHORT);
-        }
-        return;
+        return record.leave_all_out(&of.metrics(), &TOO_SHORT.into());
     }
     let all = |shift: f64| (squares(pairs, shift) / count).sqrt();
     let shift = best_shift(pairs, range);
-    record.put(of.rms.of(what), all(0.0));
-    record.put(of.rms_shifted, all(shift));
-    record.put(of.shift, shift);
-}
-
-/// A curve until a time.
-pub fn until(curve: &[(f64, f64)], end: f64) -> Points {
-    curve.iter().filter(|(t, _)| *t <= end).copied().collect()
+    for (metric, value) in of.named(what).into_iter().zip([all(0.0), all(shift), shift]) {
+        record.put(metric, value);
+    }
 }
 
 /// Adds to a record with series and pressures the distance from the experiment of its settings, if they are
 /// an experiment's, and from the same model by volume of fluid.
 pub fn compare(dam: &Dam, end: &Snapshot, record: &mut Record) {
     let (absent, s) = (end.density().err(), &dam.settings);
-    let mut resting = Vec::new();
     if dam.is_martin_moyce() {
         front_of_martin_moyce(s, record);
-        match absent {
+        match &absent {
             None => height_of_martin_moyce(s, record),
-            Some(_) => {
-                let all = [&HEIGHT.metrics()[..], &[HEIGHT_AWAY]].concat();
-                resting.extend(all.into_iter().map(MetricName::from));
+            Some(absent) => {
+                record.leave_all_out(&[&HEIGHT.metrics()[..], &[HEIGHT_AWAY]].concat(), absent);
             }
         }
     }
     if dam.is_lobovsky() {
         front_of_lobovsky(s, record);
-        match absent {
+        match &absent {
             None => {
                 levels_of_lobovsky(s, record);
                 pressures_of_lobovsky(record);
             }
-            Some(_) => {
+            Some(absent) => {
                 let all = [&LEVELS.metrics()[..], &LEVEL_AWAY, &[ARRIVAL, PEAK]].concat();
-                resting.extend(all.into_iter().map(MetricName::from));
-                let impulses = [IMPULSE, IMPULSE_AWAY].concat();
-                resting.extend(WINDOWS.iter().flat_map(|w| impulses.iter().map(|of| of.at(*w))));
+                record.leave_all_out(&all, absent);
+                let impulses = WINDOWS
+                    .map(|w| [IMPULSE, IMPULSE_AWAY].concat().into_iter().map(move |of| of.at(w)));
+                impulses.into_iter().flatten().for_each(|of| record.leave_out(of, absent.clone()));
             }
         }
-    }
-    for (metric, absent) in resting.into_iter().zip(absent.iter().cycle()) {
-        record.leave_out(metric, absent.clone());
     }
 }
 
 /// The distance of the potential energy from a scene by volume of fluid until a time.
 fn with_potential(model: &[(f64, f64)], end: f64, s: &DamSettings, record: &mut Record) {
     let computed = history(record, "series", "potential", [s.unit_time(), 1.0]);
-    record.put(POTENTIAL_AWAY, rms(&computed, &until(model, end.min(s.end)), 0.0));
+    record.put(POTENTIAL_AWAY, distance(&computed, &until(model, end.min(s.end)), 0.0));
 }
 
 fn front_of_martin_moyce(s: &DamSettings, record: &mut Record) {
@@ -329,7 +255,7 @@ fn front_of_martin_moyce(s: &DamSettings, record: &mut Record) {
 fn height_of_martin_moyce(s: &DamSettings, record: &mut Record) {
     let height_of = |unit| height(record, unit);
     let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
-    record.put(HEIGHT_AWAY, rms(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
+    record.put(HEIGHT_AWAY, distance(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
     let measured = until(&MARTIN_MOYCE[1], end_of(&height));
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
@@ -352,7 +278,7 @@ fn levels_of_lobovsky(s: &DamSettings, record: &mut Record) {
         let model = MODEL.level(k, LEVELS_UNTIL.min(s.end));
         let is_wet = |curve: &[(f64, f64)]| curve.iter().any(|(_, level)| *level > 0.0);
         let has_come = is_wet(computed) || is_wet(&model);
-        record.put_or(LEVEL_AWAY[k], has_come.then(|| rms(computed, &model, 0.0)), DRY);
+        record.put_or(LEVEL_AWAY[k], has_come.then(|| distance(computed, &model, 0.0)), DRY);
     }
     put_distance(record, LEVELS, &pairs, 0.6, "all four levels/H");
 }
@@ -367,7 +293,7 @@ fn pressures_of_lobovsky(record: &mut Record) {
         for window in WINDOWS {
             let [a, b, c] =
                 [(computed, ours), (&LOBOVSKY.pressure[k], theirs), (&MODEL.pressure[k], models)]
-                    .map(|(curve, from)| impulse(curve, from, window));
+                    .map(|(curve, from)| integral(curve, from, window));
             let times = [reached, ours + window];
             put_if_reached(record, IMPULSE[k].at(window), times, || a / b - 1.0);
             put_if_reached(record, IMPULSE_AWAY[k].at(window), times, || a / c - 1.0);
@@ -403,26 +329,14 @@ mod tests {
     }
 
     #[test]
-    fn a_curve_that_starts_late_is_found_shifted() {
-        let early: Points = (0..100).map(|k| 0.05 * f64::from(k)).map(|t| (t, t * t)).collect();
-        let late: Points =
-            (8..60).map(|k| 0.07 * f64::from(k)).map(|t| (t, (t - 0.21).powi(2))).collect();
-        let shift = best_shift(&[(early.clone(), late.clone())], 1.0);
-        assert!((shift - 0.21).abs() < 2e-3, "{shift}");
-        assert!(rms(&early, &late, shift) < 1e-3 && rms(&early, &late, 0.0) > 0.5);
-        assert_eq!((value(&early, -1.0), value(&late, 99.0)), (0.0, late[51].1));
-    }
-
-    #[test]
-    fn an_impulse_is_an_integral_and_the_experiment_repeats_itself() {
+    fn the_experiment_repeats_its_impulse() {
         let ramp: Points = (0..=1000).map(|k| 0.01 * f64::from(k)).map(|t| (t, t)).collect();
-        assert!((impulse(&ramp, 1.0, 2.0) - 4.0).abs() < 1e-9);
         assert!((arrival(&ramp) - 0.11).abs() < 1e-9);
         // The package: arrival at 2.44; its neighbour differs from P2 more in the longer window.
         let at = arrival(&LOBOVSKY.pressure[0]);
         assert!((at - 2.443).abs() < 2e-3, "{at}");
         let spread = |window: f64| {
-            impulse(&aside(), at, window) / impulse(&LOBOVSKY.pressure[1], at, window) - 1.0
+            integral(&aside(), at, window) / integral(&LOBOVSKY.pressure[1], at, window) - 1.0
         };
         let [short, long] = WINDOWS.map(spread);
         assert!(
@@ -526,7 +440,7 @@ mod tests {
         let at = arrival(&MODEL.pressure[0]);
         is(at, 2.37, 0.01);
         for (k, expected) in [1.581, 1.293, 0.912, 0.116].into_iter().enumerate() {
-            is(impulse(&MODEL.pressure[k], at, 1.0), expected, 0.015);
+            is(integral(&MODEL.pressure[k], at, 1.0), expected, 0.015);
         }
     }
 

@@ -13,7 +13,8 @@
 
 use nalgebra::{Complex, Matrix2, Vector2};
 use touchstone_base::functions::complex_sqrt;
-use touchstone_maths::theory::time_step::Integrator;
+
+use super::time_step::Integrator;
 
 /// Angular frequency and damping of a mode.
 #[derive(Clone, Copy, Debug)]
