@@ -96,27 +96,31 @@ fn recommended(suite: &Suite) -> Vec<String> {
                 });
             all.max_by(|a, b| a.0.total_cmp(&b.0))
         });
+    let recommends = |of: &&CaseResults| {
+        of.studies.first::<Card>().is_some() && of.case.recommended().variant == "modern"
+    };
+    let cases: Vec<String> = suite.cases.iter().filter(recommends).map(title).collect();
+    let named = match cases.is_empty() {
+        true => String::new(),
+        false => format!(", recommended in {},", cases.join(" and ")),
+    };
     let but = worst.map(|(_, error)| {
         format!(
-            ": in [vortices from a lattice](#taylor_green) `modern`, recommended in two main cases, has an \
-             error of **{error}**"
+            ": in [vortices from a lattice](#taylor_green) `modern`{named} has an error of **{error}**"
         )
     });
-    vec![
-        format!(
-            "*Recommended* is the variant (a choice of kernel, walls, terms and integrator) that a case \
-             runs unless another one is named, the *paper's* the one of the model. No variant is best \
-             everywhere{}.",
-            but.unwrap_or_default()
-        ),
-        "A number links to its gate, a bound with a reason; a *known limitation* is outside its bound and \
-         inside a wider one. The smaller error is bold; ± is the standard uncertainty of the comparison. \
-         *Order*: power of the spacing with which the error falls. *1/10 error*: factor in cost for a \
-         tenth of the error, from the observed orders; *pairs* are pair interactions, a cost that does not \
-         depend on the machine. *No break up to* states the largest value that was run. a is the width of \
-         the water column, c0 the sound speed."
-            .into(),
-    ]
+    let best = format!(
+        "*Recommended* is the variant that a case runs by default, *paper's* the variant of the model. No \
+         variant is best everywhere{}.",
+        but.unwrap_or_default()
+    );
+    const NUMBERS: &str = "The smaller error is bold; ± is a standard uncertainty. *Order*: power of the \
+                           spacing with which the error falls. *1/10 error*: factor in cost for a tenth of \
+                           the error. *Pairs*: pair interactions. a: column width; c0: sound speed.";
+    const VERDICTS: &str = "A number links to its gate, a bound with a reason. A *known limitation* is \
+                            outside its bound and inside a wider one. *No break up to* states the largest \
+                            value that was run.";
+    vec![best, NUMBERS.into(), VERDICTS.into()]
 }
 
 /// Error against run time, a panel a main case.
