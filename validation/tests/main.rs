@@ -10,6 +10,7 @@ mod exports;
 mod openings;
 mod others;
 mod pages;
+mod probes;
 mod readers;
 mod schemas;
 mod stores;

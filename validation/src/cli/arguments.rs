@@ -311,8 +311,8 @@ pub struct Probe {
     pub variant: Option<String>,
     /// With one constant of our own variant multiplied by a factor: a question that has the same answer does
     /// not see it
-    #[arg(long, value_name = "CONSTANT=FACTOR", requires = "variant")]
-    pub mutate: Option<String>,
+    #[arg(long, value_name = "CONSTANT=FACTOR", value_parser = mutation, conflicts_with_all = ["command", "code"])]
+    pub mutate: Option<Mutation>,
     /// Ask these questions alone
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub only: Vec<String>,

@@ -35,25 +35,31 @@ pub fn probe(arguments: &arguments::Probe, session: &Session) -> Outcome {
         output::answer(arguments.json, || list_json(&questions), || list(&questions))?;
         return Ok(Exit::Pass);
     }
-    let code = code_of(arguments)?;
+    let code = code_of(arguments, session)?;
     let folder = Folder::of(arguments.keep.as_deref())?;
     let (started, mut number) = (Instant::now(), 0);
     let mut stopped = Ok(());
     let solve = |pose: &probe::Pose| {
-        stopped = session.go_on("no verdict is printed");
+        if stopped.is_ok() {
+            stopped = session.go_on("no verdict is printed");
+        }
         if stopped.is_err() {
-            return probe::Ran::Failed("interrupted".into());
+            return probe::Ran::Failed("not called".into());
         }
         number += 1;
-        code.solve(session.cases, pose, &code::folder_of(&folder.path, number, pose))
+        let ran = code.solve(session.cases, pose, &code::folder_of(&folder.path, number, pose));
+        if let probe::Ran::NotCalled(why) = &ran {
+            stopped = Err(Failure::usage(why));
+        }
+        ran
     };
     let tell = |question: &Question, answer: &Answer| {
-        if !arguments.json {
+        if !arguments.json && !session.is_interrupted() {
             output::say(&format!("{}: {}", question.id, answer.verdict().words()));
         }
     };
     let answers = probe::ask(&questions, solve, tell);
-    stopped?;
+    stopped.and_then(|()| session.go_on("no verdict is printed"))?;
     let took = started.elapsed().as_secs_f64();
     let junit = arguments
         .junit
@@ -92,7 +98,7 @@ fn chosen(only: &[String]) -> Result<Vec<Question>, Failure> {
 }
 
 /// The code under test.
-fn code_of(arguments: &arguments::Probe) -> Result<Code, Failure> {
+fn code_of(arguments: &arguments::Probe, session: &Session) -> Result<Code, Failure> {
     let arguments::Probe { command, code, variant, mutate, .. } = arguments;
     let mut command = command.clone();
     let mut folder = None;
@@ -107,7 +113,8 @@ fn code_of(arguments: &arguments::Probe) -> Result<Code, Failure> {
     }
     if variant.is_some() {
         command = vec![env::current_exe()?.into(), "solve".into()];
-        command.extend(mutate.iter().flat_map(|of| ["--mutate".into(), of.into()]));
+        let mutate = mutate.iter().map(|of| format!("--mutate={}={}", of.of, of.factor));
+        command.extend(mutate.map(OsString::from));
     }
     if command.is_empty() {
         return Err(Failure::usage(format!("{DOCUMENT} names no command")));
@@ -118,6 +125,7 @@ fn code_of(arguments: &arguments::Probe) -> Result<Code, Failure> {
         timeout: Duration::from_secs(arguments.timeout.into()),
         walls_of_particles: arguments.wall_particles,
         map: renamed(&arguments.map)?,
+        interrupt: session.interrupt,
         variant: variant.clone(),
     })
 }

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -44,6 +45,8 @@ pub struct Code {
     pub walls_of_particles: bool,
     /// Names of columns in its results.
     pub map: Renamed,
+    /// Set to end the call under way.
+    pub interrupt: &'static AtomicBool,
     /// The variant of our own methods that is under test; where a case has it, it is exported.
     pub variant: Option<String>,
 }
@@ -99,6 +102,8 @@ pub enum Ran {
     },
     /// There are no results that can be used, and why.
     Failed(String),
+    /// It cannot be called, and why.
+    NotCalled(String),
 }
 
 impl Ran {
@@ -106,7 +111,7 @@ impl Ran {
     pub fn failure(&self) -> String {
         match self {
             Self::Solved(_) => "it was solved".into(),
-            Self::Declined(why) | Self::Failed(why) => why.clone(),
+            Self::Declined(why) | Self::Failed(why) | Self::NotCalled(why) => why.clone(),
             Self::Ended { code: Some(code), words } => {
                 format!("the code ended with exit code {code}: {words}")
             }
@@ -191,7 +196,10 @@ impl Code {
                     let most = self.timeout.as_secs_f64();
                     return Ran::Failed(format!("the code did not end within {most} s"));
                 }
-                Err(why) => return Ran::Failed(format!("the code cannot be called: {why}")),
+                Err(why) => {
+                    let program = self.command.first().cloned().unwrap_or_default();
+                    return Ran::NotCalled(format!("{program:?} cannot be called: {why}"));
+                }
             }
             if k < last && !stopped(folder, pose.interrupt.unwrap_or(1.0) * end, &self.map) {
                 return Ran::Declined("the code does not stop at `stop_after`".into());
@@ -231,7 +239,9 @@ impl Code {
         let status = loop {
             match child.try_wait()? {
                 Some(status) => break status,
-                None if started.elapsed() > self.timeout => {
+                None if started.elapsed() > self.timeout
+                    || self.interrupt.load(Ordering::Relaxed) =>
+                {
                     end(&mut child);
                     return Ok(End::Late);
                 }

@@ -4,9 +4,12 @@ use std::f64::consts::PI;
 
 use nalgebra::Vector2;
 use touchstone_base::functions::{exp, sin};
+use touchstone_harness::relation::Relation;
 use touchstone_solver::EquationOfState;
 
-use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
+use super::{
+    Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit, relations,
+};
 
 /// Number of a setting of the problem.
 fn setting(of: &Solved, name: &str) -> Result<f64, NotApplicable> {
@@ -18,10 +21,11 @@ pub fn did_it_run() -> Question {
     Question {
         id: "ran",
         text: "Did it run? Are times, steps and particles those of a run?",
-        poses: || vec![super::vortices(&["re=100"])],
+        poses: || vec![relations::vortices(Relation::Same)],
         answer: Reads::Results(|of| {
             let (of, outline) = (of[0], &of[0].problem.outline);
-            let end = of.end();
+            // At first the way is as short as the disorder of the start, which tells one run from another.
+            let end = of.moments.first().unwrap_or(&of.start);
             let pairs = of.start.states.iter().zip(&end.states);
             // By the velocities at both ends.
             let moved = pairs.map(|(a, b)| {
@@ -49,7 +53,7 @@ pub fn did_it_run() -> Question {
             ];
             if let Some(steps) = of.steps() {
                 let medium = &outline.medium;
-                let least = end.time * medium.sound_speed / (4.0 * medium.h);
+                let least = of.end().time * medium.sound_speed / (4.0 * medium.h);
                 words += &format!("; it states {steps} steps");
                 criteria.push(Criterion::at_least(
                     "steps over the least number",

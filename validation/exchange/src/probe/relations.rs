@@ -48,7 +48,7 @@ fn agree(of: &[&Solved]) -> Result<Finding, NotApplicable> {
 }
 
 /// Vortices on disordered particles.
-fn vortices(by: Relation) -> Pose {
+pub fn vortices(by: Relation) -> Pose {
     Pose::of("taylor_green", "plain", &["n=16", "perturb=0.2"]).seen(by)
 }
 
