@@ -38,6 +38,50 @@ fn copy() -> (tempfile::TempDir, PathBuf) {
     (folder, copy)
 }
 
+/// For a job of continuous integration: the verdicts as an entry of verdicts.json and as test cases, of a
+/// submission that passes and of one whose velocities are 10 % too large.
+#[test]
+fn verdicts_on_a_submission_are_written_for_other_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    let export = "export couette --variant seed --set rows=20 --out own --solve";
+    assert!(touchstone(folder.path(), export).status.success());
+    let line = "submit couette own --store store --json --junit junit.xml";
+    let verdicts = || {
+        let made = touchstone(folder.path(), line);
+        let verdicts: serde_json::Value = serde_json::from_slice(&made.stdout).expect("JSON alone");
+        (made.status.code(), verdicts, read(&folder.path().join("junit.xml")))
+    };
+    let (code, passed, junit) = verdicts();
+    let judged = passed["judged"].as_array().expect("judgements");
+    let skipped = passed["not_applicable"].as_object().expect("reasons").len();
+    assert_eq!((code, &passed["submission"]["code"]), (Some(0), &OURS.into()));
+    assert!(judged.iter().all(|of| of["judgement"]["verdict"] == "pass"), "{passed}");
+    let count = judged.len() + skipped;
+    assert!(
+        !judged.is_empty() && junit.contains(&format!("tests=\"{count}\" failures=\"0\"")),
+        "{junit}"
+    );
+    assert!(junit.contains("name=\"couette.seed.20.l2@0.1\"></testcase>"), "{junit}");
+    let results = folder.path().join("own/results.csv");
+    let text = read(&results);
+    let (head, rows) = text.split_once('\n').expect("a head");
+    let u = head.split(',').position(|name| name == "u").expect("velocities");
+    let faster = rows.lines().map(|row| {
+        let mut cells: Vec<String> = row.split(',').map(String::from).collect();
+        cells[u] = (1.1 * cells[u].parse::<f64>().expect("a number")).to_string();
+        cells.join(",") + "\n"
+    });
+    fs::write(&results, format!("{head}\n{}", faster.collect::<String>())).unwrap();
+    fs::remove_dir_all(folder.path().join("store")).unwrap();
+    let (code, failed, junit) = verdicts();
+    let fails = |of: &&serde_json::Value| of["judgement"]["verdict"] == "fail";
+    let count = failed["judged"].as_array().expect("judgements").iter().filter(fails).count();
+    assert_eq!(code, Some(1), "{junit}");
+    assert!(count > 0 && junit.matches("<failure message").count() == count, "{junit}");
+    let refused = touchstone(folder.path(), &format!("{line} --check"));
+    assert_eq!(refused.status.code(), Some(2));
+}
+
 /// Measured from their particles alone, with no step made: the values of the run, except for round-off.
 #[test]
 fn our_own_results_are_measured_as_the_run_was() {

@@ -2,10 +2,10 @@
 
 use touchstone_harness::{
     case::{self, Planned},
-    runs::{Judged, JudgedRun, by_cause},
+    runs::{JudgedRun, by_cause},
     suite::{JudgedOf, Of, Suite},
 };
-use touchstone_report::{Block, Section, sig};
+use touchstone_report::{Block, Section};
 
 /// A part of the page for each cause.
 pub fn section(suite: &Suite) -> Section {
@@ -15,25 +15,18 @@ pub fn section(suite: &Suite) -> Section {
          bound follows from the cause or is marked as fitted to own runs. Unexplained causes state where \
          numbers are wrong, not why.",
     );
-    let blocks = causes.iter().flat_map(|(cause, found)| {
-        let mut cases: Vec<&str> = found.iter().map(|found| found.case.name()).collect();
-        cases.dedup();
+    let blocks = causes.iter().map(|(cause, found)| {
         let command = found.first().map(command).unwrap_or_default();
-        let text = format!("{cause} Cases: {}. To see it: `{command}`.", cases.join(", "));
-        let summary = touchstone_report::counted(found.len(), "gate", "gates");
-        let gates = vec![Block::List(found.iter().map(gate).collect())];
-        [Block::Prose(vec![text]), Block::Details { summary, blocks: gates }]
+        let link = |found: &JudgedOf| format!("[{0}](#{0})", found.judged.gate.id);
+        let gates = found.iter().map(link).collect::<Vec<_>>().join(", ");
+        Block::Details {
+            summary: cause.to_string(),
+            blocks: vec![Block::Prose(vec![format!("`{command}` shows it. Gates: {gates}.")])],
+        }
     });
     let blocks = blocks.collect();
     let summary = touchstone_report::counted(causes.len(), "cause", "causes");
     section.block(Block::Details { summary, blocks })
-}
-
-/// The gate, its value and its bound.
-fn gate(found: &JudgedOf) -> String {
-    let Judged { gate, judgement, .. } = found.judged;
-    let value = judgement.value.map_or("not measured".into(), |value| sig(value, 4));
-    format!("[{0}](#{0}): {value}; {1}", gate.id, gate.bounds())
 }
 
 /// The command that shows it: the run, or the verdict of a search or of a study.

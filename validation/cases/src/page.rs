@@ -3,7 +3,7 @@
 use touchstone_base::{
     gate::Verdict,
     manifest::Manifest,
-    record::Record,
+    record::{Record, Status},
     reference::Reference,
     spec::{RunSpec, Task},
     submission::OURS,
@@ -19,7 +19,7 @@ use touchstone_harness::{
 };
 use touchstone_report::{
     Block, Cell, Counts, Explorer, Figure, Overview, Page, Section, Table, TableColumn, VERDICTS,
-    code, counted, percent, plain,
+    code, counted, percent, plain, sig,
 };
 
 use crate::{limitations, stiffness, time};
@@ -48,7 +48,8 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         });
     }
     let mut sections: Vec<Section> = suite.cases.iter().map(case_section).collect();
-    sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
+    sections.extend([reading(suite), stiffness::section(suite), time::section(suite)]);
+    sections.push(references_section());
     sections.extend([verdicts(suite), limitations::section(suite), about(suite)]);
     Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
@@ -252,10 +253,10 @@ fn verdicts(suite: &Suite) -> Section {
     let gates = TableColumns::<GateRow>::default()
         .with(TableColumn::text("verdict"), |row| Cell::status(row.of.judged.judgement.verdict))
         .text("gate", |row| row.of.judged.gate.id.clone())
-        .marked("run or study", judged_on)
         .num(["value", ""], move |row| value(row.of.judged.judgement.value))
         .text("bound", |row| row.of.judged.gate.bounds())
         .num(["margin", ""], move |row| margin(row.of.judged.judgement.margin))
+        .marked("run or study", judged_on)
         .text("evidence", |row| format!("{:?}", row.of.judged.gate.evidence).to_lowercase())
         .text("reasons", |row| row.reasons.clone())
         .table("", &rows);
@@ -269,11 +270,32 @@ fn verdicts(suite: &Suite) -> Section {
              the wider bound counts. Select a gate to read its reasons.",
         )
         .block(Block::Explorer(Explorer { gates, reasons }))
-        .block(Block::Details {
-            summary: "How to read cost and convergence diagrams".into(),
-            blocks: vec![Block::Prose(READING.map(String::from).into())],
-        })
 }
+
+/// How to read the sections of cases: each kind of table once.
+fn reading(suite: &Suite) -> Section {
+    let part = |id: &str, title: &str, paragraphs: Vec<String>| {
+        Section::new(format!("reading-{id}"), title).block(Block::Prose(paragraphs))
+    };
+    let owned = |texts: &[&str]| texts.iter().map(|text| text.to_string()).collect();
+    let mut costs = [READING, studies::cost::READING].concat();
+    costs.push(studies::budget::READING);
+    let compared = owned(&studies::validation::READING);
+    let detected = owned(&[studies::sensitivity::READING]);
+    let of_others = studies::submissions::reading(suite.cases.iter().map(|of| &of.runs));
+    Section::new("reading", "How to read the sections")
+        .child(part("costs", "Errors, orders and costs", owned(&costs)))
+        .child(part("comparisons", "Comparisons with references", compared))
+        .child(part("detected", "Errors that gates detect", detected))
+        .child(part("others", "Runs of other codes", of_others))
+        .child(part("runs", "All runs", owned(&[RUNS])))
+}
+
+/// How to read the runs of a case.
+const RUNS: &str = "\
+    A run is shown with the settings that are not the defaults of its variant, which `touchstone list` and \
+    the name of the case show. Run time is the median of timings with nothing else of this program at work; \
+    ≈ marks a time that was measured while runs were made in parallel, and is rough.";
 
 /// Notes for all diagrams of a kind.
 const READING: [&str; 2] = [
@@ -318,7 +340,14 @@ fn case_section(results: &CaseResults) -> Section {
         grades.map(|(name, grade)| format!("Reference `{name}`: {grade}.")).collect();
     let section = if grades.is_empty() { section } else { section.prose(grades.join(" ")) };
     let section = results.sections.iter().map(study_section).fold(section, Section::child);
-    let variants = case.variants().iter().map(|v| format!("`{}`: {}", v.name, v.about)).collect();
+    let variants = case.variants();
+    let is_first = |k: &usize| variants[..*k].iter().all(|of| of.about != variants[*k].about);
+    let alike = |k: usize| {
+        let about = variants[k].about;
+        let names = variants.iter().filter(|of| of.about == about).map(|of| code(of.name));
+        format!("{}: {about}", names.collect::<Vec<_>>().join(", "))
+    };
+    let variants = (0..variants.len()).filter(is_first).map(alike).collect();
     let runs = Section::new(format!("runs-{}", case.name()), "All runs");
     section.child(runs.block(Block::List(variants)).block(run_table(case, &results.runs.all)))
 }
@@ -340,25 +369,26 @@ fn measured(value: f64) -> Cell {
 }
 
 fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let caption = "All runs, the settings that are not the defaults of their variant (`touchstone list` and \
-                   the name of the case show these), and their cost. Seconds alone are the median of \
-                   timings with nothing else of this program at work; other seconds were measured while \
-                   runs were made in parallel, and are only rough. The state is a digest of the bits at \
-                   the end: the same for any number of threads.";
-    let alone = |record: &Record| record.cost.alone_median().map_or(Cell::text("–"), Cell::seconds);
+    let time = |record: &Record| {
+        let alone = record.cost.alone_median();
+        let seconds = alone.unwrap_or(record.cost.cpu_s);
+        let mark = if alone.is_some() { "" } else { "≈" };
+        let text = format!("{mark}{}", sig(1e3 * seconds, 3));
+        Cell { value: Some(seconds), ..Cell::text(text) }
+    };
+    let ended = |record: &Record| match record.status {
+        Status::Completed => String::new(),
+        _ => record.status.to_string(),
+    };
     TableColumns::<Record>::default()
         .code("variant", |record| record.run.variant.clone())
         .text("set", |record| what(case, &record.spec()))
-        .text("ended", |record| record.status.to_string())
         .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
         .num(["steps", "1"], |record| Cell::count(record.cost.steps))
-        .num(["pair interactions", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
-        .num(["stepping, alone", "s"], alone)
-        .num(["stepping", "s"], |record| Cell::seconds(record.cost.cpu_s))
-        .num(["observers", "s"], |record| Cell::seconds(record.cost.observing_s))
-        .num(["solver memory", "kB"], |r| Cell::num(r.cost.solver_bytes as f64 / 1e3, 4))
-        .code("state", |r| r.state.iter().flat_map(|s| s.chars()).take(8).collect::<String>())
-        .table(caption, runs.iter().map(|run| &run.record))
+        .num(["pairs", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
+        .num(["run time", "ms"], time)
+        .text("ended early", ended)
+        .table("All runs.", runs.iter().map(|run| &run.record))
 }
 
 /// Settings that differ from the defaults of the variant, as `key=value`, and the use of the run.

@@ -94,14 +94,20 @@ pub fn table(rows: &[StiffnessRow]) -> Table {
         .table("What limits the time step: each limit over the step that is taken.", rows)
 }
 
-/// The table of all cases.
+/// The table of the recommended variant and the paper's of all cases.
 pub fn section(suite: &Suite) -> Section {
-    let of_case = |results: &CaseResults| StiffnessRow::of(results.case).unwrap_or_default();
+    let of_case = |results: &CaseResults| {
+        let recommended = results.case.recommended();
+        let shown = [Some(recommended.variant), recommended.papers];
+        let mut rows = StiffnessRow::of(results.case).unwrap_or_default();
+        rows.retain(|row| shown.contains(&Some(row.variant)));
+        rows
+    };
     let rows: Vec<StiffnessRow> = suite.cases.iter().flat_map(of_case).collect();
-    let summary = format!("The limits of {} variants", rows.len());
-    let note = "`touchstone stability --theory` prints the table without any run. Each case compares the \
-                longest stable step by bisection with *together*; on lattices at rest the two agree within \
-                3 %, as gates of the case `resting_box` demand.";
+    let summary = "The recommended variant and the paper's of each case".into();
+    let note = "`touchstone stability --theory` prints the table of all variants without any run. Each case \
+                compares the longest stable step by bisection with *together*; on lattices at rest the two \
+                agree within 3 %, as gates of the case `resting_box` demand.";
     Section::new("stiffness", "What limits the time step").prose(READING).block(Block::Details {
         summary,
         blocks: vec![table(&rows).into(), Block::Prose(vec![note.into()])],

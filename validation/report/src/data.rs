@@ -9,9 +9,30 @@ use super::figure::{Dots, Layer};
 use super::plot::Prepared;
 use super::ticks::Scale;
 
+/// Columns of values, each once, which series name by their place.
+#[derive(Default)]
+pub(super) struct Columns(Vec<Vec<Value>>);
+
+impl Columns {
+    /// The place of a column.
+    fn place(&mut self, column: Vec<Value>) -> usize {
+        let known = self.0.iter().position(|of| *of == column);
+        known.unwrap_or_else(|| {
+            self.0.push(column);
+            self.0.len() - 1
+        })
+    }
+
+    /// The place of a column of numbers over an axis, or of a colour.
+    fn numbers(&mut self, values: impl Iterator<Item = f64> + Clone, scale: Scale) -> usize {
+        let step = if scale == Scale::Linear { step(values.clone()) } else { 0.0 };
+        self.place(values.map(|value| short(value, step)).collect())
+    }
+}
+
 /// Axes, place of the axes on the drawing and values of a panel: series as name, x, y and the names of
 /// points, and cells and particles as further series.
-pub(super) fn panel(panel: &Prepared, area: Rect) -> Value {
+pub(super) fn panel(panel: &Prepared, area: Rect, columns: &mut Columns) -> Value {
     let (plot, [x, y]) = panel.parts();
     let axis = |ruler: &Ruler| {
         let mapping = ruler.mapping;
@@ -19,25 +40,27 @@ pub(super) fn panel(panel: &Prepared, area: Rect) -> Value {
     };
     let series = plot.layers.iter().filter_map(|layer| match layer {
         Layer::Series(series) => {
-            let [x, y] = columns(&series.points);
+            let x = columns.numbers(series.points.iter().map(|p| p.0), plot.x.scale);
+            let y = columns.numbers(series.points.iter().map(|p| p.1), plot.y.scale);
             Some(json!({ "name": series.name, "x": x, "y": y, "names": series.names }))
         }
         Layer::Dots(Dots { points, label, .. }) => {
-            let of = |f: fn(&(f64, f64, f64)) -> f64| points.iter().map(f).map(short).collect();
-            let [x, y, value]: [Vec<Value>; 3] = [of(|p| p.0), of(|p| p.1), of(|p| p.2)];
-            Some(json!({ "name": label, "x": x, "y": y, "values": value }))
+            let x = columns.numbers(points.iter().map(|p| p.0), plot.x.scale);
+            let y = columns.numbers(points.iter().map(|p| p.1), plot.y.scale);
+            let values = columns.numbers(points.iter().map(|p| p.2), Scale::Linear);
+            Some(json!({ "name": label, "x": x, "y": y, "values": values }))
         }
         Layer::Cells { name, cells, .. } => {
-            let of = |names: &[String], k: usize| names.get(k).cloned().unwrap_or_default();
-            let x: Vec<_> = cells.iter().map(|cell| of(&plot.x.names, cell.0)).collect();
-            let y: Vec<_> = cells.iter().map(|cell| of(&plot.y.names, cell.1)).collect();
+            let of = |names: &[String], k: usize| json!(names.get(k).cloned().unwrap_or_default());
+            let x = columns.place(cells.iter().map(|cell| of(&plot.x.names, cell.0)).collect());
+            let y = columns.place(cells.iter().map(|cell| of(&plot.y.names, cell.1)).collect());
             let texts: Vec<_> = cells.iter().map(|cell| &cell.2).collect();
             Some(json!({ "name": name, "x": x, "y": y, "names": texts }))
         }
         Layer::Band { .. } => None,
     });
     let series: Vec<Value> = series.collect();
-    let place = [area.left, area.top, area.width, area.height].map(short);
+    let place = [area.left, area.top, area.width, area.height].map(|number| short(number, 0.0));
     json!({
         "title": plot.title,
         "labels": [plot.x.label, plot.y.label],
@@ -48,17 +71,28 @@ pub(super) fn panel(panel: &Prepared, area: Rect) -> Value {
 }
 
 /// All panels as a text that may stand in an element of a page.
-pub(super) fn json(panels: Vec<Value>) -> String {
-    let text = Value::from(panels).to_string();
+pub(super) fn json(panels: Vec<Value>, columns: Columns) -> String {
+    let text = json!({ "panels": panels, "columns": columns.0 }).to_string();
     text.replace('&', "\\u0026").replace('<', "\\u003c").replace('>', "\\u003e")
 }
 
-fn columns(points: &[(f64, f64)]) -> [Vec<Value>; 2] {
-    [points.iter().map(|p| short(p.0)).collect(), points.iter().map(|p| short(p.1)).collect()]
+/// Points beyond which a column is drawn, not read: its numbers have the digits that the drawing shows.
+const MANY: usize = 40;
+
+/// The least difference of many numbers that a drawing shows, a power of ten; 0 of few numbers.
+fn step(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let finite = values.filter(|value| value.is_finite());
+    let ends = [f64::min, f64::max].map(|of: fn(f64, f64) -> f64| finite.clone().reduce(of));
+    let span = ends[1].zip(ends[0]).map_or(0.0, |(most, least)| most - least);
+    match finite.count() > MANY && span > 0.0 {
+        true => 10f64.powf((span / 300.0).log10().floor()),
+        false => 0.0,
+    }
 }
 
-/// A number with five digits; none where it is not finite.
-fn short(value: f64) -> Value {
+/// A number with five digits, or fewer where they are below a step; none where it is not finite.
+fn short(value: f64, step: f64) -> Value {
+    let value = if step > 0.0 { (value / step).round() * step } else { value };
     let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
     let is_whole = rounded == rounded.trunc() && rounded.abs() < 1e9;
     if is_whole { json!(rounded as i64) } else { json!(rounded) }
@@ -67,8 +101,8 @@ fn short(value: f64) -> Value {
 #[cfg(test)]
 mod tests {
     use super::super::render::parts;
-    use crate::{Axis, ColourMap, Dots, Figure, Layer, Plot, Series};
-    use serde_json::Value;
+    use super::*;
+    use crate::{Axis, ColourMap, Figure, Plot, Series};
 
     /// The data that the script reads: values with five digits, gaps, and names of points.
     #[test]
@@ -88,15 +122,30 @@ mod tests {
         let data = parts(&figure.panel(Plot::new("", x, y).layer(cells)), "aloud").data;
         assert!(!data.contains(['<', '>', '&']), "{data}");
         let data: Value = serde_json::from_str(&data).expect("JSON");
-        let line = &data[0]["series"][0];
-        assert_eq!((&data[0]["axes"][0][0], &line["x"][0]), (&true.into(), &0.1.into()));
-        assert_eq!((&line["y"][0], &line["y"][1]), (&0.33333.into(), &Value::Null));
-        assert_eq!(line["names"][1], "a < b");
-        assert_eq!(data[1]["series"][0]["values"][0], 2);
-        let cell = &data[2]["series"][0];
+        let column = |k: usize, name: &str| {
+            let place = data["panels"][k]["series"][0][name].as_u64().expect("a place");
+            data["columns"][place as usize].clone()
+        };
         assert_eq!(
-            (&cell["x"][0], &cell["y"][0], &cell["names"][0]),
-            (&"2".into(), &"3".into(), &"ok".into())
+            (&data["panels"][0]["axes"][0][0], &column(0, "x")[0]),
+            (&true.into(), &0.1.into())
         );
+        assert_eq!(column(0, "y"), json!([0.33333, null]));
+        assert_eq!(data["panels"][0]["series"][0]["names"][1], "a < b");
+        assert_eq!(column(1, "values"), json!([2]));
+        assert_eq!((column(2, "x"), column(2, "y")), (json!(["2"]), json!(["3"])));
+        assert_eq!(data["panels"][2]["series"][0]["names"][0], "ok");
+    }
+
+    /// A column that many points have in common is written once, with the digits that a drawing shows.
+    #[test]
+    fn a_column_of_many_values_is_written_once_and_short() {
+        let mut columns = Columns::default();
+        let times = (0..100).map(|k| f64::from(k) / 3.0);
+        let places = [0, 1].map(|_| columns.numbers(times.clone(), Scale::Linear));
+        assert_eq!((places, columns.0.len()), ([0, 0], 1));
+        assert_eq!(columns.0[0][1], json!(0.33));
+        let few = columns.numbers(times.take(5), Scale::Linear);
+        assert_eq!(columns.0[few][1], json!(0.33333));
     }
 }

@@ -8,10 +8,11 @@ use maud::{Markup, html};
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Explorer {
     /// One row for each gate, in the initial order. The script addresses columns by position: verdict; name
-    /// of the gate, which is also its anchor, and begins with the case and a dot; run, with the variant
-    /// first, or study; value; bound; margin; evidence; numbers of the reasons.
+    /// of the gate, which is also its anchor, and begins with the case and a dot; value; bound; margin; run,
+    /// with the variant first, or study; evidence; numbers of the reasons. It shows the last three of a gate
+    /// that is selected.
     pub gates: Table,
-    /// The reasons that rows refer to by number, from 1; inline markup.
+    /// The reasons that rows refer to by number, from 1, a list where no script runs; inline markup.
     pub reasons: Vec<String>,
 }
 
@@ -32,7 +33,7 @@ impl Explorer {
             div.scroll.explorer tabindex="0" role="region" aria-label="All verdicts" {
                 table id="gates" { (self.gates.body(Some(NAME))) }
             }
-            details {
+            details.reasons {
                 summary { "Reasons for the bounds and for the limitations, by number" }
                 ol id="reasons" {
                     @for (k, reason) in self.reasons.iter().enumerate() {

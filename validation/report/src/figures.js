@@ -123,7 +123,15 @@
   all("figure").forEach(function (figure) {
     var source = figure.querySelector("script");
     if (!source) { return; }
-    var panels = JSON.parse(source.textContent);
+    var data = JSON.parse(source.textContent);
+    var panels = data.panels;
+    panels.forEach(function (panel) {
+      panel.series.forEach(function (of) {
+        ["x", "y", "values"].forEach(function (name) {
+          if (of[name] !== undefined) { of[name] = data.columns[of[name]]; }
+        });
+      });
+    });
     var off = new Set();
     all(".panels svg", figure).forEach(function (svg, k) {
       svg.addEventListener("pointermove", function (event) {

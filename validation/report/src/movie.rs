@@ -1,24 +1,22 @@
 //! Pictures one after another, as a PNG file of several frames (APNG) that browsers play.
 
-use color_quant::NeuQuant;
 use maud::{Markup, PreEscaped};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::io;
 use touchstone_base::text::{base64, escaped};
 
 use super::{
+    colour::Colour,
     figure::{Figure, Plot},
     inline::aloud,
     render,
 };
 
-/// Bits of a colour channel that are kept: edges stay smooth, and the file is a third smaller.
-const BITS: u8 = 4;
-/// Colours of a film: with 24 of them a frame takes two thirds of the bytes that it takes with 256.
-const COLOURS: usize = 24;
-/// One pixel of this many is sampled to choose the colours, in one frame of ten.
-const SAMPLED: i32 = 10;
+/// Colours of a film, as many as four bits name: frames of more take twice the bytes.
+const COLOURS: usize = 16;
+/// Shades of axes and texts among them; the others are of the colour map.
+const SHADES: usize = 5;
 /// Frames a second.
 const RATE: u16 = 12;
 
@@ -40,7 +38,21 @@ pub struct Movie {
 impl Movie {
     /// The file, which begins anew after the last frame.
     pub(super) fn apng(&self) -> io::Result<Vec<u8>> {
-        encode(&self.pixels(&self.frames))
+        encode(&self.pixels(&self.frames), &self.palette())
+    }
+
+    /// Shades from black to white, and colours of the map of the particles.
+    fn palette(&self) -> [Rgb; COLOURS] {
+        let map = self.frames.iter().find_map(Plot::dots).map(|dots| dots.map);
+        let share = |k: usize, count: usize| k as f64 / (count - 1) as f64;
+        std::array::from_fn(|k| {
+            let colour = match (map, k.checked_sub(SHADES)) {
+                (Some(map), Some(k)) => map.at(share(k, COLOURS - SHADES)),
+                (Some(_), None) => Colour::BLACK.tint(1.0 - share(k, SHADES)),
+                (None, _) => Colour::BLACK.tint(1.0 - share(k, COLOURS)),
+            };
+            [colour.0, colour.1, colour.2]
+        })
     }
 
     /// Pixels of frames, three bytes each, with width and height.
@@ -61,7 +73,7 @@ impl Movie {
             "<picture class=\"movie\"><source media=\"(prefers-reduced-motion: reduce)\" \
              srcset=\"data:image/png;base64,{}\"/>\
              <img alt=\"{}\" src=\"data:image/png;base64,{}\"/></picture>",
-            data(encode(&self.pixels(still))),
+            data(encode(&self.pixels(still), &self.palette())),
             escaped(&aloud(&self.caption)),
             data(self.apng())
         ))
@@ -71,22 +83,19 @@ impl Movie {
 /// Red, green and blue.
 type Rgb = [u8; 3];
 
-/// A PNG of frames of three bytes a pixel, in the colours of a palette: a few that stand for all of them.
-fn encode(frames: &[(Vec<u8>, u32, u32)]) -> io::Result<Vec<u8>> {
+/// A PNG of frames of three bytes a pixel, each in the nearest colour of a palette.
+fn encode(frames: &[(Vec<u8>, u32, u32)], palette: &[Rgb; COLOURS]) -> io::Result<Vec<u8>> {
     let Some((_, width, height)) = frames.first() else { return Ok(Vec::new()) };
-    let sampled = frames.iter().step_by(10).flat_map(|(pixels, ..)| coarse_colours(pixels));
-    let opaque: Vec<u8> = sampled.flat_map(|[r, g, b]| [r, g, b, u8::MAX]).collect();
-    let chosen = NeuQuant::new(SAMPLED, COLOURS, &opaque);
-    let mut known: BTreeMap<Rgb, u8> = BTreeMap::new();
-    let mut index = |[r, g, b]: Rgb| {
-        let place = || chosen.index_of(&[r, g, b, u8::MAX]) as u8;
-        *known.entry([r, g, b]).or_insert_with(place)
+    let mut known: HashMap<Rgb, u8> = HashMap::new();
+    let mut index = |pixel: &[u8]| {
+        let pixel = [pixel[0], pixel[1], pixel[2]];
+        *known.entry(pixel).or_insert_with(|| nearest(pixel, palette))
     };
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, *width, *height);
     encoder.set_color(png::ColorType::Indexed);
-    encoder.set_palette(chosen.color_map_rgb());
-    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_palette(palette.concat());
+    encoder.set_depth(png::BitDepth::Four);
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::NoFilter); // flat colours: every filter makes it larger
     if frames.len() > 1 {
@@ -95,22 +104,27 @@ fn encode(frames: &[(Vec<u8>, u32, u32)]) -> io::Result<Vec<u8>> {
     }
     let mut writer = encoder.write_header()?;
     for (pixels, ..) in frames {
-        let indices: Vec<u8> = coarse_colours(pixels).map(&mut index).collect();
-        writer.write_image_data(&indices)?;
+        let indices: Vec<u8> = pixels.chunks_exact(3).map(&mut index).collect();
+        writer.write_image_data(&packed(&indices, *width as usize))?;
     }
     writer.finish()?;
     Ok(bytes)
 }
 
-/// The colours of pixels of three bytes, with [`BITS`] bits a channel, black and white as they are.
-fn coarse_colours(pixels: &[u8]) -> impl Iterator<Item = Rgb> + '_ {
-    pixels.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]].map(coarse))
+/// The place of the nearest colour of a palette.
+fn nearest(pixel: Rgb, palette: &[Rgb; COLOURS]) -> u8 {
+    let distance = |colour: &Rgb| -> u32 {
+        let squares = pixel.iter().zip(colour).map(|(a, b)| u32::from(a.abs_diff(*b)).pow(2));
+        squares.sum()
+    };
+    let places = palette.iter().enumerate().min_by_key(|(_, colour)| distance(colour));
+    places.map_or(0, |(place, _)| place as u8)
 }
 
-/// The channel value with [`BITS`] bits, black and white as they are.
-fn coarse(value: u8) -> u8 {
-    let steps = (1_u32 << BITS) - 1;
-    ((u32::from(value) * steps + 127) / 255 * 255 / steps) as u8
+/// Rows of indices of four bits, two a byte; the last byte of an odd row is half empty.
+fn packed(indices: &[u8], width: usize) -> Vec<u8> {
+    let pair = |pair: &[u8]| pair[0] << 4 | pair.get(1).copied().unwrap_or(0);
+    indices.chunks(width).flat_map(|row| row.chunks(2).map(pair)).collect()
 }
 
 #[cfg(test)]
@@ -143,6 +157,8 @@ mod tests {
         let html = film.markup().into_string();
         assert!(html.contains("alt=\"A line turns.\" src=\"data:image/png;base64,"), "{html}");
         assert!(html.contains("media=\"(prefers-reduced-motion: reduce)\" srcset=\"data:"));
-        assert_eq!((coarse(0), coarse(255)), (0, 255));
+        let palette = film.palette();
+        assert_eq!(palette.map(|colour| nearest(colour, &palette)).to_vec(), Vec::from_iter(0..16));
+        assert!(palette.contains(&[0; 3]) && palette.contains(&[255; 3]), "{palette:?}");
     }
 }

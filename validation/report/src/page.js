@@ -44,7 +44,7 @@
   var fields = {
     "case": case_of,
     "variant": function (row) {
-      var name = row.children[2].querySelector("code");
+      var name = row.children[5].querySelector("code");
       return name ? name.textContent : "(a study)";
     },
     "status": function (row) { return row.dataset.status; },
@@ -88,6 +88,10 @@
     all("tr.why", table).forEach(function (tr) { tr.remove(); });
     var why = make("tr", { class: "why" });
     var cell = make("td", { colspan: row.children.length });
+    var on = make("p", {}, "");
+    row.children[5].childNodes.forEach(function (node) { on.appendChild(node.cloneNode(true)); });
+    on.append(", by " + text(row, 6));
+    cell.appendChild(on);
     text(row, 7).split(" ").forEach(function (number) {
       cell.appendChild(make("p", {}, document.getElementById("r" + number).textContent));
     });

@@ -317,10 +317,12 @@ impl Writer {
 
     fn figure(&mut self, id: &str, caption: &str, drawing: &Markup) -> Markup {
         self.figures += 1;
+        // A caption begins with the question that the figure answers.
+        let (question, rest) = caption.split_at(caption.find("? ").map_or(0, |at| at + 1));
         html! {
             figure id=(id) aria-label=(aloud(caption)) {
                 (drawing)
-                figcaption { b { "Figure " (self.figures) ". " } (inline(caption)) }
+                figcaption { b { "Figure " (self.figures) ". " (inline(question)) } (inline(rest)) }
             }
         }
     }

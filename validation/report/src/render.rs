@@ -145,6 +145,7 @@ pub(super) fn parts(figure: &Figure, aloud: &str) -> Parts {
         // The last one has the bar of all.
         panels.last_mut().and_then(Prepared::bar).into_iter().for_each(|bar| bar.is_shared = false);
     }
+    let mut columns = data::Columns::default();
     let drawn = |panel: &Prepared| {
         let Room { left, width, right, top, height, bottom } = panel.room();
         let area = Rect { left: EDGE + left, top: EDGE + top, width, height };
@@ -157,10 +158,10 @@ pub(super) fn parts(figure: &Figure, aloud: &str) -> Parts {
         let label = if title.is_empty() { aloud.into() } else { format!("{title}. {aloud}") };
         let svg =
             svg::opening(&label, (size.0.ceil(), size.1.ceil())) + &sheet.finish() + "</svg>\n";
-        (svg, data::panel(panel, area))
+        (svg, data::panel(panel, area, &mut columns))
     };
     let (panels, data): (Vec<String>, Vec<_>) = panels.iter().map(drawn).unzip();
-    Parts { panels, legend, data: data::json(data) }
+    Parts { panels, legend, data: data::json(data, columns) }
 }
 
 /// The whole figure as an SVG element of its natural size.

@@ -102,6 +102,13 @@ impl Cell {
         Self { status: Some(status), ..self }
     }
 
+    /// The cell without the unit that the head of its column states.
+    fn without(&self, unit: &str) -> Self {
+        let bare = self.text.strip_suffix(unit).filter(|_| !unit.is_empty());
+        let bare = bare.map(|text| text.trim_end_matches(NO_BREAK).to_string());
+        Self { text: bare.unwrap_or_else(|| self.text.clone()), ..self.clone() }
+    }
+
     /// A number that is missing is a dash.
     fn formatted(value: f64, text: String) -> Self {
         if value.is_nan() {
@@ -175,10 +182,15 @@ impl TableColumn {
     }
 
     pub(super) fn markup(&self) -> Markup {
+        self.with_unit(&self.unit)
+    }
+
+    /// The head with another unit.
+    fn with_unit(&self, unit: &str) -> Markup {
         html! {
             th class=[self.numeric.then_some("number")] scope="col" {
                 (inline(&self.head))
-                @if !self.unit.is_empty() { span.unit { " [" (self.unit) "]" } }
+                @if !unit.is_empty() { span.unit { " [" (unit) "]" } }
             }
         }
     }
@@ -231,22 +243,41 @@ impl Table {
         }
     }
 
-    /// Heads and rows; the text in the column of this number is the anchor of its row.
+    /// Heads and rows; the text in the column of this number is the anchor of its row. A unit that all numbers
+    /// of a column have is in its head.
     pub(super) fn body(&self, anchor: Option<usize>) -> Markup {
+        let units: Vec<&str> = (0..self.columns.len()).map(|k| self.common_unit(k)).collect();
         html! {
-            thead { tr { @for column in &self.columns { (column.markup()) } } }
-            tbody { @for row in &self.rows { (self.row_markup(row, anchor)) } }
+            thead {
+                tr {
+                    @for (column, unit) in self.columns.iter().zip(&units) {
+                        (column.with_unit(if unit.is_empty() { &column.unit } else { unit }))
+                    }
+                }
+            }
+            tbody { @for row in &self.rows { (self.row_markup(row, anchor, &units)) } }
         }
     }
 
-    fn row_markup(&self, row: &[Cell], anchor: Option<usize>) -> Markup {
+    /// The unit behind all numbers of a column, if it is one.
+    fn common_unit(&self, column: usize) -> &str {
+        let numbers = self.rows.iter().filter_map(|row| row.get(column));
+        let mut numbers = numbers.filter(|cell| self.columns[column].numeric && cell.text != "–");
+        let unit = |cell: &Cell| cell.text.rfind(NO_BREAK).map(|at| at + NO_BREAK.len_utf8());
+        let Some(first) = numbers.next() else { return "" };
+        let Some(own) = unit(first).map(|at| &first.text[at..]) else { return "" };
+        let is_own = |cell: &Cell| unit(cell).is_some_and(|at| &cell.text[at..] == own);
+        if numbers.all(is_own) { own } else { "" }
+    }
+
+    fn row_markup(&self, row: &[Cell], anchor: Option<usize>, units: &[&str]) -> Markup {
         let id = anchor.and_then(|k| row.get(k)).map(|cell| &cell.text);
         let worst = row.iter().filter_map(|c| c.status).max();
         html! {
             tr id=[id] data-status=[worst.map(class)] {
                 @for (i, column) in self.columns.iter().enumerate() {
                     @match row.get(i) {
-                        Some(cell) => (cell.html(column.numeric)),
+                        Some(cell) => (cell.without(units[i]).html(column.numeric)),
                         None => (PreEscaped("<td></td>")),
                     }
                 }
@@ -254,6 +285,9 @@ impl Table {
         }
     }
 }
+
+/// Between a number and its unit.
+const NO_BREAK: char = '\u{a0}';
 
 #[cfg(test)]
 mod tests {
@@ -278,6 +312,20 @@ mod tests {
         assert!(!with(1).markup("Table").into_string().contains("<details>"));
         let long = with(2).markup("Table").into_string();
         assert!(long.contains("<summary><b>Table. </b>Errors fall.</summary><p>Orders too.</p>"));
+    }
+
+    #[test]
+    fn a_unit_that_all_numbers_have_is_in_the_head() {
+        let columns = ["same", "other"].map(|head| TableColumn::num(head, "-")).into();
+        let row = |same: Cell, other: Cell| vec![same, other];
+        let table = Table::new("Errors", columns)
+            .row(row(Cell::percent(0.012, 2), Cell::seconds(2.0)))
+            .row(row(Cell::text("–"), Cell::seconds(2e-3)))
+            .row(row(Cell::percent(0.3, 2), Cell::text("–")));
+        let html = table.markup("Table").into_string();
+        assert!(html.contains("same<span class=\"unit\"> [%]</span>"), "{html}");
+        assert!(html.contains(">1.2</td>") && html.contains(">30</td>"), "{html}");
+        assert!(html.contains(">2.00\u{a0}ms</td>") && html.contains("[-]"), "{html}");
     }
 
     #[test]

@@ -59,7 +59,7 @@ fn table() -> Table {
 /// Forty verdicts, each fifth outside of its bound.
 fn explorer() -> Explorer {
     let heads =
-        ["verdict", "gate", "run or study", "value", "bound", "margin", "evidence", "reasons"];
+        ["verdict", "gate", "value", "bound", "margin", "run or study", "evidence", "reasons"];
     let numbers = ["value", "margin"];
     let column = |head| match numbers.contains(&head) {
         true => TableColumn::num(head, ""),
@@ -71,10 +71,10 @@ fn explorer() -> Explorer {
         vec![
             Cell::status(status),
             Cell::text(format!("{case}.gate{k}")),
-            Cell::marked(format!("`seed` n={k}")),
             Cell::num(k as f64, 2),
             Cell::text("at most 30"),
             Cell::percent(1.0 - k as f64 / 40.0, 2),
+            Cell::marked(format!("`seed` n={k}")),
             Cell::text(if k.is_multiple_of(3) { "theory" } else { "analytic" }),
             Cell::text((1 + k % 2).to_string()),
         ]

@@ -411,8 +411,14 @@ pub struct Submit {
     #[arg(long)]
     pub allow_long: bool,
     /// Print every gate, not only those that did not pass
-    #[arg(long)]
+    #[arg(long, conflicts_with = "json")]
     pub all: bool,
+    /// Print the verdicts as JSON on standard output, as an entry of `submissions` of verdicts.json
+    #[arg(long, conflicts_with = "check")]
+    pub json: bool,
+    /// Write the verdicts as JUnit XML, one test case per gate
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    pub junit: Option<PathBuf>,
 }
 
 /// `OURS=THEIRS`. Our columns depend on the case and on the submitted file.

@@ -28,7 +28,9 @@ use touchstone_harness::{
 };
 
 use super::{
-    Exit, Failure, Outcome, Session, arguments, output,
+    Exit, Failure, Outcome, Session, arguments, judged,
+    judged::SubmissionVerdicts,
+    output,
     solve::{self, How},
     submitted,
 };
@@ -180,9 +182,15 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
         None => "nothing was recorded".into(),
     };
     let index = GateIndex::of(case);
-    let judged = suite::submitted(&index, record);
-    let (text, exit) = submitted::verdict(&index, &judged, arguments.all);
-    output::print(&text)?;
+    let run = suite::submitted(&index, record);
+    let (text, exit) = submitted::verdict(&index, &run, arguments.all);
+    let verdicts = SubmissionVerdicts::of(case, &run, false);
+    let verdicts = verdicts.ok_or_else(|| Failure::bug("a submission without its code"))?;
+    judged::write_junit_of_submission(&verdicts, arguments.junit.as_deref())?;
+    match arguments.json {
+        true => output::print_whole(&judged::json_of_submission(&verdicts)?)?,
+        false => output::print(&text)?,
+    }
     output::say(&said);
     Ok(exit)
 }

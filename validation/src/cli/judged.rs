@@ -246,6 +246,20 @@ pub fn write_junit(suite: &Suite, path: Option<&Path>) -> Result<(), Failure> {
     Ok(path.map_or(Ok(()), |path| write_atomically(path, junit(suite).as_bytes()))?)
 }
 
+/// The verdicts on one run of another code as JSON.
+pub fn json_of_submission(of: &SubmissionVerdicts) -> Result<String, Failure> {
+    Ok(serde_json::to_string_pretty(of).map_err(Failure::bug)? + "\n")
+}
+
+/// Writes the verdicts on one run of another code as JUnit XML into a file, if requested.
+pub fn write_junit_of_submission(
+    of: &SubmissionVerdicts,
+    path: Option<&Path>,
+) -> Result<(), Failure> {
+    let text = || testsuites([submission_testsuite(of)]);
+    Ok(path.map_or(Ok(()), |path| write_atomically(path, text().as_bytes()))?)
+}
+
 /// The number that was judged, for people.
 pub fn value(judgement: &Judgement) -> String {
     judgement.value.map_or("not measured".into(), |value| touchstone_report::sig(value, 5))
@@ -309,17 +323,25 @@ const MOST_SHOWN: usize = 20;
 /// A test case a gate, by case, and a suite for each run of another code in the store. Failing gates are
 /// failures; a limitation, an expected failure and a gate that does not apply are skipped, with the reason.
 fn junit(suite: &Suite) -> String {
-    let mut text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
-    for results in &suite.cases {
+    testsuites(suite.cases.iter().flat_map(|results| {
         let judged = results.judged().map(|of| of.judged);
-        text += &testsuite(results.case.name(), judged, &BTreeMap::new());
+        let own = testsuite(results.case.name(), judged, &BTreeMap::new());
         let others = results.runs.submissions.iter();
-        for of in others.filter_map(|run| SubmissionVerdicts::of(results.case, run, false)) {
-            let name = format!("{} by {}", of.problem(), of.submission);
-            text += &testsuite(&name, of.judged.iter(), &of.not_applicable);
-        }
-    }
-    text + "</testsuites>\n"
+        let others = others.filter_map(|run| SubmissionVerdicts::of(results.case, run, false));
+        [own].into_iter().chain(others.map(|of| submission_testsuite(&of)))
+    }))
+}
+
+/// A document of test suites.
+fn testsuites(all: impl IntoIterator<Item = String>) -> String {
+    let text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
+    all.into_iter().fold(text, |text, suite| text + &suite) + "</testsuites>\n"
+}
+
+/// The suite of a run of another code.
+fn submission_testsuite(of: &SubmissionVerdicts) -> String {
+    let name = format!("{} by {}", of.problem(), of.submission);
+    testsuite(&name, of.judged.iter(), &of.not_applicable)
 }
 
 /// Judgements as test cases, and gates that are skipped, each with the reason.

@@ -53,18 +53,17 @@ impl Change {
     }
 }
 
+/// How to read a budget.
+pub const READING: &str = "Where the error of a budget rises as dt falls, errors of time and spacing cancel \
+    at the default dt, and the row with the least dt is the better measure of the spacing.";
+
 impl Study for Budgets {
     fn runs(&self) -> Vec<Planned> {
         self.of.iter().flatten().map(|change| Planned::new(change.spec.clone())).collect()
     }
 
     fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
-        let caption = format!(
-            "Error budget with one thing changed at a time: {}. {} \
-             Where the error rises as dt falls, errors of time and spacing cancel at the default dt, and the \
-             row with the least dt is the better measure of the spacing.",
-            self.label, self.about
-        );
+        let caption = format!("One thing changed at a time: {}. {}", self.label, self.about);
         let mut rows = Vec::new();
         for changes in &self.of {
             let error = |change: &Change| {

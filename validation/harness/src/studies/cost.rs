@@ -358,6 +358,9 @@ pub(super) fn panel(
 /// Behind everything else.
 const PALE: Colour = Colour(222, 222, 222);
 
+/// How to read orders, and times to an error.
+pub const READING: [&str; 2] = [LABELS, TIMES];
+
 const LABELS: &str = "*Orders agree*: every local order is within 15 % of the fitted one; *asymptotic*: \
     moreover the formal order of the method is within 15 % of it and in its 95 % interval; *floor reached*: \
     the error fell with an order and then stopped; *not yet*: none of these.";
@@ -366,7 +369,7 @@ const TIMES: &str = "Times are the least median run time on one core of a level 
 
 /// Orders, intervals, and the costs of errors.
 fn table(accuracy: &Accuracy, rows: &[LadderRow]) -> Table {
-    let about = format!("Observed orders of accuracy. {} {LABELS} {TIMES}", accuracy.about);
+    let about = format!("Orders and times. {}", first_sentence(&accuracy.about).1);
     let finest = |row: &LadderRow| row.points.last().map_or(f64::NAN, |p| p.error);
     let columns = TableColumns::default()
         .code("variant", |row: &LadderRow| row.of.variant)

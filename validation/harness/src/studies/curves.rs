@@ -45,8 +45,8 @@ pub struct CurvePanel {
     pub y: Axis,
     /// Curves of runs.
     pub lines: Vec<CurveOf>,
-    /// Curves of references: name and points. The first name is black, others are grey; a curve without name
-    /// is a guide.
+    /// Curves of references: name and points. The first name is black, the second grey, a further one dotted;
+    /// a curve without name is a guide.
     pub references: Vec<(String, Vec<(f64, f64)>)>,
     /// Are curves of runs drawn as symbols?
     pub symbols: bool,
@@ -135,11 +135,13 @@ impl Study for Curves {
 /// The look of a reference among the references of a panel.
 fn reference(name: &str, all: &[(String, Vec<(f64, f64)>)], points: Vec<(f64, f64)>) -> Series {
     let line = Series::line(name, points);
-    let first = all.iter().map(|of| &of.0).find(|of| !of.is_empty());
-    match name {
-        "" => line.colour(Colour::GREY).width(0.8),
-        _ if first.is_some_and(|first| first == name) => line.colour(Colour::BLACK),
-        _ => line.colour(Colour::GREY),
+    let mut names: Vec<&str> = all.iter().map(|of| &*of.0).filter(|of| !of.is_empty()).collect();
+    names.dedup();
+    match names.iter().position(|of| *of == name) {
+        None => line.colour(Colour::GREY).width(0.8),
+        Some(0) => line.colour(Colour::BLACK),
+        Some(1) => line.colour(Colour::GREY),
+        Some(_) => line.colour(Colour::BLACK).dash(Dash::Dotted),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The kinds of studies that any case may have, each in one file: the type that a case declares, the runs
 //! that it needs, and its section as a pure function of their records.
 
-mod budget;
+pub mod budget;
 pub mod card;
 pub mod causes;
 pub mod cost;
@@ -10,8 +10,8 @@ mod ensemble;
 mod ladder;
 pub mod limit;
 mod map;
-mod sensitivity;
-pub(crate) mod submissions;
+pub mod sensitivity;
+pub mod submissions;
 pub mod sweep;
 #[cfg(test)]
 mod tests;

@@ -17,10 +17,11 @@ use crate::{
     study::Study,
 };
 
-const ABOUT: &str = "Errors that the gates can detect. One constant of the scene is multiplied by 1 + e and \
-                     by 1 - e, while measurements and gates keep the original settings. An error counts as \
-                     detected if the run fails a gate with both signs. Gates that compare the program with \
-                     itself do not count, and conserved quantities count for constants of the \
+/// How to read the errors that gates detect.
+pub const READING: &str = "Errors that the gates can detect. One constant of the scene is multiplied by 1 + \
+                     e and by 1 - e, while measurements and gates keep the original settings. An error \
+                     counts as detected if the run fails a gate with both signs. Gates that compare the \
+                     program with itself do not count, and conserved quantities count for constants of the \
                      discretisation alone. An error of 3 % of a physical constant and of 10 % of an \
                      ingredient of the method must be detected, and so must gross faults: a wrong sign (× \
                      -1), a missing term (× 0), a constant that is wrong by a factor. Errors between 0.1 % \
@@ -189,7 +190,7 @@ impl Study for Sensitivity {
             .marked("gates that detect it", SensitivityRow::gates)
             .text("gates that detect a gross fault", faults)
             .text("why not smaller", |row| row.watched.blind.as_ref().map_or("", |blind| blind.why))
-            .table(ABOUT, &rows);
+            .table("Errors of constants.", &rows);
         (!self.of.is_empty()).then(|| section.block(table))
     }
 

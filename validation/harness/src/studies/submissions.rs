@@ -2,6 +2,7 @@
 
 use touchstone_base::{
     gate::Verdict,
+    record::Record,
     submission::{Division, OURS, Submission},
 };
 use touchstone_report::{Axis, Cell, Figure, Plot, Series, Shape, percent, plain, seconds};
@@ -169,22 +170,39 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
 /// Runs with fewer particles measure mostly the fixed cost of a step.
 const FEW: usize = 120;
 
+/// How to read runs of other codes; `of` are the runs of all cases.
+pub fn reading<'a>(of: impl Iterator<Item = &'a Runs> + Clone) -> Vec<String> {
+    let peers = of.flat_map(|runs| &runs.peers).map(|run| &run.record);
+    let words = [MEASURED, DIVISIONS].map(String::from);
+    words.into_iter().chain(provenance(peers)).collect()
+}
+
+const MEASURED: &str = "Particles of other codes, measured by the code that measures our own runs and \
+             judged by the same gates; known limitations of our own method do not apply. A gate is not \
+             applicable if its metric needs data that no file holds or that were not submitted, or if its \
+             bound follows from our own kernel, support and step. A record alone proves nothing: \
+             `touchstone submit` measures its results again and refuses a stored record that contradicts \
+             them. Versions, seconds and steps are as submitted, because this program cannot check them.";
+const DIVISIONS: &str = "Closed division: our particles, spacing and support of the kernel. Open division: \
+             other particles or another resolution, at a stated cost. The best is first in each. Gates on \
+             the error judge the accuracy; *none*: no gate does. Versions and processor times are as \
+             submitted.";
+
 /// Place and time of the runs that the program contains, and notes for their reader.
-fn provenance(runs: &Runs) -> Option<String> {
-    let day = runs.peers.iter().find_map(|run| run.record.session())?;
+fn provenance<'a>(peers: impl Iterator<Item = &'a Record> + Clone) -> Option<String> {
+    let day = peers.clone().find_map(Record::session)?;
     let mut words = format!(
         "Records that the program contains (`references/peers`) were made on {day} on another machine, in \
          turn with ours, each on one thread while other programs were at work. Their seconds compare only \
          with each other. The authors of the codes have not reviewed the scripts: a run that is worse than \
          published results may be an error of the script."
     );
-    let records = || runs.peers.iter().map(|run| &run.record);
-    if records().any(|record| (1..=FEW).contains(&record.cost.particles)) {
+    if peers.clone().any(|record| (1..=FEW).contains(&record.cost.particles)) {
         words += " Seconds with 60 to 120 particles measure the overhead of a step, not the speed of a code.";
     }
     let is_ours = |of: &Submission| of.code == OURS;
-    let ours = records().filter(|record| record.run.submission.as_deref().is_some_and(is_ours));
-    if ours.into_iter().any(|record| record.run.variant == "curved") {
+    let mut ours = peers.filter(|record| record.run.submission.as_deref().is_some_and(is_ours));
+    if ours.any(|record| record.run.variant == "curved") {
         words += " Our `curved` was added after the first results of the others, of which two were better \
                   than ours; omit it to compare first attempts.";
     }
@@ -232,16 +250,8 @@ pub fn section(case: &str, studies: &Studies, runs: &Runs) -> Option<Section> {
     let accuracy = studies.of();
     let found = accuracy.map(|of| (of, marks(of, runs))).find(|(_, marks)| !marks.is_empty());
     let first = found.as_ref().and_then(|(_, marks)| better(marks));
-    let words = first.into_iter().chain(equal(runs)).chain(provenance(runs));
+    let words = first.into_iter().chain(equal(runs));
     let section = words.fold(Section::new(&id, "Runs of other codes"), Section::prose);
-    let section = section.prose(
-            "Particles of other codes, measured by the code that measures our own runs and judged by the \
-             same gates; known limitations of our own method do not apply. A gate is not applicable if its \
-             metric needs data that no file holds or that were not submitted, or if its bound follows from \
-             our own kernel, support and step. A record alone proves nothing: `touchstone submit` measures \
-             its results again and refuses a stored record that contradicts them. Versions, seconds and \
-             steps are as submitted, because this program cannot check them.",
-        );
     let section = match &found {
         Some((accuracy, marks)) => section.block(figure(&format!("{id}-cost"), accuracy, marks)),
         None => section,
@@ -269,7 +279,7 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
     columns
         .text("division", |(of, ..)| of.division.to_string())
         .text("code", |(of, ..)| of.to_string())
-        .code("variant of the problem", |(_, run, ..)| &run.record.run.variant)
+        .code("variant", |(_, run, ..)| &run.record.run.variant)
         .num(["particles", "1"], |(_, run, ..)| match run.record.cost.particles {
             0 => Cell::text("–"),
             particles => Cell::count(particles as u64),
@@ -278,15 +288,8 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
         .of(["processor time", "s"], |(_, run, ..)| run.record.cost.cpu_s, Cell::seconds)
         .text("accuracy", move |(_, run, ..)| of_gates(run, &accuracy)[0].clone())
         .text("other gates that fail", move |(_, run, ..)| of_gates(run, &others)[1].clone())
-        .text("all gates", |(_, run, ..)| all_gates(run))
-        .text("ended", |(_, run, ..)| run.record.status.to_string())
-        .table(
-            "Closed division: our particles, spacing and support of the kernel. Open division: other \
-             particles or another resolution, at a stated cost. The best is first in each. Gates on the \
-             error judge the accuracy; *none*: no gate does. Versions and processor times are as \
-             submitted.",
-            rows,
-        )
+        .num(["gates that pass", ""], |(_, run, ..)| all_gates(run))
+        .table("Runs of other codes, the best first in each division.", rows)
 }
 
 /// Names, without their times, of the metrics that say how accurate a run is.
@@ -319,17 +322,18 @@ fn of_gates(run: &JudgedRun, accuracy: &[String]) -> [String; 2] {
     [verdict, if failing.is_empty() { "–".into() } else { failing.join(", ") }]
 }
 
-fn all_gates(run: &JudgedRun) -> String {
-    let (apply, others) = run.applicable();
-    let failed = apply.iter().filter(|judged| judged.judgement.verdict.is_failure()).count();
-    format!("{} pass, {failed} fail, {} not applicable", apply.len() - failed, others.len())
+/// How many of the gates that apply a run passes.
+fn all_gates(run: &JudgedRun) -> Cell {
+    let (apply, _) = run.applicable();
+    let passed = apply.iter().filter(|judged| !judged.judgement.verdict.is_failure()).count();
+    Cell { value: Some(passed as f64), ..Cell::text(format!("{passed}/{}", apply.len())) }
 }
 
 #[cfg(test)]
 mod tests {
     use touchstone_base::{
         gate::{Bound, Evidence, Gate},
-        record::{Metric, Record},
+        record::Metric,
     };
 
     use super::*;
@@ -406,7 +410,7 @@ mod tests {
             [Verdict::Fail.to_string(), Verdict::Fail.to_string()]
         );
         assert_eq!(column(table, "other gates that fail"), ["case.noise"; 2]);
-        assert_eq!(column(table, "all gates"), ["1 pass, 2 fail, 0 not applicable"; 2]);
+        assert_eq!(column(table, "gates that pass"), ["1/3"; 2]);
     }
 
     /// Equal results are reported for two codes, and for a code that submitted ours, but not within one code

@@ -293,6 +293,9 @@ fn order_of_differences(differences: f64, [wide, ratio]: [f64; 2]) -> Option<f64
     (differences > 1.0 && SLOWEST < order && order < FASTEST).then_some(order)
 }
 
+/// How to read comparisons with exact references and with uncertain ones.
+pub const READING: [&str; 2] = [OF_EXACT, OF_UNCERTAIN];
+
 const OF_EXACT: &str = "Errors of the finest level against exact references. Such an error is entirely \
     numerical, so V&V 20 does not apply. Order: of all levels, with its interval of 95 %. *Converges*: \
     this interval is above 0. *Stops at*: the differences of the last three levels approach another limit \
@@ -352,7 +355,7 @@ fn of_exact(rows: &[Row]) -> Table {
     columns()
         .text("order (95 %)", |(_, found)| found.order())
         .text("verdict", |(_, found)| found.in_words())
-        .table(OF_EXACT, rows)
+        .table("Errors against exact references.", rows)
 }
 
 fn of_uncertain(rows: &[Row]) -> Table {
@@ -365,7 +368,7 @@ fn of_uncertain(rows: &[Row]) -> Table {
         .text("u_input and u_D", |(of, _)| of.because)
         .of(["u_val", "-"], |(_, found)| found.uncertainty(), show)
         .text("verdict", |(_, found)| found.in_words())
-        .table(OF_UNCERTAIN, rows)
+        .table("Differences from uncertain references.", rows)
 }
 
 /// One line for the card of a case: how many comparisons ended how.

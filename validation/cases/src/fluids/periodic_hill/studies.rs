@@ -2,7 +2,6 @@
 //! budget, largest stable time step, errors of constants that gates must detect; and for hills only: whether
 //! the start matters.
 
-use nalgebra::Vector2;
 use touchstone_base::{mutation::Constant, record::Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
@@ -16,17 +15,17 @@ use touchstone_harness::{
         causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
     },
 };
-use touchstone_maths::metrics::norms::rms;
+use touchstone_maths::metrics::{history::differences, norms::rms};
 use touchstone_report::{Axis, ColourMap, percent};
 
 use super::{
     CASE, HillSettings, NAME, RECOMMENDED,
     measure::{
         ALL, DRAG_BALANCE, FORCE, FORCE_ERROR, L2_U, L2_V, OUTSIDE, POINTS, REATTACHMENT_ERROR,
-        SEPARATION_ERROR, STATIONS,
+        SEPARATION_ERROR,
     },
     plan::{END, Group, Row, Table, flow, name, shown, table},
-    reference::{HillReference, REYNOLDS, bubble, floor, reference, summary},
+    reference::{HillReference, REYNOLDS, Station, bubble, floor, reference, summary},
     setup::FLUX,
 };
 
@@ -225,42 +224,59 @@ fn profiles(table: &Table) -> Curves {
     for re in REYNOLDS {
         let rows = shown(table, re);
         let Some((finest, reference)) = rows.last().zip(reference(re)) else { continue };
-        panels.push(profile(finest, reference));
+        panels.extend([false, true].map(|differs| profile(finest, reference, differs)));
         panels.push(shear(&rows, reference));
     }
     Curves::new("periodic-hill-profiles", "Velocity and shear stress", caption, panels)
 }
 
-/// The velocity along the channel, every tenth point of a station.
-fn profile(row: &Row, reference: &HillReference) -> CurvePanel {
-    const SCALE: f64 = 0.8;
-    let line = |k: usize| CurveOf {
-        name: name(row),
-        spec: row.run.spec.clone(),
-        points: Box::new(move |record: &Record| {
-            let [x, y, u] = ["x", "y", "u"].map(|name| record.column("stations", name));
-            let points = (k * POINTS + 5..((k + 1) * POINTS).min(u.len())).step_by(10);
-            points.map(|j| (x[j] + SCALE * u[j], y[j])).collect()
-        }),
+/// The velocity along the channel, every tenth point of a station, or how far it is from finite elements.
+fn profile(row: &Row, reference: &HillReference, is_difference: bool) -> CurvePanel {
+    let (scale, symbol, title) = match is_difference {
+        true => (20.0, "Δu", "minus finite elements".to_string()),
+        false => (0.8, "u", name(row)),
     };
-    let exact = reference.stations.iter().map(|station| {
-        let at = |(y, v): (&f64, &Vector2<f64>)| (station.x + SCALE * v.x, *y);
-        ("finite elements".to_string(), station.y.iter().zip(&station.v).map(at).collect())
+    let known = |station: &Station| -> Vec<(f64, f64)> {
+        station.y.iter().zip(&station.v).map(|(y, v)| (*y, v.x)).collect()
+    };
+    let line = |(k, station): (usize, &Station)| {
+        let known = known(station);
+        let points = move |record: &Record| {
+            let [x, y, u] = ["x", "y", "u"].map(|name| record.column("stations", name));
+            let subtracted = |j: usize| match is_difference {
+                true => differences(&known, &[(y[j], 0.0)]).map_or(f64::NAN, |found| found[0]),
+                false => 0.0,
+            };
+            let points = (k * POINTS + 5..((k + 1) * POINTS).min(u.len())).step_by(10);
+            points.map(|j| (x[j] + scale * (u[j] - subtracted(j)), y[j])).collect()
+        };
+        let (name, spec) = (format!("{}, {}", row.variant, name(row)), row.run.spec.clone());
+        CurveOf { name, spec, points: Box::new(points) }
+    };
+    let exact = reference.stations.iter().map(|station| match is_difference {
+        true => (String::new(), known(station).iter().map(|(y, _)| (station.x, *y)).collect()),
+        false => {
+            let points = known(station).iter().map(|(y, u)| (station.x + scale * u, *y)).collect();
+            ("finite elements".to_string(), points)
+        }
     });
     CurvePanel {
-        title: format!("Re {}, {}", row.settings.re, name(row)),
-        x: Axis::linear(format!("x/H + {SCALE} u/U_b")),
+        title: format!("Re {}, {title}", row.settings.re),
+        x: Axis::linear(format!("x/H + {scale} {symbol}/U_b")),
         y: Axis::linear("y/H").range(0.0, 3.1),
-        lines: (0..STATIONS.len()).map(line).collect(),
+        lines: reference.stations.iter().enumerate().map(line).collect(),
         references: exact.chain([(String::new(), floor())]).collect(),
-        symbols: true,
+        symbols: !is_difference,
     }
 }
 
 /// Shear stress along the hill.
 fn shear(rows: &[&Row], reference: &HillReference) -> CurvePanel {
     let columns = ["x", "hill shear"];
-    let line = |row: &&Row| CurveOf::columns(name(row), row.run.spec.clone(), "wall", columns);
+    let line = |row: &&Row| {
+        let name = format!("{}, {}", row.variant, name(row));
+        CurveOf::columns(name, row.run.spec.clone(), "wall", columns)
+    };
     let exact = reference.wall.iter().map(|w| (w[0], w[1])).collect();
     let title = format!("Re {}: shear on the hill", rows[0].settings.re);
     let axes = ["x/H", "shear stress [ρ U_b²]"];
