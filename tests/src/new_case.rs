@@ -62,7 +62,8 @@ fn studies(tier: Tier) -> Studies {
     let spacing = Spacing::count(|s: &mut Decay| &mut s.n, "n = {}");
     let ladders = table.ladders(&[()], &["cubic", "quintic"], spacing);
     let accuracy = Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") };
-    let changes = [("none", "–", (|_| {}) as fn(&mut Decay)), ("dt/2", "time", |s| s.step *= 0.5)];
+    let changes: [(_, _, fn(&mut Decay)); 2] =
+        [("none", "–", |_| {}), ("dt/2", "time", |s| s.step *= 0.5)];
     let budgets = Budgets::new(&accuracy, "", vec![DECAY.changes("cubic", |_| {}, &changes)]);
     let long = DECAY.spec("cubic", |s| s.end = 5.0);
     let limit = StepLimit::proportional(&DECAY, "the wave", long, ("step", |_| 1.0), |_| None);

@@ -136,6 +136,16 @@ pub struct Stated {
 }
 
 impl Stated {
+    /// The words for a share against an exact reference. In the name, each `{setting}` is replaced by its
+    /// value.
+    pub fn new(settings: &Value, name: &str, against: &'static str) -> Self {
+        let all = settings.as_object().into_iter().flatten();
+        let name = all.fold(name.to_string(), |name, (setting, _)| {
+            name.replace(&format!("{{{setting}}}"), &Self::setting(settings, setting))
+        });
+        Self { name, against, uncertainty: None, unit: "" }
+    }
+
     /// A setting as it is written in the words.
     pub fn setting(settings: &Value, name: &str) -> String {
         settings[name].as_f64().map_or_else(|| settings[name].to_string(), touchstone_report::exact)

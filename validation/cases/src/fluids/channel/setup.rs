@@ -9,7 +9,7 @@ use touchstone_maths::exact::StartUp;
 use touchstone_solver::{DivergenceBounds, PlaneWall, Role, Tait};
 
 use super::{COUETTE, ChannelCase, POISEUILLE, TIMES};
-use crate::fluids::unit_flow::LIMIT_BOX;
+use crate::{fluids::unit_flow::LIMIT_BOX, stabilisation::Stabilisation};
 
 touchstone_base::settings! {
     /// Settings of a flow between two plates. Lengths by the width L, times by L²/ν.
@@ -55,16 +55,8 @@ touchstone_base::settings! {
         least_steps: usize ["-"] in 1..=100000 = 1,
         /// ghosts include the curvature -F/ν of the velocity at the wall
         wall_curvature: bool = false,
-        /// artificial viscosity, linear
-        alpha: f64 ["-"] in 0.0..=10.0 = 0.1,
-        /// artificial viscosity, quadratic
-        beta: f64 ["-"] in 0.0..=10.0 = 0.0,
-        /// XSPH: ε
-        xsph: f64 ["-"] in 0.0..=0.99 = 0.5,
-        /// artificial stress, strength ξ
-        xi: f64 ["-"] in 0.0..=10.0 = 0.3,
-        /// artificial stress, exponent n
-        exponent: usize ["-"] in 1..=16 = 4,
+        /// stabilising terms of the paper
+        stabilisation: Stabilisation = Stabilisation::default(),
         /// density diffusion δ
         diffusion: f64 ["-"] in 0.0..=10.0 = 0.1,
         /// particle shifting, amplitude

@@ -113,17 +113,10 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         title,
         picture,
         metric: L2_WORST.into(),
-        stated: |settings| Stated {
-            name: {
-                let [re, rows, end] =
-                    ["re", "rows", "end"].map(|name| Stated::setting(settings, name));
-                format!(
-                    "velocity at Re {re}, {rows} rows, largest relative rms from νt/L² = 0.1 to {end}"
-                )
-            },
-            against: "the exact series",
-            uncertainty: None,
-            unit: "",
+        stated: |settings| {
+            let name =
+                "velocity at Re {re}, {rows} rows, largest relative rms from νt/L² = 0.1 to {end}";
+            Stated::new(settings, name, "the exact series")
         },
         beside: None,
         runs: accuracy.finest(&[flow.case().recommended.variant, "seed"]),

@@ -124,18 +124,13 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         title: "Periodic hill",
         picture: "periodic-hill-pictures",
         metric: L2_U.into(),
-        stated: |settings| Stated {
-            name: {
-                let [re, t, n] = ["re", "end", "n"].map(|name| Stated::setting(settings, name));
-                let left = left_of_start(settings);
-                format!(
-                    "velocity at ten stations at Re {re} and t = {t} H/U_b{left}, {n} spacings a hill, rms \
-                     in U_b"
-                )
-            },
-            against: "finite elements",
-            uncertainty: settings["re"].as_f64().and_then(reference).map(|of| of.uncertainty),
-            unit: "",
+        stated: |settings| {
+            let name =
+                "velocity at ten stations at Re {re} and t = {end} H/U_b{left}, {n} spacings a \
+                        hill, rms in U_b"
+                    .replace("{left}", &left_of_start(settings));
+            let uncertainty = settings["re"].as_f64().and_then(reference).map(|of| of.uncertainty);
+            Stated { uncertainty, ..Stated::new(settings, &name, "finite elements") }
         },
         beside: None,
         runs,

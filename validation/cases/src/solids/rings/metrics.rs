@@ -38,6 +38,27 @@ touchstone_base::metrics! {
     HISTORIES = "histories" ["-"] "the largest of x_c_rms, width_rms and height_rms/outer diameter";
 }
 
+/// Metrics that need the phases of contact, which begin and end between two steps; extremes of every step;
+/// and energies, which need the stress.
+pub const STEPWISE: &[MetricKey] = &[
+    RESTITUTION,
+    RESTITUTION_ERROR,
+    IMPULSE,
+    IMPULSE_ERROR,
+    T_IMPULSE_1,
+    T_IMPULSE_99,
+    CONTACT_BEGIN_ERROR,
+    CONTACT_END_ERROR,
+    STRETCH_MOST,
+    ENERGY_GAINED,
+];
+
+/// Distances of the path and the extents of a ring over time from those of finite elements.
+pub const OF_HISTORIES: [MetricKey; 6] =
+    [X_C_WORST, X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS, HISTORIES];
+/// Least and largest extents.
+pub const OF_EXTENTS: [MetricKey; 4] = [WIDTH_MIN, WIDTH_MIN_ERROR, HEIGHT_MAX, HEIGHT_MAX_ERROR];
+
 /// Numbers that finite elements have too, and the distance from these.
 pub const COMPARED: [(MetricKey, MetricKey); 3] = [
     (RESTITUTION, RESTITUTION_ERROR),

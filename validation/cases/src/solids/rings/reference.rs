@@ -11,7 +11,7 @@ use super::{
     RingSettings,
     metrics::{
         COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ContactPhase, HEIGHT_RMS, HISTORIES,
-        IMPULSE_ERROR, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
+        IMPULSE_ERROR, OF_HISTORIES, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
     },
 };
 use crate::solids::solid::{LAGRANGIAN, Quantities, largest, quantities};
@@ -49,9 +49,6 @@ pub fn outlines(speed: f64, time: f64) -> Vec<Vec<(f64, f64)>> {
     };
     ["outer", "inner"].map(face).into_iter().filter(|line| !line.is_empty()).collect()
 }
-
-/// Metrics of the comparison at every time of the reference.
-const OF_HISTORIES: [MetricKey; 6] = [RMS[0], RMS[1], RMS[2], RMS[3], HISTORIES, X_C_WORST];
 
 /// Points of [`RingReference::COLUMNS`] over t \[L/c0\].
 type Histories = [Vec<(f64, f64)>; 4];

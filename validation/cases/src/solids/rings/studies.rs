@@ -2,10 +2,7 @@
 //! step limits, maps, errors of constants that the gates must detect.
 
 use nalgebra::Vector2;
-use touchstone_base::{
-    mutation::Constant,
-    record::{MetricKey, Status},
-};
+use touchstone_base::{mutation::Constant, record::Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Drawn, Draws, Statement, SubmittedCurve},
@@ -23,38 +20,19 @@ use super::{
     RUBBER_RINGS, RingSettings, is_stable,
     measure::{PICTURES, halves},
     metrics::{
-        self, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ENERGY_GAINED, HEIGHT_MAX, HEIGHT_MAX_ERROR,
-        HEIGHT_RMS, HISTORIES, HOLES_LEAST, IMPULSE, IMPULSE_ERROR, PIECES_MOST, RESTITUTION,
-        RESTITUTION_ERROR, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT, V_C_RMS, WIDTH_MIN,
-        WIDTH_MIN_ERROR, WIDTH_RMS, X_C_RMS, X_C_WORST,
+        self, HISTORIES, HOLES_LEAST, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, TORN_AT,
+        WIDTH_MIN, WIDTH_MIN_ERROR,
     },
     plan::{Group, Row, SPEED, Table, table},
     reference::{self, RingReference},
 };
 use crate::solids::solid::{ElasticBody, LAGRANGIAN, corners};
 
-/// Metrics that need the phases of contact, which begin and end between two steps; extremes of every step;
-/// and energies, which need the stress.
-const STEPWISE: &[MetricKey] = &[
-    RESTITUTION,
-    RESTITUTION_ERROR,
-    IMPULSE,
-    IMPULSE_ERROR,
-    T_IMPULSE_1,
-    T_IMPULSE_99,
-    CONTACT_BEGIN_ERROR,
-    CONTACT_END_ERROR,
-    STRETCH_MOST,
-    ENERGY_GAINED,
-];
-
 /// The variants whose histories and comparisons are shown.
 const SHOWN: [&str; 2] = [LAGRANGIAN, "seed"];
 
 /// Centre, velocity and extents of the ring on the right, represented by both rings with uniform stretch.
 fn path_and_extents() -> SubmittedCurve {
-    let errors = [X_C_WORST, X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS, HISTORIES];
-    let extents = [WIDTH_MIN, WIDTH_MIN_ERROR, HEIGHT_MAX, HEIGHT_MAX_ERROR];
     SubmittedCurve {
         columns: &[("x_c", "m"), ("v_c", "m/s"), ("width", "m"), ("height", "m")],
         about: "of the ring on the right: place and velocity of its centre of mass along the line of flight, \
@@ -80,7 +58,7 @@ fn path_and_extents() -> SubmittedCurve {
             let [left, right] = halves(&starts);
             [put(left, -1.0), put(right, 1.0)].concat()
         },
-        metrics: [&errors[..], &extents[..]].concat(),
+        metrics: [&metrics::OF_HISTORIES[..], &metrics::OF_EXTENTS].concat(),
         coarsen: None,
         shown: ("series", &["t", "x_c", "v_c", "width", "height"]),
     }
@@ -120,7 +98,7 @@ pub fn facts() -> Facts {
     Facts {
         statement: Statement::new(free, &[metrics::ALL]),
         is_stable: Some(is_stable),
-        stepwise: STEPWISE,
+        stepwise: metrics::STEPWISE,
         curve: Some(path_and_extents()),
         sealed: Some(SEALED),
         ..Facts::default()
@@ -207,17 +185,11 @@ fn card(accuracy: &Accuracy) -> Card {
         picture: "rubber-rings-pictures",
         metric: HISTORIES.into(),
         stated: |settings| {
+            let name = "centre, width and height over time at {speed} c0 each, spacing {spacing} L, in \
+                        outer diameters";
             let of: Option<RingSettings> = touchstone_base::settings::of_json(settings).ok();
-            Stated {
-                name: format!(
-                    "centre, width and height over time at {} c0 each, spacing {} L, in outer diameters",
-                    Stated::setting(settings, "speed"),
-                    Stated::setting(settings, "spacing")
-                ),
-                against: "finite elements",
-                uncertainty: of.and_then(|of| Some(RingReference::of("seed", &of)?.uncertainty)),
-                unit: "",
-            }
+            let uncertainty = of.and_then(|of| Some(RingReference::of("seed", &of)?.uncertainty));
+            Stated { uncertainty, ..Stated::new(settings, name, "finite elements") }
         },
         beside: None,
         // Both variants with five layers: their ladders end at different spacings.

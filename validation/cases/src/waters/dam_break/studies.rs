@@ -86,21 +86,17 @@ fn card(accuracy: &Accuracy) -> Card {
         picture: "dam-break-martin-moyce",
         metric: FRONT_AWAY.at(2),
         stated: |settings| {
-            let n = &settings["n"];
+            let front = "front at T = 2 in the tank of Martin & Moyce, a/dx = {n}";
+            let in_tank = "front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}";
             let (name, uncertainty, unit) = match scene(settings) {
                 Some(Experiment::MartinMoyce) => {
-                    let name = format!("front at T = 2 in the tank of Martin & Moyce, a/dx = {n}");
-                    (name, 2.0 * vof("martin_moyce", "front_at_1")[1], "a")
+                    (front, 2.0 * vof("martin_moyce", "front_at_1")[1], "a")
                 }
-                Some(Experiment::Lobovsky) => {
-                    let name =
-                        format!("front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}");
-                    (name, vof("lobovsky", "front_at_2")[1], "H")
-                }
-                None => (format!("front, dx a part of 1/{n} of the column"), f64::NAN, "a"),
+                Some(Experiment::Lobovsky) => (in_tank, vof("lobovsky", "front_at_2")[1], "H"),
+                None => ("front, dx a part of 1/{n} of the column", f64::NAN, "a"),
             };
             let uncertainty = Some(uncertainty).filter(|u| u.is_finite());
-            Stated { name, against: "volume of fluid", uncertainty, unit }
+            Stated { uncertainty, unit, ..Stated::new(settings, name, "volume of fluid") }
         },
         beside: Some(against_the_experiment),
         runs: accuracy.finest(&[DAM_BREAK.recommended.variant, "seed"]),
@@ -202,17 +198,13 @@ fn comparisons(tier: Tier, table: &Table) -> Comparisons {
             ("tank: front at t = 2 [H]", FRONT_AWAY.at(2), vof("lobovsky", "front_at_2")[1]),
             ("tank: level at H4, rms [H]", LEVEL_AWAY[3].into(), vof("lobovsky", "H4_at_5")[1]),
         ];
+        let [front, levels] = [
+            "tank: front after its best shift, rms [H]",
+            "tank: levels after their best shift, rms [H]",
+        ];
         let mut measured_tank = vec![
-            (
-                "tank: front after its best shift, rms [H]",
-                FRONT.rms_shifted.into(),
-                TANK_FRONT_SPREAD,
-            ),
-            (
-                "tank: levels after their best shift, rms [H]",
-                LEVELS.rms_shifted.into(),
-                LEVEL_SPREAD,
-            ),
+            (front, FRONT.rms_shifted.into(), TANK_FRONT_SPREAD),
+            (levels, LEVELS.rms_shifted.into(), LEVEL_SPREAD),
         ];
         let sensors = ["impulse on P1", "impulse on P2", "impulse on P3", "impulse on P4"];
         for (k, what) in sensors.into_iter().enumerate() {
