@@ -399,7 +399,7 @@ const DAMAGES: [(&str, Damage, &[&str]); 52] = [
     (
         "a particle of another problem",
         |f| set(f, 3, 1, "100000"),
-        &["results.csv, line 3, column id", "none of the problem"],
+        &["results.csv, line 3, column id", "not in the problem"],
     ),
     ("a negative density", |f| set(f, 6, 6, "-1"), &["results.csv, line 6, column density"]),
     ("a particle less", |f| drop_lines(f, 4, 5), &["results.csv, line 2, column id", "1 of"]),

@@ -294,7 +294,8 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
 
 /// Names, without their times, of the metrics that say how accurate a run is.
 fn accuracy_metrics(studies: &Studies) -> Vec<String> {
-    let errors = studies.of::<Accuracy>().map(|of| &of.error.name);
+    let errors = studies.of::<Accuracy>().flat_map(|of| [Some(&of.error), of.judged.as_ref()]);
+    let errors = errors.flatten().map(|metric| &metric.name);
     let compared = studies.of::<Comparisons>().flat_map(|of| &of.0).map(|of| &of.metric.name);
     let shown = studies.of::<Card>().map(|of| &of.metric.name);
     errors.chain(compared).chain(shown).map(|name| base_of(name).to_string()).collect()
