@@ -10,6 +10,7 @@ use touchstone_base::{
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::Step,
+    composed::SettingChange,
     problem::Simple,
     snapshot::Snapshot,
     studies::{Accuracy, Budgets, Spacing, StepLimit, StepLimits},
@@ -62,7 +63,7 @@ fn studies(tier: Tier) -> Studies {
     let spacing = Spacing::count(|s: &mut Decay| &mut s.n, "n = {}");
     let ladders = table.ladders(&[()], &["cubic", "quintic"], spacing);
     let accuracy = Accuracy { ladders, ..Accuracy::new("decay", ERROR, "Error [-]") };
-    let changes: [(_, _, fn(&mut Decay)); 2] =
+    let changes: [SettingChange<Decay>; 2] =
         [("none", "–", |_| {}), ("dt/2", "time", |s| s.step *= 0.5)];
     let budgets = Budgets::new(&accuracy, "", vec![DECAY.changes("cubic", |_| {}, &changes)]);
     let long = DECAY.spec("cubic", |s| s.end = 5.0);

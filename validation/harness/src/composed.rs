@@ -249,15 +249,14 @@ impl<T: Settings> Composed<T> {
         RunGates { name: format!("{}.{run}", self.name) }
     }
 
-    /// Runs of a variant, each with one change of the settings that `base` sets: the change, the part of the
-    /// error that it affects, and the function that sets it.
+    /// Runs of a variant, each with one change of the settings that `base` sets.
     pub fn changes(
         &self,
         variant: &str,
         base: impl Fn(&mut T),
-        changes: &[(&str, &'static str, fn(&mut T))],
+        changes: &[SettingChange<T>],
     ) -> Vec<Change> {
-        let change = |(what, part, set): &(&str, &'static str, fn(&mut T))| {
+        let change = |(what, part, set): &SettingChange<T>| {
             let mut settings = self.chosen(variant, &base);
             set(&mut settings);
             Change::new(*what, part, self.spec_of(variant, &settings))
@@ -265,6 +264,9 @@ impl<T: Settings> Composed<T> {
         changes.iter().map(change).collect()
     }
 }
+
+/// A change of settings: its name, the part of the error that it affects, and the function that sets it.
+pub type SettingChange<T> = (&'static str, &'static str, fn(&mut T));
 
 /// The gates of a run, called `case.run.metric`.
 pub struct RunGates {

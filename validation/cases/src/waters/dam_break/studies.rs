@@ -11,6 +11,7 @@ use touchstone_base::{
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Draws, Statement, SubmittedCurve},
+    composed::SettingChange,
     pictures::Film,
     studies::{
         Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, Picture, PicturePanel,
@@ -290,11 +291,8 @@ fn in_the_tank(table: &Table) -> Accuracy {
     }
 }
 
-/// A change of the settings.
-type Set = fn(&mut DamSettings);
-
-/// The change, the affected part of the error, and the function that sets it.
-const CHANGES: [(&str, &str, Set); 6] = [
+/// Changes of both variants.
+const CHANGES: [SettingChange<DamSettings>; 6] = [
     ("none", "all", |_| ()),
     ("dt/2", "time", |s| s.water.courant *= 0.5),
     ("dx/2", "spacing", |s| s.n *= 2),
@@ -303,9 +301,9 @@ const CHANGES: [(&str, &str, Set); 6] = [
     ("h/dx 2", "smoothing", |s| s.water.h_over_dx = 2.0),
 ];
 /// Changes of terms that `modern` has alone, and of terms that `seed` has alone.
-const OF_MODERN: [(&str, &str, Set); 1] =
+const OF_MODERN: [SettingChange<DamSettings>; 1] =
     [("delta/2", "density diffusion", |s| s.water.diffusion *= 0.5)];
-const OF_SEED: [(&str, &str, Set); 2] = [
+const OF_SEED: [SettingChange<DamSettings>; 2] = [
     ("no artificial stress", "artificial stress", |s| s.water.xi = 0.0),
     ("no XSPH", "XSPH", |s| s.water.xsph = 0.0),
 ];
