@@ -1,4 +1,4 @@
-//! Packs what `references/peers` has of runs of other codes, for `src/peers.rs`.
+//! Packs the runs and answers of other codes in `references/peers`, for `src/peers.rs` and `src/probes.rs`.
 
 use std::{io, path::Path};
 
@@ -6,7 +6,8 @@ use std::{io, path::Path};
 mod pack;
 
 fn main() -> io::Result<()> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../references/peers/records");
+    let peers = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../references/peers");
     println!("cargo:rerun-if-changed=../base/pack.rs");
-    pack::write("peers", &pack::entries(&folder)?)
+    pack::write("probes", &pack::entries(&peers.join("probes"))?)?;
+    pack::write("peers", &pack::entries(&peers.join("records"))?)
 }

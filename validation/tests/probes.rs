@@ -52,6 +52,25 @@ fn recommended_variants_pass_every_question() {
     assert_eq!(cases, all.len());
 }
 
+/// The answers on the page are those of this program.
+#[test]
+fn stored_answers_are_the_answers_of_our_variants() {
+    let folder = tempfile::tempdir().unwrap();
+    let stored = Path::new(env!("CARGO_MANIFEST_DIR")).join("../references/peers/probes");
+    for variant in ["modern", "plain", "seed"] {
+        let text = read(&stored.join(format!("touchstone_{variant}.json")));
+        let before: Vec<Value> = serde_json::from_str(&text).unwrap();
+        let (now, _) = answers(folder.path(), &format!("--variant {variant}"));
+        for verdict in ["pass", "fail", "not applicable"] {
+            assert_eq!(
+                ids(&before, verdict),
+                ids(&now, verdict),
+                "{variant}: `probe --json` again"
+            );
+        }
+    }
+}
+
 /// Walls of particles are another problem for the same questions.
 #[test]
 fn walls_of_particles_drag_and_hold_the_fluid() {

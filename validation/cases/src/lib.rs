@@ -5,6 +5,7 @@ pub mod lattice;
 pub mod limitations;
 pub mod page;
 pub mod peers;
+pub mod probes;
 pub mod solids;
 pub mod stabilisation;
 pub mod stiffness;

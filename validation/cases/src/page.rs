@@ -22,7 +22,7 @@ use touchstone_report::{
     code, counted, percent, plain, sig,
 };
 
-use crate::{limitations, stiffness, time};
+use crate::{limitations, probes, stiffness, time};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
@@ -48,8 +48,8 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         });
     }
     let mut sections: Vec<Section> = suite.cases.iter().map(case_section).collect();
-    sections.extend([reading(suite), stiffness::section(suite), time::section(suite)]);
-    sections.push(references_section());
+    sections.extend([probes::section(), reading(suite)]);
+    sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
     sections.extend([verdicts(suite), limitations::section(suite), about(suite)]);
     Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
