@@ -12,7 +12,7 @@ use touchstone_harness::{
     gates::GateIndex,
     make::BatchResult,
     plan, sealed,
-    studies::{Accuracy, Budgets, Card, Change, FINER, Map, STARTS},
+    studies::{Accuracy, Budgets, Card, Change, Curves, FINER, Map, Picture, STARTS},
     suite,
 };
 
@@ -44,6 +44,24 @@ fn a_case_has_one_error_and_its_ladders_show_what_is_recommended() {
         let shown = [Some(recommended.variant), recommended.papers];
         let mut of_card = studies.first::<Card>().into_iter().flat_map(|card| &card.runs);
         assert!(of_card.all(|run| shown.contains(&Some(&*run.variant))), "{name}");
+    }
+}
+
+/// A caption begins with the question that its figure answers.
+#[test]
+fn every_figure_answers_a_question() {
+    for (case, tier) in CASES.iter().flat_map(|case| [(case, Tier::Quick), (case, Tier::Full)]) {
+        let studies = case.studies(tier);
+        let curves = studies.of::<Curves>().map(|of| of.caption.clone());
+        let maps = studies.of::<Map>().map(|of| of.caption.clone());
+        let pictures = studies.of::<Picture>().map(|of| of.texts[2].to_string());
+        let films = studies.of::<Picture>().filter_map(|of| of.film.as_ref());
+        let films = films.map(|film| film.caption.to_string());
+        for caption in curves.chain(maps).chain(pictures).chain(films) {
+            let first = caption.split_once("? ").map(|(question, _)| question);
+            let is_one = |question: &str| !question.replace("et al. ", "").contains(". ");
+            assert!(first.is_some_and(is_one), "{}: {caption}", case.name());
+        }
     }
 }
 

@@ -144,7 +144,7 @@ mod tests {
         let times = (0..100).map(|k| f64::from(k) / 3.0);
         let places = [0, 1].map(|_| columns.numbers(times.clone(), Scale::Linear));
         assert_eq!((places, columns.0.len()), ([0, 0], 1));
-        assert_eq!(columns.0[0][1], json!(0.33));
+        assert_eq!(columns.0[0][1], json!(0.3));
         let few = columns.numbers(times.take(5), Scale::Linear);
         assert_eq!(columns.0[few][1], json!(0.33333));
     }

@@ -152,7 +152,7 @@ mod tests {
             read
         };
         let frames = [read(), read(), read()];
-        assert!(frames[0].len() == (width * height) as usize && frames[0] != frames[1]);
+        assert!(frames[0].len() == (width.div_ceil(2) * height) as usize && frames[0] != frames[1]);
         assert!(frames[1] != frames[2]);
         let html = film.markup().into_string();
         assert!(html.contains("alt=\"A line turns.\" src=\"data:image/png;base64,"), "{html}");

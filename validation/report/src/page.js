@@ -90,7 +90,7 @@
     var cell = make("td", { colspan: row.children.length });
     var on = make("p", {}, "");
     row.children[5].childNodes.forEach(function (node) { on.appendChild(node.cloneNode(true)); });
-    on.append(", by " + text(row, 6));
+    on.append("; evidence: " + text(row, 6));
     cell.appendChild(on);
     text(row, 7).split(" ").forEach(function (number) {
       cell.appendChild(make("p", {}, document.getElementById("r" + number).textContent));

@@ -318,7 +318,8 @@ impl Writer {
     fn figure(&mut self, id: &str, caption: &str, drawing: &Markup) -> Markup {
         self.figures += 1;
         // A caption begins with the question that the figure answers.
-        let (question, rest) = caption.split_at(caption.find("? ").map_or(0, |at| at + 1));
+        let end = caption.find("? ").or_else(|| caption.strip_suffix('?').map(str::len));
+        let (question, rest) = caption.split_at(end.map_or(0, |at| at + 1));
         html! {
             figure id=(id) aria-label=(aloud(caption)) {
                 (drawing)
@@ -383,6 +384,16 @@ mod tests {
         crate::check_page(&html).expect("a page that opens");
         assert!(!html.contains("<figure"), "{html}");
         assert!(html.contains("<p id=\"empty\">No figure: "), "{html}");
+    }
+
+    #[test]
+    fn the_question_of_a_figure_stands_out() {
+        let shown = |caption: &str| Writer::default().figure("f", caption, &html! {}).into_string();
+        assert!(shown("Why? So.").contains("<b>Figure 1. Why?</b> So.</figcaption>"));
+        assert!(
+            shown("Why, *then*?").contains("<b>Figure 1. Why, <em>then</em>?</b></figcaption>")
+        );
+        assert!(shown("So.").contains("<b>Figure 1. </b>So.</figcaption>"));
     }
 
     #[test]
