@@ -1,21 +1,13 @@
 //! Checkpoints: the complete state of a run, as bytes from which it continues with equal bits.
 //!
-//! A run is one or several simulations in sequence. A checkpoint holds each completed simulation with its
-//! observations, and the one under way. To continue, a case starts as always: it makes its scene and its
-//! observers, and each simulation then takes its state and the observers' from the checkpoint, so that no
-//! case knows whether it continues.
+//! To continue, a run starts as always: it makes its scene and its observers. Then it restores the states of
+//! simulation and observers from the checkpoint, so that no case knows whether its run continues.
 
-use std::collections::VecDeque;
-use std::sync::Mutex;
 use std::time::Duration;
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
-use touchstone_base::{
-    files::FileError,
-    lock,
-    record::{Cost, Status},
-};
+use touchstone_base::{files::FileError, record::Cost};
 use touchstone_solver::{
     Checkpoint, Interval, Numbers, Particle, PreviousStep, Progress, Role, Stepper, Symmetric, Work,
 };
@@ -42,9 +34,6 @@ pub(crate) struct Stage {
     pub cost: Cost,
     /// The frames of it by time \[s\], and how many were tried.
     pub frames: Option<(Vec<(f64, String)>, usize)>,
-    /// How it ended, if it did.
-    #[serde(with = "as_json")]
-    pub ended: Option<Status>,
 }
 
 /// The state of a simulation: a [`Checkpoint`], of which particles keep deviatoric stresses alone of their
@@ -221,55 +210,17 @@ pub(crate) fn restore<X: Numbers>(
     Ok((stage, seen))
 }
 
-/// Writes a checkpoint: the simulations of the run as bytes, one after another.
-pub type Write<'a> = &'a (dyn Fn(&[Vec<u8>]) -> Result<(), FileError> + Sync);
+/// Writes the bytes of a checkpoint.
+pub type Write<'a> = &'a (dyn Fn(&[u8]) -> Result<(), FileError> + Sync);
 
 /// The checkpoints of one run.
 pub struct Checkpoints<'a> {
     /// Wall time from one to the next.
-    pub(crate) every: Duration,
-    write: Write<'a>,
-    simulations: Mutex<Simulations>,
-}
-
-struct Simulations {
-    /// Simulations of the checkpoint that the run has not reached yet.
-    earlier: VecDeque<Vec<u8>>,
-    /// Completed simulations, in order.
-    ended: Vec<Vec<u8>>,
-    /// Was the last checkpoint written?
-    is_over: bool,
-}
-
-impl<'a> Checkpoints<'a> {
-    /// Checkpoints every so often, of a run that continues from the simulations of an earlier one, or that
-    /// begins if there are none.
-    pub fn new(every: Duration, earlier: Vec<Vec<u8>>, write: Write<'a>) -> Self {
-        let simulations =
-            Simulations { earlier: earlier.into(), ended: Vec::new(), is_over: false };
-        Self { every, write, simulations: Mutex::new(simulations) }
-    }
-
-    /// The state from which the next simulation continues; `None` if it starts.
-    pub(crate) fn next(&self) -> Option<Vec<u8>> {
-        lock(&self.simulations).earlier.pop_front()
-    }
-
-    /// Keeps a completed simulation for later checkpoints.
-    pub(crate) fn keep(&self, ended: Vec<u8>) {
-        lock(&self.simulations).ended.push(ended);
-    }
-
-    /// Writes a checkpoint: the completed simulations, and the one under way. After the last one, at an
-    /// interrupt, none is written.
-    pub(crate) fn write(&self, under_way: Vec<u8>, is_last: bool) -> Result<(), RunError> {
-        let mut simulations = lock(&self.simulations);
-        if simulations.is_over {
-            return Ok(());
-        }
-        simulations.is_over = is_last;
-        Ok((self.write)(&[&simulations.ended[..], &[under_way]].concat())?)
-    }
+    pub every: Duration,
+    /// The checkpoint from which the run continues; none if it begins.
+    pub earlier: Option<Vec<u8>>,
+    /// Writes a checkpoint in place of the one before.
+    pub write: Write<'a>,
 }
 
 #[cfg(test)]

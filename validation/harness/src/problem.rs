@@ -14,7 +14,7 @@ use touchstone_base::{
 use touchstone_solver::{Divergence, Numbers, Outcome, Role, Stepper};
 
 use crate::{
-    checkpoint::as_json,
+    checkpoint::{self, as_json},
     context::Context,
     error::RunError,
     foreign::{self, Foreign, OurSums},
@@ -24,7 +24,7 @@ use crate::{
     outline::Outline,
     relation::{Relation, TIME, View},
     rules::Rules,
-    runner::{self, Drive, check_size},
+    runner::{self, Observations, ObservedRun, Schedule, check_size},
     size::Size,
     snapshot::{DENSITY, ParticleArrays, Snapshot},
 };
@@ -179,16 +179,10 @@ type Resumed<P> = fn(&P, &<P as Problem>::Watch, &mut <P as Problem>::Simulation
 pub struct Calls<P: Problem> {
     after_step: Vec<(&'static str, AfterStep<P>)>,
     every_step: Vec<(&'static str, EveryStep<P>)>,
-    at: Vec<(&'static str, Reads, At<P>)>,
+    /// With `true`, velocities and extra fields are of the very time.
+    at: Vec<(&'static str, bool, At<P>)>,
     of_ours: Vec<(&'static str, OfOurs<P>)>,
     resumed: Option<Resumed<P>>,
-}
-
-/// Data that a function at a time of interest reads.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Reads {
-    All,
-    Positions,
 }
 
 impl<P: Problem> Default for Calls<P> {
@@ -222,7 +216,7 @@ impl<P: Problem> Calls<P> {
     /// Calls a function at each of the times of interest, with its number.
     #[must_use]
     pub fn at(mut self, name: &'static str, call: At<P>) -> Self {
-        self.at.push((name, Reads::All, call));
+        self.at.push((name, true, call));
         self
     }
 
@@ -230,7 +224,7 @@ impl<P: Problem> Calls<P> {
     /// leapfrog may be half a step old, which costs no pair sweep.
     #[must_use]
     pub fn at_positions(mut self, name: &'static str, call: At<P>) -> Self {
-        self.at.push((name, Reads::Positions, call));
+        self.at.push((name, false, call));
         self
     }
 
@@ -254,6 +248,61 @@ impl<P: Problem> Calls<P> {
     pub fn control(mut self, name: &'static str, call: OfOurs<P>, resumed: Resumed<P>) -> Self {
         self.resumed = Some(resumed);
         self.of_ours(name, call)
+    }
+}
+
+/// A problem with its functions, and the state of its run.
+struct Observed<'a, P: Problem> {
+    problem: &'a P,
+    calls: Calls<P>,
+    state: ObservedState<P::Watch>,
+}
+
+impl<P: Problem> Observations<P::Extra> for Observed<'_, P> {
+    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<P::Extra>) -> ControlFlow<()> {
+        let Self { problem, calls, state: ObservedState { watch, .. } } = self;
+        if let Some((_, call)) = calls.after_step.get(k) {
+            return call(problem, watch, &Snapshot::ours(simulation));
+        }
+        (calls.every_step[k - calls.after_step.len()].1)(problem, watch, simulation);
+        ControlFlow::Continue(())
+    }
+
+    fn save(&self) -> Result<Vec<u8>, RunError> {
+        Ok(postcard::to_allocvec(&self.state)?)
+    }
+
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), RunError> {
+        self.state = checkpoint::read(bytes)?;
+        Ok(())
+    }
+}
+
+/// The simulation of a problem, and its observations.
+struct Run<'a, P: Problem> {
+    simulation: Box<P::Simulation>,
+    seen: Observed<'a, P>,
+}
+
+impl<P: Problem> ObservedRun<P::Extra> for Run<'_, P> {
+    fn parts(&mut self) -> (&mut dyn Stepper<P::Extra>, &mut dyn Observations<P::Extra>) {
+        (self.simulation.stepper(), &mut self.seen)
+    }
+
+    fn at(&mut self, k: usize, reached: usize) {
+        let Observed { problem, calls, state: ObservedState { watch, record } } = &mut self.seen;
+        match calls.at.get(k) {
+            Some((.., call)) => {
+                let now = Snapshot::ours(self.simulation.stepper());
+                call(problem, watch, &now, reached, record);
+            }
+            None => (calls.of_ours[k - calls.at.len()].1)(problem, watch, &mut self.simulation),
+        }
+    }
+
+    fn resumed(&mut self) {
+        let Observed { problem, calls, state } = &self.seen;
+        calls.resumed.iter().for_each(|call| call(problem, &state.watch, &mut self.simulation));
     }
 }
 
@@ -498,46 +547,26 @@ trait Parted: Problem {
         let scene = Snapshot::of(0.0, scene);
         let mut simulation = self.built(parts, &View::default())?;
         let record = self.begun(spec, threads, &brief);
-        let (times, output) = (self.times(), OptionalOutput::of(spec));
+        let times = self.times();
         let watch = self.watch(&scene, &Snapshot::ours(simulation.stepper()));
         drop(scene);
-        let Calls { after_step, every_step, at, of_ours, resumed } =
-            self.calls(Calls::default(), output);
-        let mut seen = ObservedState { watch, record };
-        let (dt, eos) = (brief.rules.dt(), brief.medium.eos);
-        let mut drive = Drive::new(&mut *simulation, dt, &times, eos, &mut seen)
-            .steps(brief.least_steps, size.sweeps);
-        for (name, call) in after_step {
-            let call = move |seen: &mut ObservedState<Self::Watch>,
-                             s: &dyn Stepper<Self::Extra>| {
-                call(self, &mut seen.watch, &Snapshot::ours(s))
-            };
-            drive = drive.after_step(name, call);
-        }
-        for (name, call) in every_step {
-            drive = drive.after_step(name, move |seen, s| {
-                call(self, &mut seen.watch, s);
-                ControlFlow::Continue(())
-            });
-        }
-        for (name, reads, call) in at {
-            let call = move |seen: &mut ObservedState<Self::Watch>, s: &mut Self::Simulation, k| {
-                let now = Snapshot::ours(s.stepper());
-                call(self, &mut seen.watch, &now, k, &mut seen.record);
-            };
-            drive = match reads {
-                Reads::All => drive.at(name, call),
-                Reads::Positions => drive.at_positions(name, call),
-            };
-        }
-        for (name, call) in of_ours {
-            drive = drive.at(name, move |seen, s, _| call(self, &mut seen.watch, s));
-        }
-        if let Some(resumed) = resumed {
-            drive = drive.resumed(move |seen, s| resumed(self, &seen.watch, s));
-        }
-        let ended = drive.run(context)?;
-        let ObservedState { watch, mut record } = seen;
+        let calls = self.calls(Calls::default(), OptionalOutput::of(spec));
+        let every_step = calls.every_step.iter().map(|(name, _)| *name);
+        let of_ours = calls.of_ours.iter().map(|(name, _)| (*name, true));
+        let schedule = Schedule {
+            dt: brief.rules.dt(),
+            least: brief.least_steps,
+            sweeps: size.sweeps,
+            times: &times,
+            pressure: &pressure(&brief.medium),
+            after_step: calls.after_step.iter().map(|(name, _)| *name).chain(every_step).collect(),
+            at: calls.at.iter().map(|(name, now, _)| (*name, *now)).chain(of_ours).collect(),
+        };
+        let seen = Observed { problem: self, calls, state: ObservedState { watch, record } };
+        let mut run = Run { simulation, seen };
+        let ended = schedule.run(&mut run, context)?;
+        let Run { mut simulation, seen: Observed { state, .. } } = run;
+        let ObservedState { watch, mut record } = state;
         ended.put(&mut record);
         self.measure(watch, &Snapshot::ours(simulation.stepper()), &mut record);
         Ok(record)

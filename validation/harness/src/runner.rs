@@ -6,19 +6,16 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use serde::{Serialize, de::DeserializeOwned};
 use touchstone_base::{
     lock,
     mutation::Constant,
     record::{Cost, Record, Status, digest},
 };
-use touchstone_solver::{
-    Divergence, EquationOfState, Numbers, Observer, Outcome, Stepper, Symmetric,
-};
+use touchstone_solver::{Divergence, Numbers, Observer, Outcome, Stepper, Symmetric};
 
 pub use crate::context::{Context, RunProgress};
 use crate::{
-    checkpoint::{self, Checkpoints, Stage},
+    checkpoint::{self, Stage},
     clock::Reading,
     error::RunError,
     frames::{self, Frames},
@@ -69,22 +66,23 @@ pub(crate) fn diverged(Divergence { step, time, fault }: Divergence) -> Status {
 }
 
 /// A simulation and all that is observed of it.
-trait ObservedRun<X: Numbers> {
+pub(crate) trait ObservedRun<X: Numbers> {
     /// The simulation, and the observers of its steps.
     fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Observations<X>);
     /// Calls the k-th of the functions that are called at times, at this one of the times.
     fn at(&mut self, k: usize, reached: usize);
-    /// Restores changes of the simulation by a case that are not part of a checkpoint.
+    /// Restores changes of the simulation by a case that are not part of a
+    /// [`Checkpoint`](touchstone_solver::Checkpoint), such as a force.
     fn resumed(&mut self);
 }
 
 /// The observations of a run.
-trait Observations<X: Numbers> {
+pub(crate) trait Observations<X: Numbers> {
     /// Calls the k-th of the functions that are called after every step.
     fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> ControlFlow<()>;
-    /// Everything that changes of it, as bytes.
+    /// All data that change during the run, as bytes.
     fn save(&self) -> Result<Vec<u8>, RunError>;
-    /// Takes it over from bytes.
+    /// Restores these data from bytes.
     fn restore(&mut self, bytes: &[u8]) -> Result<(), RunError>;
 }
 
@@ -92,23 +90,32 @@ trait Observations<X: Numbers> {
 type RunMut<'a, X> = &'a mut dyn ObservedRun<X>;
 
 /// Times and callbacks of a run, with their names in a profile.
-struct Schedule<'a> {
-    dt: f64,
+pub(crate) struct Schedule<'a> {
+    /// Longest step \[s\].
+    pub dt: f64,
     /// Steps to each of the times at least.
-    least: usize,
-    /// Pair sweeps a step.
-    sweeps: f64,
-    times: &'a [f64],
-    pressure: Box<dyn Fn(f64) -> f64>,
+    pub least: usize,
+    /// Pair sweeps a step, for the estimate of the cost.
+    pub sweeps: f64,
+    /// Times of interest, ascending, the end last \[s\].
+    pub times: &'a [f64],
+    /// The pressure \[Pa\] of a density \[kg/m³\], which frames show.
+    pub pressure: &'a dyn Fn(f64) -> f64,
     /// After every step.
-    after_step: Vec<&'static str>,
-    /// At each of the times, and whether it reads quantities of that very time.
-    at: Vec<(&'static str, bool)>,
+    pub after_step: Vec<&'static str>,
+    /// At each of the times, and whether it reads quantities of that very time: velocities of a leapfrog lag
+    /// by half a step unless a pair sweep brings them up.
+    pub at: Vec<(&'static str, bool)>,
 }
 
 impl Schedule<'_> {
-    /// Steps a run through the times.
-    fn run<X: Numbers>(&self, run: RunMut<X>, context: &Context) -> Result<Ended, RunError> {
+    /// Steps a run through the times. The cost covers the stepping, and separately the observing.
+    ///
+    /// # Errors
+    /// If the run would exceed the limit of time or memory, the folder of frames cannot be made, or the
+    /// checkpoint does not fit. A frame or a checkpoint that cannot be written is reported to
+    /// [`Context::lost`].
+    pub fn run<X: Numbers>(&self, run: RunMut<X>, context: &Context) -> Result<Ended, RunError> {
         let (simulation, _) = run.parts();
         let factor = context.spec.mutation.map_or(1.0, |m| m.factor_of(Constant::TimeStep));
         let (dt, least) = (self.dt * factor, self.least as f64 / factor);
@@ -125,26 +132,18 @@ impl Schedule<'_> {
             tell(&size);
         }
         let mut watch = self.watch(context)?;
-        let ended = watch.go_on(run)?;
+        watch.go_on(run)?;
         let (simulation, _) = run.parts();
-        if context.profile && ended.is_none() {
+        if context.profile {
             let names = self.after_step.iter().chain(self.at.iter().map(|(name, _)| name));
             let names = names.copied().chain([profile::FRAMES, profile::CHECKPOINTS]).collect();
             let earlier = watch.cost.breakdown.take().unwrap_or_default();
             watch.profiler = Some(Profiler::new(simulation, names, earlier));
         }
         watch.show(simulation, dt);
-        let ended = match ended {
-            Some(status) => Ended { status, cost: watch.cost.clone(), state: state(simulation) },
-            None => watch.step_through(run, dt, least),
-        };
-        let (simulation, seen) = run.parts();
-        if let Some(checkpoints) = context.checkpoints {
-            let stage = watch.stage(ended.cost.clone(), Some(ended.status.clone()));
-            checkpoints.keep(checkpoint::save(simulation, stage, seen.save()?)?);
-        }
+        let ended = watch.step_through(run, dt, least);
         if let Some(at_the_end) = context.at_the_end {
-            let columns = frames::columns(&simulation.particles(), &self.pressure);
+            let columns = frames::columns(&run.parts().0.particles(), self.pressure);
             *lock(at_the_end) = Some(columns);
         }
         Ok(ended)
@@ -153,7 +152,7 @@ impl Schedule<'_> {
     /// The watch over a run that begins.
     fn watch<'a>(&'a self, context: &'a Context<'a>) -> Result<Monitor<'a>, RunError> {
         let end = self.times.last().copied().unwrap_or_default();
-        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, &self.pressure));
+        let frames = context.frames.as_ref().map(|frames| Frames::new(frames, end, self.pressure));
         Ok(Monitor {
             context,
             schedule: self,
@@ -227,12 +226,6 @@ impl Monitor<'_> {
         Ended { status, cost, state: state(simulation) }
     }
 
-    /// How far the run is, after a step or at its end.
-    fn stage(&self, cost: Cost, ended: Option<Status>) -> Stage {
-        let frames = self.frames.as_ref().map(Frames::written);
-        Stage { reached: self.reached, cost, frames, ended }
-    }
-
     /// Writes the due frames, unless interrupted: the continued run writes them.
     fn write_frames<X: Numbers>(&mut self, simulation: &dyn Stepper<X>) {
         let Some(frames) = &mut self.frames else { return };
@@ -268,10 +261,10 @@ impl Monitor<'_> {
         {
             self.profiler.iter().for_each(|profiler| profiler.observe(profile::CHECKPOINTS));
             let cost = self.cost(simulation, now - self.start);
-            let stage = self.stage(cost, None);
+            let frames = self.frames.as_ref().map(Frames::written);
+            let stage = Stage { reached: self.reached, cost, frames };
             let saved = seen.save().and_then(|seen| checkpoint::save(simulation, stage, seen));
-            let is_last = self.context.is_interrupted();
-            let written = saved.and_then(|bytes| checkpoints.write(bytes, is_last));
+            let written = saved.and_then(|bytes| Ok((checkpoints.write)(&bytes)?));
             written.unwrap_or_else(|error| self.context.lose(&error));
             self.saved = self.context.now().wall;
         }
@@ -318,7 +311,7 @@ impl Monitor<'_> {
             }
             let start = self.context.now();
             if let Some(tell) = self.context.at_times {
-                tell(until, frames::columns(&run.parts().0.particles(), &self.schedule.pressure));
+                tell(until, frames::columns(&run.parts().0.particles(), self.schedule.pressure));
             }
             for (k, (name, _)) in at.iter().enumerate() {
                 self.profiler.iter().for_each(|profiler| profiler.observe(name));
@@ -335,33 +328,24 @@ impl Monitor<'_> {
         self.ended(simulation, Status::Completed)
     }
 
-    /// Goes on from a checkpoint if there is one; how the simulation ended, if it did.
-    fn go_on<X: Numbers>(&mut self, run: RunMut<X>) -> Result<Option<Status>, RunError> {
-        let bytes = self.context.checkpoints.and_then(Checkpoints::next);
-        let Some(bytes) = bytes else { return Ok(None) };
+    /// Goes on from a checkpoint, if there is one.
+    fn go_on<X: Numbers>(&mut self, run: RunMut<X>) -> Result<(), RunError> {
+        let earlier = self.context.checkpoints.and_then(|of| of.earlier.as_deref());
+        let Some(bytes) = earlier else { return Ok(()) };
         let (simulation, seen) = run.parts();
-        let (Stage { reached, cost, frames, ended }, earlier) =
-            checkpoint::restore(&bytes, simulation)?;
+        let (Stage { reached, cost, frames }, earlier) = checkpoint::restore(bytes, simulation)?;
         seen.restore(&earlier)?;
-        let next = self.schedule.times.get(reached).unwrap_or(&self.end);
-        if reached > self.schedule.times.len() || simulation.time() > *next {
+        if self.schedule.times.get(reached).is_none_or(|next| simulation.time() > *next) {
             return Err(RunError::Checkpoint("times of another run"));
         }
-        let resumed = cost.resumed + u32::from(ended.is_none());
-        self.cost = Cost { threads: self.cost.threads, resumed, ..cost };
+        self.cost = Cost { threads: self.cost.threads, resumed: cost.resumed + 1, ..cost };
         self.reached = reached;
         if let (Some(all), Some(written)) = (&mut self.frames, frames) {
             all.go_on(written);
         }
-        if ended.is_none() {
-            self.write_frames(simulation);
-        }
-        if ended == Some(Status::Completed) {
-            // No step: refreshes the derived data for calls at the end.
-            simulation.advance(self.end, 1.0, &mut ());
-        }
+        self.write_frames(simulation);
         run.resumed();
-        Ok(ended)
+        Ok(())
     }
 }
 
@@ -413,142 +397,6 @@ pub fn check_size(
     Ok(size)
 }
 
-/// A function that is called after every step with the observations of the run.
-type AfterStep<'a, X, S> = Box<dyn Fn(&mut S, &dyn Stepper<X>) -> ControlFlow<()> + 'a>;
-/// A function that is called at the k-th of the times of interest.
-type At<'a, D, S> = Box<dyn Fn(&mut S, &mut D, usize) + 'a>;
-/// A function that is called when a run continues from a checkpoint.
-type Resumed<'a, D, S> = Box<dyn Fn(&S, &mut D) + 'a>;
-
-/// The observations of a run, and the calls after every step.
-struct CaseObservations<'a, X: Numbers, S> {
-    seen: &'a mut S,
-    after_step: Vec<AfterStep<'a, X, S>>,
-}
-
-impl<X: Numbers, S: Serialize + DeserializeOwned> Observations<X> for CaseObservations<'_, X, S> {
-    fn after_step(&mut self, k: usize, simulation: &dyn Stepper<X>) -> ControlFlow<()> {
-        self.after_step[k](self.seen, simulation)
-    }
-    fn save(&self) -> Result<Vec<u8>, RunError> {
-        Ok(postcard::to_allocvec(&*self.seen)?)
-    }
-    fn restore(&mut self, bytes: &[u8]) -> Result<(), RunError> {
-        *self.seen = checkpoint::read(bytes)?;
-        Ok(())
-    }
-}
-
-/// A simulation with the functions of a case.
-struct CaseRun<'a, X: Numbers, D: ?Sized, S> {
-    simulation: &'a mut D,
-    seeing: CaseObservations<'a, X, S>,
-    at: Vec<At<'a, D, S>>,
-    resumed: Resumed<'a, D, S>,
-}
-
-impl<X, D, S> ObservedRun<X> for CaseRun<'_, X, D, S>
-where
-    X: Numbers,
-    D: Stepper<X> + ?Sized,
-    S: Serialize + DeserializeOwned,
-{
-    fn parts(&mut self) -> (&mut dyn Stepper<X>, &mut dyn Observations<X>) {
-        (self.simulation.stepper(), &mut self.seeing)
-    }
-    fn at(&mut self, k: usize, reached: usize) {
-        self.at[k](self.seeing.seen, self.simulation, reached);
-    }
-    fn resumed(&mut self) {
-        (self.resumed)(self.seeing.seen, self.simulation);
-    }
-}
-
-/// A simulation with its observations on its way through the times of interest.
-///
-/// The functions of a case cannot change their captures: all changing data is in `S`, which checkpoints hold.
-pub struct Drive<'a, X: Numbers, D: ?Sized, S> {
-    run: CaseRun<'a, X, D, S>,
-    schedule: Schedule<'a>,
-}
-
-impl<'a, X, D, S> Drive<'a, X, D, S>
-where
-    X: Numbers,
-    D: Stepper<X> + ?Sized,
-    S: Serialize + DeserializeOwned,
-{
-    /// Steps of `dt` \[s\] through `times` \[s\], ascending, with all that is observed of them. Frames show
-    /// the pressure of this equation of state.
-    pub fn new(
-        simulation: &'a mut D,
-        dt: f64,
-        times: &'a [f64],
-        eos: impl EquationOfState,
-        seen: &'a mut S,
-    ) -> Self {
-        let seeing = CaseObservations { seen, after_step: Vec::new() };
-        let run = CaseRun { simulation, seeing, at: Vec::new(), resumed: Box::new(|_, _| {}) };
-        let (least, sweeps, after_step, at) = (1, 2.0, Vec::new(), Vec::new());
-        let pressure = Box::new(move |density| eos.pressure(density));
-        Self { run, schedule: Schedule { dt, least, sweeps, times, pressure, after_step, at } }
-    }
-
-    /// Makes at least `least` steps from each time to the next, and states the pair sweeps of a step for the
-    /// estimate of the cost.
-    pub fn steps(mut self, least: usize, sweeps: f64) -> Self {
-        (self.schedule.least, self.schedule.sweeps) = (least, sweeps);
-        self
-    }
-
-    /// Calls a function after every step, after the earlier ones; a profile shows its time under this name.
-    pub fn after_step(
-        mut self,
-        name: &'static str,
-        call: impl Fn(&mut S, &dyn Stepper<X>) -> ControlFlow<()> + 'a,
-    ) -> Self {
-        self.run.seeing.after_step.push(Box::new(call));
-        self.schedule.after_step.push(name);
-        self
-    }
-
-    /// Calls a function at each of the times, with its number.
-    pub fn at(mut self, name: &'static str, call: impl Fn(&mut S, &mut D, usize) + 'a) -> Self {
-        self.run.at.push(Box::new(call));
-        self.schedule.at.push((name, true));
-        self
-    }
-
-    /// Calls a function at each of the times that reads only positions and densities, or accepts velocities
-    /// of a leapfrog that lag by half a step, which costs no pair sweep.
-    pub fn at_positions(
-        mut self,
-        name: &'static str,
-        call: impl Fn(&mut S, &mut D, usize) + 'a,
-    ) -> Self {
-        self.run.at.push(Box::new(call));
-        self.schedule.at.push((name, false));
-        self
-    }
-
-    /// Calls a function when a run continues from a checkpoint: for changes of a simulation by a case that
-    /// are not part of a [`Checkpoint`](touchstone_solver::Checkpoint), such as a force.
-    pub fn resumed(mut self, resumed: impl Fn(&S, &mut D) + 'a) -> Self {
-        self.run.resumed = Box::new(resumed);
-        self
-    }
-
-    /// Steps through the times. The cost covers the stepping, and separately the observing.
-    ///
-    /// # Errors
-    /// If the run would exceed the limit of time or memory, the folder of frames cannot be made, or the
-    /// checkpoint does not fit. A frame or a checkpoint that cannot be written is reported to
-    /// [`Context::lost`].
-    pub fn run(mut self, context: &Context) -> Result<Ended, RunError> {
-        self.schedule.run(&mut self.run, context)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use std::path::PathBuf;
@@ -564,7 +412,10 @@ mod tests {
     };
 
     use super::*;
-    use crate::method::{Method, Parts};
+    use crate::{
+        checkpoint::Checkpoints,
+        method::{Method, Parts},
+    };
 
     const DT: f64 = 1e-3;
 
@@ -582,20 +433,51 @@ mod tests {
         (method.build)(Parts::new(medium, domain, particles)).unwrap()
     }
 
-    /// Takes so long over each step, and does something at one of them.
-    struct Slow<F> {
-        each: Duration,
-        at: (u64, F),
-    }
+    /// An observer of the steps of a wave, with its name.
+    type Watcher<'a> = (&'static str, &'a dyn Fn(&dyn Stepper<()>));
 
-    impl<F: Fn()> Slow<F> {
-        fn after_step(&self, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
-            std::thread::sleep(self.each);
-            if simulation.work().steps == self.at.0 {
-                (self.at.1)();
-            }
+    impl Observations<()> for &[Watcher<'_>] {
+        fn after_step(&mut self, k: usize, simulation: &dyn Stepper<()>) -> ControlFlow<()> {
+            self[k].1(simulation);
             ControlFlow::Continue(())
         }
+        fn save(&self) -> Result<Vec<u8>, RunError> {
+            Ok(Vec::new())
+        }
+        fn restore(&mut self, _: &[u8]) -> Result<(), RunError> {
+            Ok(())
+        }
+    }
+
+    /// A wave with its observers, which pauses at times that call functions.
+    struct Observed<'a> {
+        wave: Box<dyn Stepper<()>>,
+        watchers: &'a [Watcher<'a>],
+    }
+
+    impl ObservedRun<()> for Observed<'_> {
+        fn parts(&mut self) -> (&mut dyn Stepper<()>, &mut dyn Observations<()>) {
+            (&mut *self.wave, &mut self.watchers)
+        }
+        fn at(&mut self, _: usize, _: usize) {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        fn resumed(&mut self) {}
+    }
+
+    /// The end of a wave after steps of `dt` \[s\] through these times, and the wave.
+    fn run(
+        dt: f64,
+        times: &[f64],
+        watchers: &[Watcher],
+        at: Vec<(&'static str, bool)>,
+        context: &Context,
+    ) -> (Ended, Box<dyn Stepper<()>>) {
+        let after_step = watchers.iter().map(|(name, _)| *name).collect();
+        let pressure = &|density| density - 1.0;
+        let schedule = Schedule { dt, least: 1, sweeps: 2.0, times, pressure, after_step, at };
+        let mut run = Observed { wave: wave(), watchers };
+        (schedule.run(&mut run, context).unwrap(), run.wave)
     }
 
     /// Steps of a large disk take a second: an interrupt was checked after 64 of them.
@@ -603,14 +485,9 @@ mod tests {
     fn an_interrupt_is_obeyed_after_the_next_step() {
         let flag = AtomicBool::new(false);
         let context = Context { interrupt: Some(&flag), ..Context::default() };
-        let set = || flag.store(true, Ordering::Relaxed);
-        let slow = Slow { each: Duration::ZERO, at: (3, set) };
-        let (times, mut wave) = ([1000.0 * DT], wave());
-        let Ended { status, cost, .. } =
-            Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                .after_step("slow", |_, simulation| slow.after_step(simulation))
-                .run(&context)
-                .unwrap();
+        let set = |wave: &dyn Stepper<()>| flag.store(wave.work().steps == 3, Ordering::Relaxed);
+        let (Ended { status, cost, .. }, _) =
+            run(DT, &[1000.0 * DT], &[("set", &set)], Vec::new(), &context);
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
         assert!(cost.steps <= 4, "{} steps", cost.steps);
     }
@@ -618,11 +495,8 @@ mod tests {
     /// With steps of ten times the limit.
     #[test]
     fn a_divergence_is_told_after_the_steps_that_were_completed() {
-        let mut wave = wave();
-        let Ended { status, cost, .. } =
-            Drive::new(&mut *wave, 1.0, &[100.0], Tait::new(1.0, 1.0), &mut ())
-                .run(&Context::default())
-                .unwrap();
+        let (Ended { status, cost, .. }, _) =
+            run(1.0, &[100.0], &[], Vec::new(), &Context::default());
         let Status::Diverged { step, .. } = status else { panic!("the run is {status}") };
         assert_eq!(step, cost.steps, "completed steps, as the message and as the cost have them");
     }
@@ -634,12 +508,9 @@ mod tests {
         let watched = Context { progress: Some(&show), ..Context::default() };
         let mut states = Vec::new();
         for context in [Context::default(), watched] {
-            let slow = Slow { each: Duration::from_millis(25), at: (0, || ()) };
-            let (times, mut wave) = ([10.0 * DT, 40.0 * DT], wave());
-            Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                .after_step("slow", |_, simulation| slow.after_step(simulation))
-                .run(&context)
-                .unwrap();
+            let slow = |_: &dyn Stepper<()>| std::thread::sleep(Duration::from_millis(25));
+            let (_, wave) =
+                run(DT, &[10.0 * DT, 40.0 * DT], &[("slow", &slow)], Vec::new(), &context);
             states.push((state(&*wave), wave.work().steps));
         }
         assert_eq!(states[0], states[1]);
@@ -670,20 +541,15 @@ mod tests {
     /// A run of ten and thirty steps to two times, with an observer after each step of this duration
     /// \[wall s, processor s\] by the clock, or without: its cost, and how often the clock was read.
     fn clocked(observer: Option<[f64; 2]>) -> (Cost, usize) {
-        let (clock, times, mut wave) = (Ticking::default(), [10.0 * DT, 40.0 * DT], wave());
+        let clock = Ticking::default();
         let tell = |_| clock.read();
         let context = Context { clock: Some(&tell), ..Context::default() };
         let [wall, cpu] = observer.unwrap_or_default();
-        let observe = |_: &mut (), _: &dyn Stepper<()>| {
-            clock.pass(wall, cpu);
-            ControlFlow::Continue(())
-        };
-        let mut nothing = ();
-        let mut drive = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut nothing);
-        if observer.is_some() {
-            drive = drive.after_step("observer", observe);
-        }
-        let Ended { status, cost, .. } = drive.run(&context).unwrap();
+        let observe = |_: &dyn Stepper<()>| clock.pass(wall, cpu);
+        let watchers: &[Watcher] = &[("observer", &observe)];
+        let watchers = if observer.is_some() { watchers } else { &[] };
+        let (Ended { status, cost, .. }, _) =
+            run(DT, &[10.0 * DT, 40.0 * DT], watchers, Vec::new(), &context);
         assert_eq!((status, cost.steps), (Status::Completed, 40));
         (cost, clock.reads.into_inner())
     }
@@ -708,21 +574,20 @@ mod tests {
         assert_eq!(reads, 9, "once at first, then around each of two stretches and two times");
     }
 
-    /// A run of forty steps that is interrupted after this number, or continues from the simulations of a
-    /// checkpoint: its cost, and its last checkpoint.
+    /// A run of forty steps that is interrupted after this number, or continues from a checkpoint: its
+    /// cost, and its last checkpoint.
     fn resumable(
         stop_at: Option<u64>,
-        earlier: Vec<Vec<u8>>,
+        earlier: Option<Vec<u8>>,
         frames: Option<(PathBuf, usize)>,
-    ) -> (Cost, Vec<Vec<u8>>) {
-        let (clock, flag, mut wave) = (Ticking::default(), AtomicBool::new(false), wave());
-        let (times, kept) = ([40.0 * DT], Mutex::new(Vec::new()));
-        let write = |simulations: &[Vec<u8>]| {
-            *kept.lock().unwrap() = simulations.to_vec();
+    ) -> (Cost, Option<Vec<u8>>) {
+        let (clock, flag, kept) = (Ticking::default(), AtomicBool::new(false), Mutex::new(None));
+        let write = |state: &[u8]| {
+            *kept.lock().unwrap() = Some(state.to_vec());
             clock.pass(1000.0, 1000.0);
             Ok(())
         };
-        let checkpoints = Checkpoints::new(Duration::MAX, earlier, &write);
+        let checkpoints = Checkpoints { every: Duration::MAX, earlier, write: &write };
         let tell = |_| clock.read();
         let context = Context {
             clock: Some(&tell),
@@ -731,22 +596,19 @@ mod tests {
             frames,
             ..Context::default()
         };
-        let stop = |_: &mut (), simulation: &dyn Stepper<()>| {
-            flag.store(Some(simulation.work().steps) == stop_at, Ordering::Relaxed);
-            ControlFlow::Continue(())
+        let stop = |wave: &dyn Stepper<()>| {
+            flag.store(Some(wave.work().steps) == stop_at, Ordering::Relaxed);
         };
-        let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("stop", stop)
-            .run(&context)
-            .unwrap();
+        let (Ended { cost, .. }, _) =
+            run(DT, &[40.0 * DT], &[("stop", &stop)], Vec::new(), &context);
         (cost, kept.into_inner().unwrap())
     }
 
     /// The cost of a continued run includes the part before the checkpoint.
     #[test]
     fn what_a_run_took_before_a_checkpoint_is_added_once() {
-        let (whole, _) = resumable(None, Vec::new(), None);
-        let (first, kept) = resumable(Some(10), Vec::new(), None);
+        let (whole, _) = resumable(None, None, None);
+        let (first, kept) = resumable(Some(10), None, None);
         let (second, _) = resumable(None, kept, None);
         assert_eq!((first.steps, second.steps, second.resumed), (10, 40, 1));
         // One tick before each step, and one after the last.
@@ -761,15 +623,16 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let frames = folder.path().join("vtk");
         std::fs::create_dir_all(frames.join("particles_0001.vtu/in the way")).unwrap();
-        let (times, mut wave, lost) = ([40.0 * DT], wave(), Mutex::new(Vec::new()));
+        let lost = Mutex::new(Vec::new());
         let lose = |error: &RunError| lost.lock().unwrap().push(error.to_string());
         let tries = AtomicUsize::new(0);
-        let write = |_: &[Vec<u8>]| {
+        let write = |_: &[u8]| {
             tries.fetch_add(1, Ordering::Relaxed);
             let reason = std::io::Error::other("the disk is full");
             Err(touchstone_base::files::FileError::File { path: "checkpoint".into(), reason })
         };
-        let checkpoints = Checkpoints::new(Duration::from_secs(30), Vec::new(), &write);
+        let every = Duration::from_secs(30);
+        let checkpoints = Checkpoints { every, earlier: None, write: &write };
         let clock = Ticking::default();
         let tell = |_| clock.read();
         let context = Context {
@@ -779,8 +642,7 @@ mod tests {
             clock: Some(&tell),
             ..Context::default()
         };
-        let Ended { status, cost, .. } =
-            Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ()).run(&context).unwrap();
+        let (Ended { status, cost, .. }, _) = run(DT, &[40.0 * DT], &[], Vec::new(), &context);
         assert_eq!((status, cost.steps), (Status::Completed, 40));
         let lost = lost.into_inner().unwrap();
         let of = |name: &str| lost.iter().filter(|words| words.contains(name)).count();
@@ -801,7 +663,7 @@ mod tests {
             [0, 1, 2, 3].map(|k| index.contains(&format!("particles_000{k}.vtu")))
         };
         let frames = Some((folder.path().to_path_buf(), 4));
-        let (_, kept) = resumable(Some(25), Vec::new(), frames.clone());
+        let (_, kept) = resumable(Some(25), None, frames.clone());
         assert_eq!(names(), [true, true, false, false]);
         std::fs::remove_file(folder.path().join("particles_0000.vtu")).unwrap();
         resumable(None, kept, frames);
@@ -813,8 +675,8 @@ mod tests {
     fn a_frame_that_an_interrupt_left_unwritten_is_written_when_the_run_goes_on() {
         let [alone, cut] = [(), ()].map(|()| tempfile::tempdir().unwrap());
         let frames = |folder: &tempfile::TempDir| Some((folder.path().to_path_buf(), 4));
-        resumable(None, Vec::new(), frames(&alone));
-        let (cost, kept) = resumable(Some(10), Vec::new(), frames(&cut));
+        resumable(None, None, frames(&alone));
+        let (cost, kept) = resumable(Some(10), None, frames(&cut));
         let name = "particles_0000.vtu";
         assert!(cost.steps == 10 && !cut.path().join(name).exists());
         resumable(None, kept, frames(&cut));
@@ -824,55 +686,16 @@ mod tests {
         }
     }
 
-    /// Each of several simulations continues from its own bytes, and completed ones do not run again.
-    #[test]
-    fn simulations_that_have_ended_keep_their_order_and_do_not_go_on() {
-        let ends = [10.0 * DT, 20.0 * DT, 30.0 * DT];
-        let run = |stop: bool, earlier: Vec<Vec<u8>>| {
-            let (flag, kept) = (AtomicBool::new(false), Mutex::new(Vec::new()));
-            let write = |simulations: &[Vec<u8>]| {
-                *kept.lock().unwrap() = simulations.to_vec();
-                Ok(())
-            };
-            let checkpoints = Checkpoints::new(Duration::MAX, earlier, &write);
-            let (interrupt, checkpoints) = (Some(&flag), Some(&checkpoints));
-            let context = Context { interrupt, checkpoints, ..Context::default() };
-            let costs = ends.map(|end| {
-                let (times, mut wave) = ([end], wave());
-                let after = |_: &mut (), simulation: &dyn Stepper<()>| {
-                    let is_last = end == ends[2] && simulation.work().steps == 15;
-                    flag.store(stop && is_last, Ordering::Relaxed);
-                    ControlFlow::Continue(())
-                };
-                let Ended { cost, .. } =
-                    Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-                        .after_step("stop", after)
-                        .run(&context)
-                        .unwrap();
-                (cost.steps, cost.resumed)
-            });
-            (costs, kept.into_inner().unwrap())
-        };
-        let (costs, kept) = run(true, Vec::new());
-        assert_eq!((costs, kept.len()), ([(10, 0), (20, 0), (15, 0)], 3));
-        assert_eq!(run(false, kept).0, [(10, 0), (20, 0), (30, 1)]);
-    }
-
     /// 9,999 frames of two steps were written before an interrupt was checked.
     #[test]
     fn an_interrupt_is_obeyed_between_the_frames_of_one_step() {
         let folder = tempfile::tempdir().unwrap();
-        let (flag, times, mut wave) = (AtomicBool::new(false), [2.0 * DT], wave());
+        let flag = AtomicBool::new(false);
         let frames = Some((folder.path().into(), 9999));
         let context = Context { frames, interrupt: Some(&flag), ..Context::default() };
-        let stop = |_: &mut (), _: &dyn Stepper<()>| {
-            flag.store(true, Ordering::Relaxed);
-            ControlFlow::Continue(())
-        };
-        let Ended { status, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("stop", stop)
-            .run(&context)
-            .unwrap();
+        let stop = |_: &dyn Stepper<()>| flag.store(true, Ordering::Relaxed);
+        let (Ended { status, .. }, _) =
+            run(DT, &[2.0 * DT], &[("stop", &stop)], Vec::new(), &context);
         assert!(matches!(status, Status::Interrupted { .. }), "{status:?}");
         let count = std::fs::read_dir(folder.path()).unwrap().count();
         assert!(count <= 2, "{count} files of frames were written after the interrupt");
@@ -880,14 +703,11 @@ mod tests {
 
     /// One run of 400 steps with two observers after each and one at each of two times.
     fn profiled(profile: bool) -> (String, touchstone_solver::Work, Cost, usize) {
-        let slow = Slow { each: Duration::from_micros(200), at: (0, || ()) };
-        let (times, mut wave) = ([10.0 * DT, 400.0 * DT], wave());
-        let Ended { cost, .. } = Drive::new(&mut *wave, DT, &times, Tait::new(1.0, 1.0), &mut ())
-            .after_step("slow", |_, simulation| slow.after_step(simulation))
-            .after_step("quick", |_, _| ControlFlow::Continue(()))
-            .at("pause", |_, _, _| std::thread::sleep(Duration::from_millis(20)))
-            .run(&Context { profile, ..Context::default() })
-            .unwrap();
+        let slow = |_: &dyn Stepper<()>| std::thread::sleep(Duration::from_micros(200));
+        let watchers: &[Watcher] = &[("slow", &slow), ("quick", &|_| ())];
+        let context = Context { profile, ..Context::default() };
+        let (Ended { cost, .. }, wave) =
+            run(DT, &[10.0 * DT, 400.0 * DT], watchers, vec![("pause", true)], &context);
         (state(&*wave), wave.work(), cost, wave.data().column_bytes)
     }
 

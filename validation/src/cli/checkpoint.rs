@@ -1,6 +1,5 @@
 //! The file of a checkpoint in the folder of a run. Its first line names the format and has the digest of
-//! everything after it; the second line is the requested run and the lengths of the simulations in bytes, as
-//! JSON; then follow the simulations as bytes.
+//! everything after it; the second line is the requested run as JSON; then follows its state as bytes.
 
 use std::path::Path;
 
@@ -18,7 +17,7 @@ pub const CHECKPOINT: &str = "checkpoint";
 /// Begins the first line; the version of the format follows.
 const MAGIC: &str = "touchstone checkpoint";
 /// Version of the format.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// The requested run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -36,19 +35,18 @@ pub struct ResumableRun {
     pub allow_long: bool,
 }
 
-/// Writes a checkpoint of these simulations, in place of an earlier one.
-pub fn write(folder: &OutputFolder, asked: &ResumableRun, of: &[Vec<u8>]) -> Result<(), FileError> {
-    folder.write(CHECKPOINT, &bytes(asked, of)).map(|_| ())
+/// Writes a checkpoint of a run in this state, in place of an earlier one.
+pub fn write(folder: &OutputFolder, asked: &ResumableRun, state: &[u8]) -> Result<(), FileError> {
+    folder.write(CHECKPOINT, &bytes(asked, state)).map(|_| ())
 }
 
-fn bytes(asked: &ResumableRun, simulations: &[Vec<u8>]) -> Vec<u8> {
-    let lengths: Vec<usize> = simulations.iter().map(Vec::len).collect();
-    let head = serde_json::to_value((asked, lengths)).unwrap_or_default();
-    let rest = [format!("{head}\n").into_bytes(), simulations.concat()].concat();
+fn bytes(asked: &ResumableRun, state: &[u8]) -> Vec<u8> {
+    let head = serde_json::to_value(asked).unwrap_or_default();
+    let rest = [format!("{head}\n").as_bytes(), state].concat();
     [format!("{MAGIC} {FORMAT} {}\n", sha256(&rest)).into_bytes(), rest].concat()
 }
 
-/// Reads the checkpoint of a folder: the requested run, and the simulations. `sources` is the digest of this
+/// Reads the checkpoint of a folder: the requested run, and its state. `sources` is the digest of this
 /// program's sources for a case.
 ///
 /// # Errors
@@ -56,7 +54,7 @@ fn bytes(asked: &ResumableRun, simulations: &[Vec<u8>]) -> Vec<u8> {
 pub fn read(
     folder: &Path,
     sources: fn(&str) -> String,
-) -> Result<(ResumableRun, Vec<Vec<u8>>), Failure> {
+) -> Result<(ResumableRun, Vec<u8>), Failure> {
     let path = folder.join(CHECKPOINT);
     let bytes = files::read(&path).map_err(|reason| {
         let words = "has no checkpoint that can be read";
@@ -72,7 +70,7 @@ fn parse(
     bytes: &[u8],
     path: &Path,
     sources: fn(&str) -> String,
-) -> Result<(ResumableRun, Vec<Vec<u8>>), String> {
+) -> Result<(ResumableRun, Vec<u8>), String> {
     let (first, rest) = split_line(bytes);
     let line = String::from_utf8_lossy(first);
     let Some(digest) = line.strip_prefix(&format!("{MAGIC} {FORMAT} ")) else {
@@ -81,31 +79,21 @@ fn parse(
             "{path:?} is not a checkpoint of format {FORMAT}: its first line is {line:?}"
         ));
     };
-    let damaged = || {
-        let words = "its content does not have the digest stated";
-        format!("the checkpoint {path:?} is damaged or truncated: {words}")
-    };
     if digest != sha256(rest) {
-        return Err(damaged());
+        let words = "its content does not have the digest stated";
+        return Err(format!("the checkpoint {path:?} is damaged or truncated: {words}"));
     }
-    let (head, mut rest) = split_line(rest);
-    let head: Result<(ResumableRun, Vec<usize>), _> =
-        serde_json::from_str(&String::from_utf8_lossy(head));
-    let (asked, lengths) = head.map_err(|reason| {
-        format!("the settings cannot be read from the checkpoint {path:?}: {reason}")
-    })?;
+    let (head, state) = split_line(rest);
+    let asked: ResumableRun =
+        serde_json::from_str(&String::from_utf8_lossy(head)).map_err(|reason| {
+            format!("the settings cannot be read from the checkpoint {path:?}: {reason}")
+        })?;
     let ours = sources(&asked.spec.case);
     if asked.sources != ours {
         let words = format!("was made by another build, of the sources {}", asked.sources);
         return Err(format!("the checkpoint {path:?} {words}; this one is of {ours}"));
     }
-    let mut simulations = Vec::new();
-    for length in lengths {
-        let (simulation, others) = rest.split_at_checked(length).ok_or_else(damaged)?;
-        simulations.push(simulation.to_vec());
-        rest = others;
-    }
-    Ok((asked, simulations))
+    Ok((asked, state.to_vec()))
 }
 
 /// The first line without its end, and the bytes after it.
@@ -131,7 +119,7 @@ mod tests {
         }
     }
 
-    fn parsed(bytes: &[u8]) -> Result<(ResumableRun, Vec<Vec<u8>>), String> {
+    fn parsed(bytes: &[u8]) -> Result<(ResumableRun, Vec<u8>), String> {
         parse(bytes, "f".as_ref(), |_| "abc".into())
     }
 
@@ -139,12 +127,12 @@ mod tests {
         /// Every byte counts: a file that was cut or changed anywhere is refused, and never half of it used.
         #[test]
         fn a_checkpoint_is_read_as_it_was_written_or_refused(
-            simulations in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..40), 0..4),
+            state in prop::collection::vec(any::<u8>(), 0..150),
             place in any::<prop::sample::Index>(),
             change in 1..=255_u8,
         ) {
-            let mut file = bytes(&asked(), &simulations);
-            prop_assert_eq!(parsed(&file).unwrap(), (asked(), simulations));
+            let mut file = bytes(&asked(), &state);
+            prop_assert_eq!(parsed(&file).unwrap(), (asked(), state));
             let place = place.index(file.len());
             prop_assert!(parsed(&file[..place]).is_err());
             file[place] ^= change;

@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, Once, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use humantime::format_rfc3339_seconds;
@@ -47,7 +47,7 @@ pub fn run(arguments: &arguments::Run, session: &Session) -> Outcome {
         let folder = Folder { output: OutputFolder::create(path)?, is_new: false };
         let asked = ResumableRun { every: arguments.checkpoint_every.or(asked.every), ..asked };
         output::GOES_ON.store(true, Ordering::Relaxed);
-        return carry_out(case, asked, earlier, Some(folder), arguments, session);
+        return carry_out(case, asked, Some(earlier), Some(folder), arguments, session);
     }
     let case =
         touchstone_cases::find_in(session.cases, arguments.case.as_deref().unwrap_or_default())?;
@@ -67,14 +67,14 @@ pub fn run(arguments: &arguments::Run, session: &Session) -> Outcome {
     let sources = (session.sources)(case.name());
     let &arguments::Run { vtk, allow_long, checkpoint_every: every, .. } = arguments;
     let asked = ResumableRun { spec, sources, every, vtk, allow_long };
-    carry_out(case, asked, Vec::new(), folder, arguments, session)
+    carry_out(case, asked, None, folder, arguments, session)
 }
 
-/// Runs, writes and judges; may continue from the simulations of a checkpoint.
+/// Runs, writes and judges; may continue from a checkpoint.
 fn carry_out(
     case: &dyn Case,
     asked: ResumableRun,
-    earlier: Vec<Vec<u8>>,
+    earlier: Option<Vec<u8>>,
     folder: Option<Folder>,
     arguments: &arguments::Run,
     session: &Session,
@@ -189,7 +189,7 @@ impl Lost {
 fn compute(
     case: &dyn Case,
     asked: &ResumableRun,
-    earlier: Vec<Vec<u8>>,
+    earlier: Option<Vec<u8>>,
     arguments: &arguments::Run,
     (folder, lost): (Option<&Folder>, &Lost),
     session: &Session,
@@ -197,22 +197,21 @@ fn compute(
     let _hold = asked.every.map(|_| Hold::new());
     let bar = Bar::new();
     let last = Mutex::default();
-    let told = Once::new(); // a run may consist of several simulations, the first of which is the longest
     let tell = |size: &Size| {
         if !arguments.json {
-            told.call_once(|| bar.say(&format!("estimate: {size}")));
+            bar.say(&format!("estimate: {size}"));
         }
     };
     let show = |progress: RunProgress| bar.show_run(progress);
     let lose = |error: &RunError| bar.suspend(|| lost.tell(error, folder));
     let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
-    let write = |simulations: &[Vec<u8>]| match folder {
-        Some(folder) => checkpoint::write(&folder.output, asked, simulations)
+    let write = |state: &[u8]| match folder {
+        Some(folder) => checkpoint::write(&folder.output, asked, state)
             .map(|()| *lock(&lost.good) = Some(SystemTime::now())),
         None => Ok(()),
     };
     let every = asked.every.map(|seconds| Duration::from_secs(seconds.into()));
-    let checkpoints = every.map(|every| Checkpoints::new(every, earlier, &write));
+    let checkpoints = every.map(|every| Checkpoints { every, earlier, write: &write });
     let context = Context {
         threads: rayon::current_num_threads(),
         frames,
