@@ -21,16 +21,14 @@ use crate::{
     study::Studies,
 };
 
-/// A method with settings, without their types.
-trait ConfiguredMethod {
-    fn settings(&mut self) -> &mut dyn Values;
-    fn pose(&self) -> Result<Box<dyn Posed>, RunError>;
-}
+/// The run with settings, without their types.
+type Pose = dyn Fn(&dyn Values) -> Result<Box<dyn Posed>, RunError>;
 
 /// A variant: its name, its method, and its settings before `--set`.
 pub struct Composition {
     variant: Variant,
-    setup: Box<dyn ConfiguredMethod>,
+    settings: Box<dyn Values>,
+    pose: Box<Pose>,
     /// Settings that none of its terms and walls reads: the variant refuses them.
     lacks: Vec<&'static str>,
     /// Settings of a run that differ from the variant's, as `key=value`.
@@ -53,23 +51,6 @@ pub struct Variants<T, M> {
     pub all: Compositions<T>,
 }
 
-/// A variant of compositions of one type.
-struct Alike<T, M> {
-    method: M,
-    settings: T,
-    pose: Rc<PoseBy<M, T>>,
-}
-
-impl<T: Settings, M> ConfiguredMethod for Alike<T, M> {
-    fn settings(&mut self) -> &mut dyn Values {
-        &mut self.settings
-    }
-
-    fn pose(&self) -> Result<Box<dyn Posed>, RunError> {
-        (self.pose)(&self.method, &self.settings)
-    }
-}
-
 impl<T: Settings, M: 'static> Variants<T, M> {
     /// An empty list of variants: the run of each method with settings.
     pub fn of<P: Problem + 'static>(
@@ -89,11 +70,11 @@ impl<T: Settings, M: 'static> Variants<T, M> {
         lacks: Vec<&'static str>,
         adjust: fn(&mut T),
     ) -> Self {
-        let pose = Rc::clone(&self.pose);
-        let mut setup = Box::new(Alike { method, settings: T::default(), pose });
-        adjust(&mut setup.settings);
+        let (pose, mut settings) = (Rc::clone(&self.pose), Box::new(T::default()));
+        adjust(&mut settings);
+        let pose = Box::new(move |settings: &dyn Values| pose(&method, &typed(settings)));
         let (variant, changed) = (Variant { name, about }, String::new());
-        self.all.all.push(Composition { variant, setup, lacks, changed });
+        self.all.all.push(Composition { variant, settings, pose, lacks, changed });
         self
     }
 }
@@ -114,6 +95,13 @@ impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
     }
 }
 
+/// Settings of another instance of this settings type.
+fn typed<T: Settings>(settings: &dyn Values) -> T {
+    let mut of_type = T::default();
+    of_type.put(&settings.values());
+    of_type
+}
+
 impl Composition {
     fn variants(all: &[Self]) -> Vec<Variant> {
         all.iter().map(|of| of.variant).collect()
@@ -132,7 +120,7 @@ impl Composition {
     /// The variant of a run, with the settings of the run.
     fn of_run(case: &'static str, all: Vec<Self>, spec: &RunSpec) -> Result<Self, RunError> {
         let mut chosen = Self::named(case, all, &spec.variant)?;
-        let settings = chosen.setup.settings();
+        let settings = &mut *chosen.settings;
         let (fields, before) = (settings.fields(), settings.values());
         let refused = |SettingError(reason)| RunError::Settings { case: case.into(), reason };
         settings::read(settings, &spec.settings).map_err(refused)?;
@@ -158,7 +146,7 @@ impl Composition {
 
     /// The settings with `key=value` texts applied.
     fn set(mut self, texts: &[String]) -> Result<serde_json::Value, RunError> {
-        let settings = self.setup.settings();
+        let settings = &mut *self.settings;
         settings::apply(settings, texts)?;
         settings::validate(settings)?;
         let mut set = texts.iter().filter_map(|text| text.split_once('='));
@@ -169,11 +157,11 @@ impl Composition {
     }
 
     /// Runs it.
-    fn run(mut self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
+    fn run(self, spec: &RunSpec, context: &Context) -> Result<Record, RunError> {
         // All settings in canonical form, including those that the spec leaves out.
-        let settings = settings::to_json(self.setup.settings());
+        let settings = settings::to_json(&*self.settings);
         let spec = RunSpec { settings, ..spec.clone() };
-        let made = self.setup.pose()?.simulate(&Context { spec, ..context.clone() });
+        let made = (self.pose)(&*self.settings)?.simulate(&Context { spec, ..context.clone() });
         let mut record = made.map_err(|error| match error {
             RunError::Scene(scene) if !self.changed.is_empty() => {
                 RunError::SceneOf { set: self.changed, scene }
@@ -224,11 +212,8 @@ impl<T: Settings> Composed<T> {
 
     /// The settings of a variant before any is set.
     pub fn defaults(&self, variant: &str) -> T {
-        let mut settings = T::default();
-        if let Ok(mut found) = Composition::named(self.name, (self.variants)().all, variant) {
-            settings.put(&found.setup.settings().values());
-        }
-        settings
+        let found = Composition::named(self.name, (self.variants)().all, variant);
+        found.map_or_else(|_| T::default(), |found| typed(&*found.settings))
     }
 
     /// A run of this case with its settings changed; none if the result is out of range.
@@ -349,7 +334,8 @@ impl<T: Settings> Case for Composed<T> {
     }
 
     fn pose(&self, spec: &RunSpec) -> Result<Box<dyn Posed>, RunError> {
-        Composition::of_run(self.name, (self.variants)().all, spec)?.setup.pose()
+        let found = Composition::of_run(self.name, (self.variants)().all, spec)?;
+        (found.pose)(&*found.settings)
     }
 
     fn facts(&self) -> Facts {

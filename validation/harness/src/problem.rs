@@ -385,7 +385,37 @@ impl<P: Problem> Posed for P {
     }
 
     fn simulate(&self, context: &Context) -> Result<Record, RunError> {
-        self.driven(context)
+        let spec = &context.spec;
+        let (brief, size) = self.checked(spec, Steps::All, context.allow_long)?;
+        let threads = if brief.is_serial { 1 } else { context.threads };
+        let parts = self.parts(spec, threads)?;
+        let scene = if Self::READS_START { &parts.particles[..] } else { &[] };
+        let scene = Snapshot::of(0.0, scene);
+        let mut simulation = self.built(parts, &View::default())?;
+        let record = self.begun(spec, threads, &brief);
+        let times = self.times();
+        let watch = self.watch(&scene, &Snapshot::ours(simulation.stepper()));
+        drop(scene);
+        let calls = self.calls(Calls::default(), OptionalOutput::of(spec));
+        let every_step = calls.every_step.iter().map(|(name, _)| *name);
+        let of_ours = calls.of_ours.iter().map(|(name, _)| (*name, true));
+        let schedule = Schedule {
+            dt: brief.rules.dt(),
+            least: brief.least_steps,
+            sweeps: size.sweeps,
+            times: &times,
+            pressure: &pressure(&brief.medium),
+            after_step: calls.after_step.iter().map(|(name, _)| *name).chain(every_step).collect(),
+            at: calls.at.iter().map(|(name, now, _)| (*name, *now)).chain(of_ours).collect(),
+        };
+        let seen = Observed { problem: self, calls, state: ObservedState { watch, record } };
+        let mut run = Run { simulation, seen };
+        let ended = schedule.run(&mut run, context)?;
+        let Run { mut simulation, seen: Observed { state, .. } } = run;
+        let ObservedState { watch, mut record } = state;
+        ended.put(&mut record);
+        self.measure(watch, &Snapshot::ours(simulation.stepper()), &mut record);
+        Ok(record)
     }
 
     fn outline(
@@ -416,7 +446,56 @@ impl<P: Problem> Posed for P {
     }
 
     fn measure_frames(&self, spec: &RunSpec, foreign: &Foreign) -> Result<Record, RunError> {
-        self.measured(spec, foreign)
+        let (brief, _) = self.checked(spec, Steps::None, true)?;
+        let (parts, times) = (self.parts(spec, 1)?, self.times());
+        let end = times.last().copied().unwrap_or_default();
+        if let Some(time) = foreign::missing(foreign.frames, &times).first() {
+            return Err(RunError::Foreign(format!("there is no frame at t = {time} s")));
+        }
+        let (own, limits) = (foreign.own_start(), parts.limits);
+        let scene = own.clone().unwrap_or_else(|| ParticleArrays::all(&parts.particles));
+        let sums = self.sums(parts, foreign)?;
+        let of_problem =
+            || ParticleArrays::all(&sums.simulation.borrow_mut().stepper().particles());
+        let mut start = own.unwrap_or_else(of_problem);
+        let mut record = self.begun(spec, 1, &brief);
+        record.cost.particles = start.points.iter().filter(|point| point.is_fluid()).count();
+        let mut last = Snapshot::given(0.0, start.clone(), &sums);
+        let mut watch = self.watch(&Snapshot::given(0.0, scene, &sums), &last);
+        start.densities = start.densities.filter(|_| foreign.has_densities());
+        let Calls { after_step, at, .. } = self.calls(Calls::default(), OptionalOutput::of(spec));
+        let mut reached = 0;
+        for frame in foreign.frames {
+            let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));
+            let time = next(reached).copied().unwrap_or(frame.time);
+            let diverged = |fault| runner::diverged(Divergence { step: 0, time, fault });
+            if let Some(fault) = foreign.lost(frame, &limits) {
+                record.status = diverged(fault);
+                break;
+            }
+            let columns = foreign.columns(frame, &start)?;
+            if let Some(fault) = foreign.crowded(frame, &columns) {
+                record.status = diverged(fault);
+                break;
+            }
+            if let Some(divergence) = sums.divergence(time, &columns) {
+                record.status = runner::diverged(divergence);
+                break;
+            }
+            last = Snapshot::given(time, columns, &sums);
+            for (_, call) in &after_step {
+                let _goes_on = call(self, &mut watch, &last);
+            }
+            // A time may be stated twice, for example for a sample and for a picture.
+            while next(reached).is_some() {
+                at.iter()
+                    .for_each(|(_, _, call)| call(self, &mut watch, &last, reached, &mut record));
+                reached += 1;
+            }
+        }
+        record.state = last.sums(runner::state).ok();
+        self.measure(watch, &last, &mut record);
+        Ok(record)
     }
 }
 
@@ -535,95 +614,6 @@ trait Parted: Problem {
         let words = words.map(|(name, word)| (name.to_string(), Value::from(word)));
         record.numerics.extend(words);
         record
-    }
-
-    /// Simulates a run, and measures it.
-    fn driven(&self, context: &Context) -> Result<Record, RunError> {
-        let spec = &context.spec;
-        let (brief, size) = self.checked(spec, Steps::All, context.allow_long)?;
-        let threads = if brief.is_serial { 1 } else { context.threads };
-        let parts = self.parts(spec, threads)?;
-        let scene = if Self::READS_START { &parts.particles[..] } else { &[] };
-        let scene = Snapshot::of(0.0, scene);
-        let mut simulation = self.built(parts, &View::default())?;
-        let record = self.begun(spec, threads, &brief);
-        let times = self.times();
-        let watch = self.watch(&scene, &Snapshot::ours(simulation.stepper()));
-        drop(scene);
-        let calls = self.calls(Calls::default(), OptionalOutput::of(spec));
-        let every_step = calls.every_step.iter().map(|(name, _)| *name);
-        let of_ours = calls.of_ours.iter().map(|(name, _)| (*name, true));
-        let schedule = Schedule {
-            dt: brief.rules.dt(),
-            least: brief.least_steps,
-            sweeps: size.sweeps,
-            times: &times,
-            pressure: &pressure(&brief.medium),
-            after_step: calls.after_step.iter().map(|(name, _)| *name).chain(every_step).collect(),
-            at: calls.at.iter().map(|(name, now, _)| (*name, *now)).chain(of_ours).collect(),
-        };
-        let seen = Observed { problem: self, calls, state: ObservedState { watch, record } };
-        let mut run = Run { simulation, seen };
-        let ended = schedule.run(&mut run, context)?;
-        let Run { mut simulation, seen: Observed { state, .. } } = run;
-        let ObservedState { watch, mut record } = state;
-        ended.put(&mut record);
-        self.measure(watch, &Snapshot::ours(simulation.stepper()), &mut record);
-        Ok(record)
-    }
-
-    /// Measures particles of another code.
-    fn measured(&self, spec: &RunSpec, foreign: &Foreign) -> Result<Record, RunError> {
-        let (brief, _) = self.checked(spec, Steps::None, true)?;
-        let (parts, times) = (self.parts(spec, 1)?, self.times());
-        let end = times.last().copied().unwrap_or_default();
-        if let Some(time) = foreign::missing(foreign.frames, &times).first() {
-            return Err(RunError::Foreign(format!("there is no frame at t = {time} s")));
-        }
-        let (own, limits) = (foreign.own_start(), parts.limits);
-        let scene = own.clone().unwrap_or_else(|| ParticleArrays::all(&parts.particles));
-        let sums = self.sums(parts, foreign)?;
-        let of_problem =
-            || ParticleArrays::all(&sums.simulation.borrow_mut().stepper().particles());
-        let mut start = own.unwrap_or_else(of_problem);
-        let mut record = self.begun(spec, 1, &brief);
-        record.cost.particles = start.points.iter().filter(|point| point.is_fluid()).count();
-        let mut last = Snapshot::given(0.0, start.clone(), &sums);
-        let mut watch = self.watch(&Snapshot::given(0.0, scene, &sums), &last);
-        start.densities = start.densities.filter(|_| foreign.has_densities());
-        let Calls { after_step, at, .. } = self.calls(Calls::default(), OptionalOutput::of(spec));
-        let mut reached = 0;
-        for frame in foreign.frames {
-            let next = |reached: usize| times.get(reached).filter(|time| frame.is_at(**time, end));
-            let time = next(reached).copied().unwrap_or(frame.time);
-            let diverged = |fault| runner::diverged(Divergence { step: 0, time, fault });
-            if let Some(fault) = foreign.lost(frame, &limits) {
-                record.status = diverged(fault);
-                break;
-            }
-            let columns = foreign.columns(frame, &start)?;
-            if let Some(fault) = foreign.crowded(frame, &columns) {
-                record.status = diverged(fault);
-                break;
-            }
-            if let Some(divergence) = sums.divergence(time, &columns) {
-                record.status = runner::diverged(divergence);
-                break;
-            }
-            last = Snapshot::given(time, columns, &sums);
-            for (_, call) in &after_step {
-                let _goes_on = call(self, &mut watch, &last);
-            }
-            // A time may be stated twice, for example for a sample and for a picture.
-            while next(reached).is_some() {
-                at.iter()
-                    .for_each(|(_, _, call)| call(self, &mut watch, &last, reached, &mut record));
-                reached += 1;
-            }
-        }
-        record.state = last.sums(runner::state).ok();
-        self.measure(watch, &last, &mut record);
-        Ok(record)
     }
 
     /// Sums of our method over particles of another code that start like this.

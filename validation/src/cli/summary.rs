@@ -11,7 +11,7 @@ use touchstone_harness::{
     gates::GateIndex,
     runs::{Judged, counts},
     studies::{
-        Accuracy, Breaks, Card, StepLimits, Studies,
+        Breaks, Card, StepLimits, Studies,
         card::{cost as cost_in_words, headline},
     },
     suite::{CaseResults, JudgedOf, Suite},
@@ -285,8 +285,6 @@ fn next(
 
 /// The run with half the spacing, as the ladders of its case are refined.
 pub fn finer(case: &dyn Case, studies: &Studies, spec: &RunSpec) -> Option<String> {
-    let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
-    let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
-    let finer = (ladder.refine)(spec, 0.5)?.run.spec;
+    let finer = (studies.ladder()?.refine)(spec, 0.5)?.run.spec;
     Some(case::command(case, &finer))
 }

@@ -93,6 +93,12 @@ impl Card {
 }
 
 impl Studies {
+    /// The first ladder of several resolutions.
+    pub fn ladder(&self) -> Option<&Ladder> {
+        let mut ladders = self.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
+        ladders.find(|ladder| ladder.levels.len() > 1)
+    }
+
     /// The error of the case: of its card, or else of its first ladder.
     pub fn error(&self) -> Option<&MetricName> {
         let ladder = self.first::<Accuracy>().map(|accuracy| &accuracy.error);

@@ -115,9 +115,8 @@ pub(super) struct RefiningSetting {
 impl RefiningSetting {
     /// The first setting in which the coarsest and the finest level of a ladder differ.
     pub(super) fn of(case: &dyn Case, studies: &Studies) -> Option<Self> {
-        let mut ladders = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
-        let ladder = ladders.find(|ladder| ladder.levels.len() > 1)?;
-        let ends = [ladder.levels.first()?, ladder.levels.last()?];
+        let levels = &studies.ladder()?.levels;
+        let ends = [levels.first()?, levels.last()?];
         let [coarse, fine] = ends.map(|level| &level.run.spec.settings);
         let differs = |field: &&Field| field.of_json(coarse) != field.of_json(fine);
         case.fields().iter().find(differs).map(|setting| Self { setting })
