@@ -18,7 +18,7 @@ use touchstone_harness::{
 fn first_step(case: &dyn Case, variant: &str, fault: Option<Mutation>) -> (f64, Option<f64>, f64) {
     let (driven, stop) = (Mutex::new(f64::NAN), AtomicBool::new(true));
     let show = |progress: RunProgress| {
-        if progress.particle_steps == 0 {
+        if progress.time == 0.0 {
             *driven.lock().unwrap() = progress.dt;
         }
     };

@@ -24,8 +24,6 @@ pub struct RunProgress {
     pub end: f64,
     /// Time step \[s\].
     pub dt: f64,
-    /// Particle steps done.
-    pub particle_steps: u64,
 }
 
 /// How a run is executed, apart from its physics.

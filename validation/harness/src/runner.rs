@@ -196,8 +196,7 @@ struct Monitor<'a> {
 impl Monitor<'_> {
     fn show<X: Numbers>(&mut self, simulation: &dyn Stepper<X>, dt: f64) {
         if let Some(show) = self.context.progress {
-            let particle_steps = simulation.work().steps * simulation.data().fluid_count() as u64;
-            show(RunProgress { time: simulation.time(), end: self.end, dt, particle_steps });
+            show(RunProgress { time: simulation.time(), end: self.end, dt });
             self.shown = Instant::now();
         }
     }
