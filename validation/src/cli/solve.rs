@@ -109,13 +109,12 @@ pub fn results(
         vtk: None,
         allow_long: how.allow_long,
     };
-    let keep = |simulations: &[Vec<u8>]| checkpoint::write(folder, &asked, simulations);
-    let earlier = match how.resume {
-        true => checkpoint::read(folder.path(), session.sources)?.1,
-        false => Vec::new(),
-    };
+    let keep = |state: &[u8]| checkpoint::write(folder, &asked, state);
+    let earlier =
+        how.resume.then(|| checkpoint::read(folder.path(), session.sources)).transpose()?;
+    let earlier = earlier.map(|(_, state)| state);
     let is_checkpointed = how.resume || how.stop_after.is_some();
-    let checkpoints = Checkpoints::new(Duration::MAX, earlier, &keep);
+    let checkpoints = Checkpoints { every: Duration::MAX, earlier, write: &keep };
     let context = Context {
         spec: spec.clone(),
         allow_long: how.allow_long,
