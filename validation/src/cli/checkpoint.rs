@@ -146,7 +146,7 @@ mod tests {
         let refused = parse(&file, "f".as_ref(), |_| "xyz".into()).unwrap_err();
         assert!(refused.contains("another build, of the sources abc; this one is of xyz"));
         let refused = parsed(b"touchstone checkpoint 1 abc\n").unwrap_err();
-        assert!(refused.contains("not a checkpoint of format 2"), "{refused}");
+        assert!(refused.contains("not a checkpoint of format 3"), "{refused}");
         let refused = parsed(&file[..file.len() - 1]).unwrap_err();
         assert!(refused.contains("damaged or truncated"), "{refused}");
     }
