@@ -1,5 +1,5 @@
 """What the scripts of this folder read of an exported problem, and hand in as a submission."""
-import csv, json, os, platform, time
+import csv, json, os, platform, sys, time
 
 import numpy as np
 
@@ -114,3 +114,41 @@ class Submission:
         method = {"code": code, "version": version, "scheme": scheme, "division": division,
                   "settings": settings, "changed": changed}
         describe(method, system)
+
+
+# By which factor errors that are planted on purpose are wrong, quantity by quantity.
+FAULTS = {
+    "viscosity": {"viscosity": 2.0, "dynamic-viscosity": None},
+    "force": {"body-force": 1.03, "force-twice": 2.0, "gravity": 0.5},
+    "wall": {"wall-speed": 0.5, "wall-at-rest": 0.0, "wall-sign": -1.0},
+    "sound": {"sound-speed": 1.1},
+    "mass": {"normalisation": 1.02},
+}
+
+
+class Question(Problem):
+    """The problem in the folder that the last argument names, with one quantity wrong after `--fault NAME`."""
+
+    def __init__(self, arguments):
+        os.chdir(arguments[-1])
+        super().__init__()
+        self.fault = arguments[2] if len(arguments) > 3 else ""
+        wrong = {key: of[self.fault] for key, of in FAULTS.items() if self.fault in of}
+        factor = wrong.get("viscosity", 1.0)
+        self.nu *= self.rho if factor is None else factor
+        self.g = self.g * wrong.get("force", 1.0)
+        self.v[~self.fluid] *= wrong.get("wall", 1.0)
+        self.c0 *= wrong.get("sound", 1.0)
+        self.mass = self.columns["mass"] * wrong.get("mass", 1.0)
+        self.alpha = self.material.get("artificial_viscosity_alpha", 0.0)
+        if self.fault == "artificial-viscosity":
+            self.alpha = 0.1
+        if "shear_modulus" in self.material:
+            self.declines("elastic bodies are not part of this scheme")
+        if self.json["walls"]["planes"] and self.fluid.all():
+            self.declines("walls are particles, no planes")
+
+    @staticmethod
+    def declines(why):
+        """Ends with the exit code of a code that cannot solve a problem."""
+        sys.exit(print(why, file=sys.stderr) or 77)
