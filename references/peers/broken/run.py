@@ -87,10 +87,7 @@ def main():
     codes = sys.argv[1:] or list(FAULTS)
     listed = subprocess.run([*TOUCHSTONE, "probe", "--list", "--json"], stdout=subprocess.PIPE, check=True)
     finds = {of["id"]: of["finds"] for of in json.loads(listed.stdout)}
-    kept = []
-    if os.path.exists(TABLE):
-        with open(TABLE, encoding="utf-8") as file:
-            kept = [row for row in csv.DictReader(file) if row["code"] not in codes]
+    new = []
     with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(2) as pool:
         program = os.path.join(folder, "small_sph")
         if "small_sph" in codes:
@@ -99,7 +96,12 @@ def main():
         asked = [(code, fault) for code in codes for fault in [None, *FAULTS[code]]]
         found = pool.map(lambda of: probe(*of, program, finds), asked)
         for (code, fault), answers in zip(asked, found):
-            kept.extend(rows(code, fault, FAULTS[code].get(fault), answers, finds))
+            new.extend(rows(code, fault, FAULTS[code].get(fault), answers, finds))
+    kept = []
+    if os.path.exists(TABLE):
+        with open(TABLE, encoding="utf-8") as file:
+            kept = [row for row in csv.DictReader(file) if row["code"] not in codes]
+    kept = sorted(kept + new, key=lambda row: list(FAULTS).index(row["code"]))
     with open(TABLE, "w", encoding="utf-8", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n", restval="")
         table.writeheader()

@@ -88,7 +88,7 @@ with open("results.csv", "w") as file:
     for data, array in iter_output(app.output_files, "fluid"):
         for wanted in times:
             if abs(data["t"] - wanted) <= 1e-6 * times[-1]:
-                nearest[wanted] = array
+                nearest.setdefault(wanted, array)
     for t in times:
         array = nearest[t]
         order = np.argsort(array.touchstone)
