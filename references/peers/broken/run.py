@@ -78,7 +78,7 @@ def rows(code, fault, truth, answers, finds):
         named = naming[:1] or [{"id": "none", "verdict": "not applicable", "answer": "no question names it"}]
     for of in named:
         others = [] if fault is None else [other["id"] for other in failed if other is not of]
-        number = {key: f"{of[key]:.4g}" for key in ("factor", "uncertainty") if of.get(key) is not None}
+        number = {key: f"{of[key]:.4g}" for key in ("factor", "uncertainty") if isinstance(of.get(key), float)}
         yield row | number | {"question": of["id"], "verdict": of["verdict"], "answer": of["answer"],
                               "other_alarms": " ".join(others)}
 
