@@ -7,7 +7,7 @@ use touchstone_solver::Tait;
 
 /// The parameters of a material at a particle spacing. Parameters that a case does not use are 0. A new one
 /// has its unit in [`crate::relation::View::medium`], and is no constant of a mutation or one of
-/// [`mutate`](crate::method::mutate): both name every parameter.
+/// [`mutate`](fn@crate::method::mutate): both name every parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
     /// Equation of state, with density at rest and sound speed; a solid takes these two of it.
