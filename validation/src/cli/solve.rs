@@ -102,13 +102,8 @@ pub fn results(
         }
     };
     let sources = (session.sources)(case.name());
-    let asked = ResumableRun {
-        spec: spec.clone(),
-        sources,
-        every: None,
-        vtk: None,
-        allow_long: how.allow_long,
-    };
+    let (of, allow_long) = (spec.clone(), how.allow_long);
+    let asked = ResumableRun { spec: of, sources, every: None, vtk: None, allow_long };
     let keep = |state: &[u8]| checkpoint::write(folder, &asked, state);
     let earlier =
         how.resume.then(|| checkpoint::read(folder.path(), session.sources)).transpose()?;
@@ -117,7 +112,7 @@ pub fn results(
     let checkpoints = Checkpoints { every: Duration::MAX, earlier, write: &keep };
     let context = Context {
         spec: spec.clone(),
-        allow_long: how.allow_long,
+        allow_long,
         interrupt: Some(if how.stop_after.is_some() { &stop } else { session.interrupt }),
         checkpoints: is_checkpointed.then_some(&checkpoints),
         ..Context::default()
