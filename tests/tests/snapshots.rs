@@ -155,7 +155,7 @@ fn kept_water(case: &str) -> Vec<Kept> {
             (vec!["modern", "ghosts", "seed"], vec!["compressibility=0.01"]),
             (vec!["modern"], vec!["compressibility=0.1", "compressibility=1e-4"]),
         ],
-        "elliptic_drop" => vec![(vec!["seed", "plain", "modern"], vec!["n=20"])],
+        "elliptic_drop" => vec![(vec!["seed", "plain", "modern", "consistent"], vec!["n=20"])],
         "still_wedge" => vec![(vec!["modern"], vec!["n=10", "n=14"])],
         "dam_break" => {
             vec![
@@ -488,7 +488,12 @@ fn outside_bounds(case: &str, Run { name: set, spec }: &Run, record: &Record) ->
     }
     // The error of a known limitation is bounded by its gate.
     let is_lost = (case, &**variant) == ("taylor_green", "modern");
-    for (name, bound, because) in bounds_beside(case).into_iter().filter(|_| !is_lost) {
+    // A continuity that is exact for linear fields, and pressure by pairs, do not exchange energy exactly.
+    let is_exchanged =
+        |name: &str| (case, &**variant, name) != ("elliptic_drop", "consistent", "work_diffusion");
+    let bounds =
+        bounds_beside(case).into_iter().filter(|(name, ..)| !is_lost && is_exchanged(name));
+    for (name, bound, because) in bounds {
         for (metric, found) in &record.metrics {
             let time = metric.split('@').nth(1).and_then(|tau| tau.parse::<f64>().ok());
             let is_judged = group(metric) == name && time.is_none_or(|tau| tau >= 0.1);

@@ -4,9 +4,9 @@
 use touchstone_harness::method::{self, Standard};
 use touchstone_maths::metrics::budget::{Metered, WaterDrift, WaterForces};
 use touchstone_solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, Continuity, CubicSpline,
-    DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Leapfrog, Open,
-    PredictorCorrector, Pressure, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity, Continuity,
+    CubicSpline, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Leapfrog,
+    Open, PredictorCorrector, Pressure, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 use crate::{Method, methods};
@@ -25,6 +25,8 @@ type Walls = ExtrapolatingWall<Tait>;
 /// The settings of `modern` and its relatives.
 type Modern<D = (Continuity, Diffusion), W = Walls, V = Slipping> =
     Compose<WendlandC2, Water<(), V>, D, W, Leapfrog>;
+/// Pressure and gravity, without walls.
+type Bare<D> = Compose<WendlandC2, (Pressure<Tait>, BodyForce), D, Open, Leapfrog>;
 
 /// A method with an energy budget by term.
 pub type WaterMethod = Method<(), dyn Metered<()>>;
@@ -53,6 +55,8 @@ methods! { metered => WaterMethod:
     molteni: Modern<(Continuity, DensityDiffusion)>;
     /// `molteni` without walls.
     free: Modern<(Continuity, DensityDiffusion), Open, ArtificialViscosity<Tait>>;
+    /// Pressure, a continuity that is exact for linear fields, and density diffusion, without walls.
+    free_consistent: Bare<(ConsistentContinuity, DensityDiffusion)>;
     /// (3), (5) and (7) alone, without walls.
-    plain: Compose<WendlandC2, (Pressure<Tait>, BodyForce), Continuity, Open, Leapfrog>;
+    plain: Bare<Continuity>;
 }

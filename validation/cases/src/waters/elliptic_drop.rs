@@ -47,6 +47,7 @@ touchstone_base::settings! {
 }
 
 const NAME: &str = "elliptic_drop";
+const RECOMMENDED: &str = "consistent";
 
 touchstone_base::metrics! {
     all ALL;
@@ -77,11 +78,14 @@ fn variants() -> Compositions<DropSettings> {
     let seed = "the paper's terms: cubic spline, predictor-corrector, artificial viscosity and stress, XSPH";
     let modern_is =
         "Wendland C2, h/dx 2.5, leapfrog, density diffusion, little artificial viscosity";
+    let consistent = "plain with density diffusion and a continuity that is exact for linear fields: is the \
+                      area that of the water?";
     let plain = "modern without dissipation: (3), (5) and (7) alone";
     Variants::of(|m, s| Ok(Drop::new(m, s)))
         .with("seed", seed, water::free_seed(), |_| {})
         .with("modern", modern_is, water::free(), modern)
         .with("plain", plain, water::plain(), modern)
+        .with(RECOMMENDED, consistent, water::free_consistent(), modern)
         .all
 }
 
@@ -285,10 +289,12 @@ pub static ELLIPTIC_DROP: Composed<DropSettings> = Composed {
     name: NAME,
     problem: "A free drop is strained into an ellipse",
     recommended: Recommended {
-        variant: "modern",
-        because: "with 20 particles across the error of the axes of the ellipse is 0.73 \
-                  %<!-- elliptic_drop.modern; n=20; axes_rms -->, rms over time, the paper's 1.6 \
-                  %<!-- elliptic_drop.seed; n=20; axes_rms -->",
+        variant: RECOMMENDED,
+        because: "with 20 particles across the error of the axes of the ellipse is \
+                  0.093 %<!-- elliptic_drop.consistent; n=20; axes_rms -->, rms over time, of `modern` \
+                  0.73 %<!-- elliptic_drop.modern; n=20; axes_rms -->, the paper's \
+                  1.6 %<!-- elliptic_drop.seed; n=20; axes_rms -->: its area does not follow the sum of \
+                  the kernel over rows that the strain moves apart",
         papers: Some("seed"),
     },
     about: "A free circular drop starts with a uniform strain rate and becomes an ellipse, whose semi-axes \
@@ -319,15 +325,15 @@ fn table(tier: Tier) -> table::Table<DropSettings, Group> {
     let mut table = table::Table::new(&ELLIPTIC_DROP, tier);
     let across = |s: &mut DropSettings, n: usize| s.n = n;
     table.over(Group::Judged, &["seed"], [&[20], &[20]], across);
-    table.over(Group::Judged, &["modern"], [&[20, 40], &[20, 40, 80]], across);
+    table.over(Group::Judged, &["modern", RECOMMENDED], [&[20, 40], &[20, 40, 80]], across);
     table.over(Group::Judged, &["plain"], [&[20], &[20, 40, 80]], across);
     table.over(Group::Ladder, &["seed"], [&[14], &[28, 40, 56, 80]], across);
-    table.over(Group::Ladder, &["modern", "plain"], [&[14], &[28, 56]], across);
+    table.over(Group::Ladder, &["modern", "plain", RECOMMENDED], [&[14], &[28, 56]], across);
     table.over(Group::Narrow, &["modern"], [&[], &[1.5]], |s, h: f64| s.water.h_over_dx = h);
-    for variant in ["seed", "modern"] {
+    for variant in ["seed", "modern", RECOMMENDED] {
         table.one(Group::Falling, variant, |s| (s.n, s.gravity) = (20, 1.0));
     }
-    let shown = (Group::Judged, "modern", 40);
+    let shown = (Group::Judged, RECOMMENDED, 40);
     table.keep_particles(|row| (row.group, row.variant, row.settings.n) == shown);
     table.judge(gates);
     table
@@ -341,20 +347,23 @@ fn studies(tier: Tier) -> Studies {
     let table = table(tier);
     let spacing = Spacing::count(|s: &mut DropSettings| &mut s.n, "{} across").over(|_| 2.0);
     let accuracy = Accuracy {
-        about: "A free drop until A t = 0.8, when it is four times as long as wide. The errors of the \
-                semi-axes change their signs over the resolutions, that of a near 40 particles across; \
-                their rms over both and over time does not."
+        about: "A free drop until A t = 0.8, when it is four times as long as wide. Where density \
+                follows (3), the area grows with the sum of the kernel over rows that the strain moves \
+                apart, by 0.53 % at h/dx 2.5 and any spacing, against an error of the surface of the other \
+                sign: single errors of `modern` and `plain` cross 0 near 40 particles across. \
+                In `consistent` pressure and continuity exchange energy but for an error of their sums, \
+                which adds 1.4 % of the kinetic energy at 20 across and 0.2 % at 40."
             .into(),
         spacing: "dx/R [-]",
         slope: Some(1.0),
         ladders: table.ladders(
             &[Group::Judged, Group::Ladder],
-            &["seed", "modern", "plain"],
+            &["seed", "modern", "plain", RECOMMENDED],
             spacing,
         ),
         ..Accuracy::new("elliptic-drop", AXES_RMS, "error of both semi-axes, rms over time [-]")
     };
-    let caption = "Does the drop keep its shape and a smooth pressure? `modern` at the end, 40 particles \
+    let caption = "Does the drop keep its shape and a smooth pressure? `consistent` at the end, 40 particles \
                    across, pressure over the exact one at the centre of the start; its rows are two \
                    initial spacings apart.";
     let texts = ["elliptic-drop-picture", "A free drop at the end", caption];
@@ -379,6 +388,9 @@ fn gates(row: &Row) -> Vec<Gate> {
                   reports its power. The bound of 0.1 % is for the time step and for sampling the powers.";
     let axes = "The surface is known to a fraction of the spacing, so the error of the semi-axes is of \
                 first order in it: 1 % at 40 particles across.";
+    let second = "Sums that are exact for the linear velocity leave an error of second order, (dx/R)^2/2 \
+                  with dx = 2 R/n, and compression by the mean of the initial pressure over rho c0^2, \
+                  (A R/c0)^2/4 = 0.13 %.";
     let short = "`modern` with this h/dx of 1.5 has an error of a of 5.8 % at 40 particles across, which is \
                  the bound of a. The bound of b is of first order in the spacing, from 4.6 % at 14.";
     let near = "The velocity of a particle is known as well as its place, to half of the spacing dx = 2 R/n: \
@@ -398,12 +410,15 @@ fn gates(row: &Row) -> Vec<Gate> {
         gates.invariant(ledger::ENERGY_GAP, Bound::Below(1e-3), closes),
     ];
     if row.group == Group::Judged {
-        let bound = Bound::Below(0.01 * (40.0 / n).max(0.5));
+        let (most, because) = match variant {
+            RECOMMENDED => (2.0 / (n * n) + 1.3e-3, second),
+            _ => (0.01 * (40.0 / n).max(0.5), axes),
+        };
         let known = [0.058_f64, 0.64 / n];
         let both = (0.5 * (known[0] * known[0] + known[1] * known[1])).sqrt();
         let of = [(A_ERROR, known[0]), (B_ERROR, known[1]), (AXES_RMS, both)];
         all.extend(of.map(|(metric, known)| {
-            let gate = gates.analytic(metric, bound, axes);
+            let gate = gates.analytic(metric, Bound::Below(most), because);
             match variant {
                 "seed" => gate.with_limitation(Bound::Below(known), short, &SHORT_KERNEL).fitted(),
                 _ => gate,
@@ -411,7 +426,7 @@ fn gates(row: &Row) -> Vec<Gate> {
         }));
         let velocity = gates.analytic(VELOCITY_RMS, Bound::Below(2.0_f64.sqrt() / n), near);
         all.push(match variant {
-            "modern" => velocity,
+            "modern" | RECOMMENDED => velocity,
             _ => velocity.with_limitation(Bound::Below(3.2 / n), noisy, &NOISY_DENSITY).fitted(),
         });
     }
@@ -456,7 +471,7 @@ mod tests {
 
     #[test]
     fn a_drop_falls_freely_and_keeps_its_momentum() {
-        for variant in ["seed", "modern", "plain"] {
+        for variant in ["seed", "modern", "plain", RECOMMENDED] {
             let ran = |gravity: f64| {
                 run(variant, |s| (s.n, s.end, s.gravity) = (12, 0.2, gravity)).expect("a run")
             };

@@ -12,8 +12,9 @@
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    ArtificialViscosity, BodyForce, Continuity, DensityDiffusion, EquationOfState, FluidPairs,
-    Numbers, Pressure, Rate, Scheme, Simulation, State, Stepper, Term, Xsph,
+    ArtificialViscosity, BodyForce, ConsistentContinuity, Continuity, DensityDiffusion,
+    EquationOfState, FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation, State, Stepper, Term,
+    Xsph,
     terms::{Rest, Tensile},
 };
 
@@ -102,6 +103,8 @@ pub trait WaterDrift<X>: Term<X> {}
 impl<X> WaterDrift<X> for Continuity {}
 impl<X> WaterDrift<X> for (Continuity, Xsph) {}
 impl<X, R: Rest> WaterDrift<X> for (Continuity, DensityDiffusion<R>) {}
+/// The power of this continuity minus that of (3) counts as density diffusion.
+impl<X, R: Rest> WaterDrift<X> for (ConsistentContinuity, DensityDiffusion<R>) {}
 impl<X, R: Rest> WaterDrift<X> for (Continuity, Xsph, DensityDiffusion<R>) {}
 
 /// A simulation of water with an energy budget by term.
