@@ -231,7 +231,7 @@ fn a_command_that_is_wrong_is_seen() {
     let marked = text.replace("```sh", "<!-- not run: slow -->\n```sh");
     assert_eq!(commands(&without_run(&marked)), commands(text));
     let spec = run_of("touchstone run couette --rows 30").expect("a run");
-    assert_eq!((&*spec.variant, spec.settings["rows"].as_u64()), ("modern", Some(30)));
+    assert_eq!((&*spec.variant, spec.settings["rows"].as_u64()), ("consistent", Some(30)));
     for wrong in [
         "touchstone frobnicate",
         "touchstone run couette --set row=3",
