@@ -22,8 +22,8 @@ FAULTS = {
         "mirror": None, "absolute-velocity": None, "border": None, "race": None, "order-of-numbers": None,
         "one-sided": None, "twice-counted": None, "missed-neighbours": None, "wall-speed": 0.5, "wall-at-rest": 0,
         "wall-sign": -1, "wall-place": None, "slip": None, "wall-term": None, "body-force": 1.03, "force-twice": 2,
-        "gravity": 0.5, "corner": None, "late-output": None, "dead-setting": None, "approximate-restart": None,
-        "stuck": None, "nan": None,
+        "gravity": 0.5, "corner": None, "late-output": None, "dead-setting": None, "no-correction": None,
+        "approximate-restart": None, "stuck": None, "nan": None,
     },
     "pysph wcsph": {
         "viscosity": 2, "body-force": 1.03, "force-twice": 2, "wall-speed": 0.5, "wall-sign": -1, "sound-speed": 1.1,
@@ -37,7 +37,8 @@ FAULTS = {
     # By `--mutate`.
     "touchstone modern": {
         "viscosity=2": 2, "body_force=1.03": 1.03, "wall_speed=0.5": 0.5, "sound_speed=1.1": 1.1,
-        "normalisation=1.02": 1.02, "body_force=0.5": 0.5,
+        "normalisation=1.02": 1.02, "body_force=0.5": 0.5, "plane-stress": 0.9176, "rotation-as-strain": None,
+        "one-sided-gradient": None,
     },
     # Unmodified only.
     "touchstone plain": {}, "touchstone seed": {}, "touchstone consistent": {}, "pysph tvf": {}, "pysph edac": {},
@@ -57,8 +58,12 @@ def probe(code, fault, program, finds):
     planted = ["--fault", fault] if fault else []
     if of == "small_sph":
         command = ["--", program, *planted]
+    elif fault == "plane-stress":
+        command = ["--only", "bending", "--", sys.executable, os.path.join(HERE, "plane_stress.py")]
     elif of == "touchstone":
-        command = ["--variant", variant, *(["--mutate", fault] if fault else [])]
+        # Gradients of `seed` are not corrected at free faces.
+        variant = "seed" if fault in ("rotation-as-strain", "one-sided-gradient") else variant
+        command = ["--variant", variant, *(["--mutate", fault] if fault and "=" in fault else [])]
     else:
         adapter = os.path.join(HERE, "..", ADAPTERS[of])
         command = ["--wall-particles", "--", PYTHON, adapter, *([variant] if variant else []), *planted]

@@ -395,8 +395,9 @@ static void read_state(const char *folder, int *done, int *steps) {
 static void describe(const char *folder, int steps) {
     FILE *file = create(folder, "method.json", "w");
     fprintf(file, "{\"code\": \"small_sph\", \"version\": \"1\", \"scheme\": \"weakly compressible, leapfrog\", "
-                  "\"division\": \"closed\", \"settings\": {\"time_order\": %d}, \"changed\": \"nothing\"}\n",
-            nu > 0 ? 1 : 2); /* the viscous force takes the velocity of the middle of the step */
+                  "\"division\": \"closed\", \"settings\": {\"time_order\": %d%s}, \"changed\": \"nothing\"}\n",
+            nu > 0 ? 1 : 2, /* the viscous force takes the velocity of the middle of the step */
+            is("no-correction") ? ", \"gradient_correction\": true" : "");
     fclose(file);
     file = create(folder, "system.json", "w");
     fprintf(file, "{\"machine\": \"unknown\", \"threads\": 1, \"seconds\": \"unknown\", \"steps\": %d, "

@@ -92,7 +92,7 @@ with open("results.csv", "w") as file:
     for t in times:
         array = nearest[t]
         order = np.argsort(array.touchstone)
-        density = array.rho if which != "edac" else np.full(len(array.x), rho0)
+        density = array.rho if which != "edac" else rho0 + array.p / c0**2  # EDAC carries the pressure
         for k in order:
             file.write(f"{t!r},{int(array.touchstone[k])},{array.x[k]!r},{array.y[k]!r},{array.u[k]!r},"
                        f"{array.v[k]!r},{density[k]!r}\n".replace("np.float64(", "").replace(")", ""))
