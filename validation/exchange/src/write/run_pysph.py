@@ -92,7 +92,10 @@ with open("results.csv", "w") as file:
     for t in times:
         array = nearest[t]
         order = np.argsort(array.touchstone)
-        density = array.rho if which != "edac" else rho0 + array.p / c0**2  # EDAC carries the pressure
+        density = array.rho
+        if which == "edac":  # it carries the pressure; this is the density of the equation of state
+            gamma = number(material["exponent_gamma"])
+            density = rho0 * np.maximum(1 + gamma * array.p / (rho0 * c0**2), 0) ** (1 / gamma)
         for k in order:
             file.write(f"{t!r},{int(array.touchstone[k])},{array.x[k]!r},{array.y[k]!r},{array.u[k]!r},"
                        f"{array.v[k]!r},{density[k]!r}\n".replace("np.float64(", "").replace(")", ""))
