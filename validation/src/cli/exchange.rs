@@ -385,7 +385,7 @@ fn problem(
 }
 
 /// All flaws as the reason why nothing is judged.
-pub fn refused(flaws: Vec<Flaw>) -> Failure {
+fn refused(flaws: Vec<Flaw>) -> Failure {
     let lines: Vec<String> = lines(&flaws).iter().map(|line| format!("  {line}")).collect();
     Failure::usage(format!(
         "the submission is refused, and nothing is judged:\n{}",

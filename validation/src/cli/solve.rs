@@ -17,6 +17,7 @@ use touchstone_base::{
     submission::OURS,
 };
 use touchstone_exchange::{
+    flaw,
     problem::{CURVE, ExportedProblem, PROBLEM},
     read::{self, COLUMNS, Head, RESULTS, Renamed},
     submission::{METHOD, SYSTEM},
@@ -31,7 +32,6 @@ use touchstone_harness::{
 use super::{
     Exit, Failure, Outcome, Session, arguments,
     checkpoint::{self, ResumableRun},
-    exchange::refused,
 };
 
 /// How a problem is solved.
@@ -166,7 +166,8 @@ fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
 
 /// Puts the rows of an interrupted solution before its other rows.
 fn earlier_rows(table: &mut Profile, folder: &Path) -> Result<(), Failure> {
-    let results = read::read(folder, &Renamed::new()).map_err(refused)?;
+    let results = read::read(folder, &Renamed::new())
+        .map_err(|flaws| Failure::usage(flaw::lines(&flaws).join("\n")))?;
     for frame in &results.frames {
         for of in &frame.particles {
             for column in &mut table.columns {
