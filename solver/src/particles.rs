@@ -1,7 +1,7 @@
 //! Particle data in three kinds: fixed, evolved, and derived (the column that a pair sweep reads).
 //!
-//! The integrator advances [`State`] only. A [`SweptParticle`] is derived from it before each sweep, laid out for
-//! the pair sweep.
+//! The integrator advances [`State`] only. A [`SweptParticle`] is derived from it before each sweep,
+//! laid out for the pair sweep.
 
 use nalgebra::Vector2;
 use touchstone_lanes::Lane;

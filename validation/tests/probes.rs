@@ -75,7 +75,8 @@ fn stored_answers_are_the_answers_of_our_variants() {
 #[test]
 fn walls_of_particles_drag_and_hold_the_fluid() {
     let folder = tempfile::tempdir().unwrap();
-    let line = "--variant extrapolating-wall --wall-particles --only moving-wall,no-slip,body-force,still-water";
+    let line = "--variant extrapolating-wall --wall-particles \
+                --only moving-wall,no-slip,body-force,still-water";
     let (all, exit) = answers(folder.path(), line);
     assert_eq!((ids(&all, "pass").len(), exit), (4, 0), "{all:#?}");
 }
@@ -174,7 +175,8 @@ fn an_approximate_restart_fails() {
     assert_eq!(only(r#"$TOUCHSTONE solve "$1""#).1, 0);
     // The second call begins again with a viscosity that is 1 % larger.
     let rounded = r#"if grep -q '"resume": true' "$1/problem.json"; then
-            sed -i 's/"resume": true/"x": 1/' "$1/problem.json"; $TOUCHSTONE solve --mutate viscosity=1.01 "$1"
+            sed -i 's/"resume": true/"x": 1/' "$1/problem.json"
+            $TOUCHSTONE solve --mutate viscosity=1.01 "$1"
         else $TOUCHSTONE solve "$1"; fi"#;
     let (all, exit) = only(rounded);
     assert_eq!((ids(&all, "fail"), exit), (vec!["restart"], 1), "{all:#?}");

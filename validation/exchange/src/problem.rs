@@ -201,8 +201,8 @@ impl ExportedProblem {
     /// The problem at a few early times in the frame of another observer, if there is a relation.
     ///
     /// # Errors
-    /// As [`ExportedProblem::of`], of the memory unless it is allowed, or if the relation is no symmetry of the
-    /// problem.
+    /// As [`ExportedProblem::of`], of the memory unless it is allowed, or if the relation is no symmetry
+    /// of the problem.
     pub fn seen(
         case: &dyn Case,
         spec: RunSpec,

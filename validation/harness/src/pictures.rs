@@ -87,8 +87,8 @@ pub fn at_share(share: f64) -> String {
     format!("particles@{share}")
 }
 
-/// Diameter of a particle of a film \[spacings\]: particles of a square lattice leave no gaps, which take half
-/// of the bytes of a frame.
+/// Diameter of a particle of a film \[spacings\]: particles of a square lattice leave no gaps, which
+/// take half of the bytes of a frame.
 const COVERS: f64 = 1.42;
 
 /// Keeps a frame of a film: places to 1/1000 of their unit, values to 1/10000.

@@ -243,8 +243,8 @@ impl Table {
         }
     }
 
-    /// Heads and rows; the text in the column of this number is the anchor of its row. A unit that all numbers
-    /// of a column have is in its head.
+    /// Heads and rows; the text in the column of this number is the anchor of its row. A unit that all
+    /// numbers of a column have is in its head.
     pub(super) fn body(&self, anchor: Option<usize>) -> Markup {
         let units: Vec<&str> = (0..self.columns.len()).map(|k| self.common_unit(k)).collect();
         html! {

@@ -311,7 +311,8 @@ pub struct Probe {
     pub variant: Option<String>,
     /// With one constant of our own variant multiplied by a factor: a question that has the same answer does
     /// not see it
-    #[arg(long, value_name = "CONSTANT=FACTOR", value_parser = mutation, conflicts_with_all = ["command", "code"])]
+    #[arg(long, value_name = "CONSTANT=FACTOR", value_parser = mutation)]
+    #[arg(conflicts_with_all = ["command", "code"])]
     pub mutate: Option<Mutation>,
     /// Ask these questions alone
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
@@ -326,7 +327,8 @@ pub struct Probe {
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
     pub map: Vec<(String, String)>,
     /// Wall time after which a call has failed \[s\]
-    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=86_400))]
     pub timeout: u32,
     /// Keep the folders of all problems in this new folder
     #[arg(long, value_name = "DIR")]

@@ -87,8 +87,8 @@ pub fn conservation() -> Question {
             let [before, after] = [&of.start, of.end()].map(energies);
             let energy = (after[0] + after[1]) / (before[0] + before[1]) / expected;
             let words = format!(
-                "momentum changed by {momentum:.1e} of its size, energy is {energy:.3} times that which viscosity \
-                 leaves"
+                "momentum changed by {momentum:.1e} of its size, energy is {energy:.3} times its value \
+                 after the viscous decay"
             );
             let criteria = [
                 Criterion::at_most(
@@ -144,7 +144,7 @@ pub fn drag() -> Question {
                         + &format!(", that of the other wall is {low:.3} of it")
                 }
             };
-            let because = "the steady profile is a straight line, which second-order sums have to 1 % with ten rows";
+            let because = "second-order sums have the steady profile, a straight line, to 1 %";
             let criteria = [
                 Criterion::new("velocity at the moving wall", high, [0.98, 1.02], because),
                 Criterion::new("velocity at the resting wall", low, [-0.02, 0.02], because),
@@ -185,8 +185,8 @@ pub fn stick() -> Question {
                 *place = if off.is_nan() { f64::NAN } else { place.max(off) };
             }
             let words = format!(
-                "at νt/L² = 0.1 the rows beside the walls are off by {beside:.3} of the wall's speed, the others \
-                 by {inside:.3}"
+                "at νt/L² = 0.1 the rows beside the walls are off by {beside:.3} of the wall's speed, \
+                 the others by {inside:.3}"
             );
             let because = "ten rows of a second-order method have the exact velocity to 1 %";
             let criteria = [
@@ -225,7 +225,7 @@ pub fn force() -> Question {
             let middle = middle.into_iter().filter(|[y, _]| (y - 0.5).abs() < 0.25);
             let factor = fit::factor(middle.map(|[y, u]| [u, medium.acceleration.x * exact(y)]));
             let factor = Factor { uncertainty: factor.uncertainty + 0.005, ..factor };
-            let because = "before the walls' layers meet, the middle has u = F t: a method needs no order for it";
+            let because = "before the walls' layers meet, the middle has u = F t at any order";
             let criterion =
                 Criterion::new("factor of the body force", factor.value, [0.98, 1.02], because);
             Ok(Finding::new(factor.of("the body force"), [criterion]).with(factor))
@@ -284,7 +284,7 @@ pub fn still() -> Question {
                     "speed over (gH)^(1/2)",
                     speed,
                     0.01,
-                    "a lattice settles at walls with up to 0.005; a corner without images of images has 0.013",
+                    "a lattice settles at walls with up to 0.005; a corner without its images has 0.013",
                 ),
             ];
             Ok(Finding::new(words, criteria).with(factor))

@@ -104,7 +104,7 @@ pub fn density() -> Question {
                 "sum on a lattice",
                 lattice,
                 [0.99, 1.01],
-                "with a support of 2 to 4 spacings the sum of a smooth kernel differs from its integral by up to 0.5 %",
+                "a support of 2 to 4 spacings: the sum differs from the integral by up to 0.5 %",
             );
             let disordered = Criterion::new(
                 "sum on disordered particles",
@@ -157,8 +157,12 @@ pub fn gradient() -> Question {
                 ),
             ];
             if of[2].entry.method.settings.get("gradient_correction") == Some(&true.into()) {
-                criteria.push(Criterion::at_most("scatter on disordered particles", noise, 0.1,
-                    "method.json states gradient_correction: a corrected gradient is exact for linear fields"));
+                criteria.push(Criterion::at_most(
+                    "scatter on disordered particles",
+                    noise,
+                    0.1,
+                    "by its stated gradient_correction it is exact for linear fields",
+                ));
             }
             let words = format!(
                 "{}; on disordered particles it scatters by {noise:.2} of its size",
@@ -182,7 +186,7 @@ pub fn viscous() -> Question {
         answer: Reads::Results(|of| {
             let factor = limit(of[0], of[1], viscous_force)?;
             let gradient = limit(of[2], of[3], pressure_force)?;
-            let guard = "on a lattice both are the sum −½ Σ V r W': a guard η² = 0.01 h² against 0/0 lowers the \
+            let guard = "both are the lattice sum −½ Σ V r W': a guard η² = 0.01 h² against 0/0 lowers the \
                          viscosity alone, by 0.7 %";
             let mut words = factor.of("the viscous force");
             let mut criteria =
@@ -194,7 +198,7 @@ pub fn viscous() -> Question {
                     Criterion::new("viscous over pressure force", ratio, [0.997, 1.003], guard);
                 if criteria[0].passes() && !guard.passes() {
                     words += &format!(
-                        ", and {ratio:.4} times that of the same sum for the pressure: a guard η² is too large"
+                        ", {ratio:.4} times that of the same sum for the pressure: a guard η² is too large"
                     );
                 }
                 criteria.push(guard);

@@ -28,7 +28,7 @@ pub fn spin() -> Question {
             let radius = start.iter().fold(0.0, |most: f64, at| most.max(at.position.norm()));
             let off = fit::rms(off) / radius;
             let words = format!(
-                "after a tenth of a turn the angular momentum is {kept:.4} of that at the start, and particles \
+                "after a tenth of a turn the angular momentum is {kept:.4} of its first value, and particles \
                  are {off:.4} radii from a rigid turn"
             );
             let criteria = [

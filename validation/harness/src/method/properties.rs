@@ -116,8 +116,8 @@ impl Properties {
         if self.is_corrected { lattice.corrected() } else { lattice }
     }
 
-    /// The limits of a step in a medium, by the waves of a periodic square lattice of n × n particles with this
-    /// h/dx.
+    /// The limits of a step in a medium, by the waves of a periodic square lattice of n × n particles
+    /// with this h/dx.
     pub fn limits_in(&self, medium: &Medium, h_over_dx: f64, n: usize) -> TimeStepLimits {
         self.limits([h_over_dx, medium.eta2_over_h2], n, &medium.waves(&self.uses))
     }

@@ -13,8 +13,8 @@ pub fn value(curve: &[(f64, f64)], t: f64) -> f64 {
     }
 }
 
-/// Root mean square over the points of `measured` of the distance to `computed`, whose clock is put forward by
-/// `shift`.
+/// Root mean square over the points of `measured` of the distance to `computed`, whose clock is put
+/// forward by `shift`.
 pub fn distance(computed: &[(f64, f64)], measured: &[(f64, f64)], shift: f64) -> f64 {
     let square = |(t, y): &(f64, f64)| (value(computed, t - shift) - y).powi(2);
     (measured.iter().map(square).sum::<f64>() / measured.len() as f64).sqrt()

@@ -161,8 +161,8 @@ fn gates(row: &Row) -> Vec<Gate> {
 
 /// Why the vortices of `modern` die too soon.
 static NOISE: Cause = Cause::new(
-    "Where stagnation points strain the lattice it buckles at once, and noisy sums take 45 % of the energy by \
-     t = 0.2 L/U.",
+    "Where stagnation points strain the lattice it buckles at once, and noisy sums take 45 % of the energy \
+     by t = 0.2 L/U.",
     "Sums that are exact for linear fields, as in `consistent`, or shifting ten times as strong.",
 );
 const MUFFLED: &str = "Noise only removes energy. The bound: 1 is the error of a fluid at rest.";
