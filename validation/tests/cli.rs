@@ -90,7 +90,7 @@ fn help_version_and_lists_are_results() {
     }
     let text = stdout(&touchstone(&["list", "couette"]));
     for word in [
-        "`modern` is recommended and runs by default",
+        "`consistent` is recommended and runs by default",
         "h_over_dx",
         "0.8 to 5.0 [-]",
         "Reynolds number",
@@ -102,7 +102,7 @@ fn help_version_and_lists_are_results() {
     };
     let one = json(&["list", "couette", "--json"]);
     assert_eq!(json(&["list", "--json"])[0], one);
-    assert_eq!(one["default_variant"], "modern");
+    assert_eq!(one["default_variant"], "consistent");
     let rows = one["settings"].as_array().unwrap().iter().find(|s| s["name"] == "rows").unwrap();
     assert_eq!((&rows["unit"], &rows["default"]), (&"-".into(), &20.into()));
 }

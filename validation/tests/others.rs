@@ -726,7 +726,7 @@ fn row_of(page: &str, code: &str) -> Vec<String> {
     };
     let mut cells: Vec<String> = row.split("</td>").map(cell).filter(|c| !c.is_empty()).collect();
     cells.pop(); // how it ended
-    cells.split_off(cells.len() - 3)
+    cells.split_off(cells.len() - 2)
 }
 
 /// The page states for each code whether its accuracy is judged, and which other gates fail: "1 pass" must

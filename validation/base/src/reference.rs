@@ -616,7 +616,7 @@ mod tests {
         let was = cell(&mut hill, "value", "0.5213");
         let error = hill.agreement().unwrap_err().to_string();
         assert!(
-            error.contains("two_codes: 50 separation H of periodic_hill_ngsolve is 1.16"),
+            error.contains("two_codes: 50 separation H of periodic_hill_ngsolve differs by 1.16"),
             "{error}"
         );
         assert_eq!(hill.graded(), "one code");

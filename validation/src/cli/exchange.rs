@@ -128,6 +128,16 @@ fn put(files: &[write::File], folder: &OutputFolder) -> Result<Vec<String>, Fail
     Ok(files.iter().map(|(name, _)| name.to_string()).collect())
 }
 
+/// The recommended variant, or the first that has sealed problems if that one has none.
+fn sealed_variant(case: &dyn Case) -> &'static str {
+    let (usual, draws) = (case.recommended().variant, case.facts().sealed);
+    let names = draws.map_or(&[][..], |draws| draws.variants);
+    match names.is_empty() || names.contains(&usual) {
+        true => usual,
+        false => names[0],
+    }
+}
+
 /// Writes a problem whose settings are drawn from a seed and a method.
 pub fn sealed(
     of: &arguments::Written,
@@ -136,7 +146,7 @@ pub fn sealed(
     session: &Session,
 ) -> Result<(), Failure> {
     let case = touchstone_cases::find_in(session.cases, &of.case)?;
-    let variant = of.variant.as_deref().unwrap_or(case.recommended().variant);
+    let variant = of.variant.as_deref().unwrap_or_else(|| sealed_variant(case));
     case.settings(variant, &[])?;
     let (method, text) = submission::method(method).map_err(|flaws| {
         let flaws: Vec<String> = flaws.iter().map(Flaw::to_string).collect();

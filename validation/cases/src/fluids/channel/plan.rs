@@ -140,7 +140,8 @@ fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
                            steps of the leapfrog: between rows in columns and rows slid past each other.";
             let matrices = CONSISTENT.iter().filter(|(of, n, _)| (*of, *n) == (flow, rows));
             let between = |(.., [low, high]): &(Flow, usize, [f64; 2])| {
-                gates.theory(L2.at(0.1), Bound::Within(*low, *high), because)
+                let gate = gates.theory(L2.at(0.1), Bound::Within(*low, *high), because);
+                of_others(gate, *high)
             };
             matrices.map(between).collect()
         }
