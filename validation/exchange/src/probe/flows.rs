@@ -47,7 +47,7 @@ pub fn did_it_run() -> Question {
                     "distance from that way",
                     off,
                     0.5,
-                    "acceleration and disorder take 0.02, shifted particles up to 0.45; another start has 0.62",
+                    "acceleration and disorder take 0.02, shifting up to 0.45; another start has 0.62",
                 ),
             ];
             if let Some(steps) = of.steps() {
@@ -244,8 +244,8 @@ pub fn still() -> Question {
         text: "Does still water stay still, with p = ρ g d?",
         poses: || vec![tank("end=0.02"), tank("end=1")],
         answer: Reads::Results(|of| {
-            // Until a wave of the surface or of a wall arrives, gravity that the pressure of the start does not
-            // hold accelerates the middle of the tank as a free fall.
+            // Until a wave of the surface or of a wall arrives, gravity that the pressure of the start
+            // does not hold accelerates the middle of the tank as a free fall.
             let (early, g) = (of[0].end(), of[0].problem.outline.medium.acceleration);
             let side = setting(of[0], "depth")?;
             let is_inside = |x: Vector2<f64>| x.iter().all(|x| (0.3..=0.7).contains(&(x / side)));
@@ -278,7 +278,7 @@ pub fn still() -> Question {
                     "factor of gravity",
                     factor.value,
                     [0.95, 1.05],
-                    "the pressure of the start is the exact one, and its gradient is linear: sums have it to 1 %",
+                    "the start has the exact pressure, and a linear gradient, which sums have to 1 %",
                 ),
                 Criterion::at_most(
                     "speed over (gH)^(1/2)",

@@ -181,7 +181,9 @@ fn curves(flow: Flow) -> Curves {
                 true => 100.0 * (u[k] - exact[k]) / settings.speed(),
                 false => u[k] / settings.speed(),
             };
-            (0..u.len()).map(|k| (shown(k), y[k] / settings.width)).collect()
+            // Columns of a damaged record may be of different lengths.
+            let rows = [u, exact, y].map(<[f64]>::len).into_iter().min().unwrap_or_default();
+            (0..rows).map(|k| (shown(k), y[k] / settings.width)).collect()
         }),
     };
     let of_difference = |variant: &str| CurvePanel {
