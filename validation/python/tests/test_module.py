@@ -160,7 +160,7 @@ def test_the_example_of_the_documents_prints_what_they_show(tmp_path):
     block = lambda language: page.split(f"```{language}\n")[1].split("\n```")[0]
     code = tmp_path / "run.py"
     code.write_text(block("python"), "utf-8")
-    command, *shown = block("console").split("\n")
+    command, *shown = block("text").split("\n")
     words = command.split("#")[0].split()[2:]
     ended = touchstone(*(str(code) if word == "run.py" else word for word in words))
     assert ended.returncode == 1, ended.stderr
