@@ -60,7 +60,7 @@ class Problem:
 
     >>> flow = problem("couette", rows=10)
     >>> flow
-    couette, variant modern: 60 particles, spacing 0.0001 m, until 1.0 s
+    couette, variant consistent: 60 particles, spacing 0.0001 m, until 1.0 s
     >>> flow.material["kinematic_viscosity"]
     1e-06 m^2/s
     >>> flow.particles["x"].shape

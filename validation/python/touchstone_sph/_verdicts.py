@@ -164,8 +164,8 @@ def judge(
     >>> found = judge(rest, [{"t": t, **rest.particles} for t in rest.times])
     >>> round(found.metrics["l2@0.1"], 6)   # the plate does not drag this fluid: all of the velocity is missing
     1.0
-    >>> found.passes is None                # no gate applies to these settings
-    True
+    >>> found.passes
+    False
     """
     with tempfile.TemporaryDirectory() as folder:
         submission, kept = Path(folder, "submission"), Path(folder, "store")
