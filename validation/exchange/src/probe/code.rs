@@ -20,7 +20,7 @@ use super::Pose;
 use crate::{
     flaw,
     problem::{ExportedProblem, PROBLEM},
-    read::{RESULTS, Renamed},
+    read::{self, Renamed},
     submission::{self, Entry},
     write::{self, Format},
 };
@@ -206,7 +206,7 @@ impl Code {
             }
         }
         let wall = started.elapsed().as_secs_f64();
-        match read(problem, folder, &self.map, wall) {
+        match solved(problem, folder, &self.map, wall) {
             Ok(solved) => Ran::Solved(Box::new(solved)),
             Err(flaws) => Ran::Failed(format!("results that cannot be used: {flaws}")),
         }
@@ -281,13 +281,12 @@ fn put(problem: &ExportedProblem, probe: Value, folder: &Path) -> Result<(), Str
 fn stopped(folder: &Path, time: f64, map: &Renamed) -> bool {
     let is_early = |frame: &Frame| frame.time <= time * (1.0 + 1e-9);
     // A code may write nothing before its end.
-    !folder.join(RESULTS).exists()
-        || submission::read(folder, map)
-            .is_ok_and(|entry| entry.results.frames.iter().all(is_early))
+    !read::has_results(folder)
+        || read::read(folder, map).is_ok_and(|results| results.frames.iter().all(is_early))
 }
 
 /// Reads the results of a problem.
-fn read(
+fn solved(
     problem: ExportedProblem,
     folder: &Path,
     map: &Renamed,

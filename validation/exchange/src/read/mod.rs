@@ -203,6 +203,14 @@ fn ending(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(_, ending)| ending)
 }
 
+/// Does a folder hold a file of results, in any format?
+pub fn has_results(folder: &Path) -> bool {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .filter_map(|entry| entry.file_name().into_string().ok())
+        .any(|name| is_of_results(&name))
+}
+
 fn is_of_results(name: &str) -> bool {
     name == RESULTS || ENDINGS.contains(&ending(name))
 }
