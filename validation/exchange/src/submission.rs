@@ -607,6 +607,12 @@ impl Entry {
         record.take_out(&is_to_go, &Absent::NotGiven(few));
     }
 
+    /// The stated steps to the end of the problem, or the number of our own.
+    pub fn steps(&self, problem: &ExportedProblem) -> f64 {
+        let end = problem.outline.times.last().copied().unwrap_or_default();
+        self.system.steps.unwrap_or(end / problem.outline.dt)
+    }
+
     /// Whether the method states our kernel, support and step, and made the corresponding number of steps.
     fn states_our_method(&self, problem: &ExportedProblem) -> bool {
         let Outline { medium, times, dt, .. } = &problem.outline;

@@ -342,8 +342,7 @@ pub fn relate(
     let most = symmetry::most_steps(&same.outline, &other.outline);
     let mut steps: f64 = 1.0;
     for (entry, problem, folder) in [(&ours, &same, base), (&theirs, &other, turned)] {
-        let end = problem.outline.times.last().copied().unwrap_or_default();
-        steps = steps.max(entry.system.steps.unwrap_or(end / problem.outline.dt));
+        steps = steps.max(entry.steps(problem));
         if steps > most {
             return Err(Failure::usage(format!(
                 "{}: steps of {SYSTEM} is {steps}, after which round-off would explain any error; a \

@@ -9,7 +9,6 @@ use touchstone_base::files::{self, write_atomically};
 use touchstone_base::gate::{Judgement, Verdict};
 use touchstone_base::record;
 use touchstone_base::submission::Submission;
-use touchstone_base::text::escaped;
 use touchstone_harness::case::{self, Case, Tier};
 use touchstone_harness::notes::Notes;
 use touchstone_harness::runs::{Judged, JudgedRun};
@@ -18,7 +17,11 @@ use touchstone_harness::suite::{CaseResults, Suite};
 use touchstone_report::Counts;
 
 use super::comparisons::{self, ComparisonVerdict};
-use super::{Failure, output};
+use super::{
+    Failure,
+    junit::{self, Tested},
+    output,
+};
 
 /// Judgements as a table: the worst come last, next to the prompt. Reasons of limitations are notes.
 pub fn table<'a>(all: impl IntoIterator<Item = &'a Judged>) -> String {
@@ -256,7 +259,7 @@ pub fn write_junit_of_submission(
     of: &SubmissionVerdicts,
     path: Option<&Path>,
 ) -> Result<(), Failure> {
-    let text = || testsuites([submission_testsuite(of)]);
+    let text = || junit::document([submission_testsuite(of)]);
     Ok(path.map_or(Ok(()), |path| write_atomically(path, text().as_bytes()))?)
 }
 
@@ -323,19 +326,13 @@ const MOST_SHOWN: usize = 20;
 /// A test case a gate, by case, and a suite for each run of another code in the store. Failing gates are
 /// failures; a limitation, an expected failure and a gate that does not apply are skipped, with the reason.
 fn junit(suite: &Suite) -> String {
-    testsuites(suite.cases.iter().flat_map(|results| {
+    junit::document(suite.cases.iter().flat_map(|results| {
         let judged = results.judged().map(|of| of.judged);
         let own = testsuite(results.case.name(), judged, &BTreeMap::new());
         let others = results.runs.submissions.iter();
         let others = others.filter_map(|run| SubmissionVerdicts::of(results.case, run, false));
         [own].into_iter().chain(others.map(|of| submission_testsuite(&of)))
     }))
-}
-
-/// A document of test suites.
-fn testsuites(all: impl IntoIterator<Item = String>) -> String {
-    let text = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n");
-    all.into_iter().fold(text, |text, suite| text + &suite) + "</testsuites>\n"
 }
 
 /// The suite of a run of another code.
@@ -353,31 +350,14 @@ fn testsuite<'a>(
     let of_gate = |Judged { gate, judgement, .. }: &Judged, words: &str| {
         let message = format!("{} {}; {words}", value(judgement), gate.bounds());
         match judgement.verdict {
-            Verdict::Pass => String::new(),
-            Verdict::Fail => format!(
-                "<failure message=\"{}\">{}</failure>",
-                escaped(&message),
-                escaped(&gate.because)
-            ),
-            _ => skip(&message),
+            Verdict::Pass => Tested::Pass,
+            Verdict::Fail => Tested::Fail { message, why: gate.because.clone() },
+            _ => Tested::Skipped(message),
         }
     };
-    let mut bodies: Vec<(&str, String)> =
+    let mut tests: Vec<(&str, Tested)> =
         judged.map(|judged| (&*judged.gate.id, of_gate(judged, &judged.words()))).collect();
-    bodies.extend(skipped.iter().map(|(id, why)| (&**id, skip(&format!("not applicable: {why}")))));
-    let count = |begin: &str| bodies.iter().filter(|(_, body)| body.starts_with(begin)).count();
-    let (name, all) = (escaped(name), bodies.len());
-    let (failed, skipped) = (count("<failure"), count("<skipped"));
-    let mut text = format!(
-        "  <testsuite name=\"{name}\" tests=\"{all}\" failures=\"{failed}\" skipped=\"{skipped}\">\n"
-    );
-    for (id, body) in &bodies {
-        let id = escaped(id);
-        text += &format!("    <testcase classname=\"{name}\" name=\"{id}\">{body}</testcase>\n");
-    }
-    text + "  </testsuite>\n"
-}
-
-fn skip(message: &str) -> String {
-    format!("<skipped message=\"{}\"/>", escaped(message))
+    let skip = |why: &String| Tested::Skipped(format!("not applicable: {why}"));
+    tests.extend(skipped.iter().map(|(id, why)| (&**id, skip(why))));
+    junit::suite(name, &tests)
 }

@@ -21,6 +21,7 @@ mod exchange;
 mod explain;
 mod interrupt;
 mod judged;
+mod junit;
 mod list;
 mod man;
 mod output;

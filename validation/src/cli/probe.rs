@@ -10,11 +10,16 @@ use serde_json::json;
 use touchstone_base::{
     files::{self, OutputFolder},
     gate,
-    text::{escaped, short},
+    text::short,
 };
 use touchstone_exchange::probe::{self, Answer, Code, Question, Verdict, code};
 
-use super::{Exit, Failure, Outcome, Session, arguments, exchange::renamed, output};
+use super::{
+    Exit, Failure, Outcome, Session, arguments,
+    exchange::renamed,
+    junit::{self, Tested},
+    output,
+};
 
 /// Name of the document in the folder of a code.
 const DOCUMENT: &str = "probe.json";
@@ -189,25 +194,16 @@ fn list_json(questions: &[Question]) -> serde_json::Value {
 
 /// A test case a question.
 fn junit(questions: &[Question], answers: &[Answer]) -> String {
-    let count = |of| answers.iter().filter(|answer| answer.verdict() == of).count();
-    let (failed, skipped) = (count(Verdict::Fail), count(Verdict::NotApplicable));
-    let mut text = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n  <testsuite name=\"probe\" \
-         tests=\"{}\" failures=\"{failed}\" skipped=\"{skipped}\">\n",
-        answers.len()
-    );
-    for (question, answer) in questions.iter().zip(answers) {
-        let words = escaped(&answer.words());
-        let body = match answer.verdict() {
-            Verdict::Pass => String::new(),
+    let test = |(question, answer): (&Question, &Answer)| {
+        let test = match answer.verdict() {
+            Verdict::Pass => Tested::Pass,
             Verdict::Fail => {
-                let why = escaped(&answer.failures().join("\n"));
-                format!("<failure message=\"{words}\">{why}</failure>")
+                Tested::Fail { message: answer.words(), why: answer.failures().join("\n") }
             }
-            Verdict::NotApplicable => format!("<skipped message=\"{words}\"/>"),
+            Verdict::NotApplicable => Tested::Skipped(answer.words()),
         };
-        let id = question.id;
-        text += &format!("    <testcase classname=\"probe\" name=\"{id}\">{body}</testcase>\n");
-    }
-    text + "  </testsuite>\n</testsuites>\n"
+        (question.id, test)
+    };
+    let tests: Vec<_> = questions.iter().zip(answers).map(test).collect();
+    junit::document([junit::suite("probe", &tests)])
 }

@@ -79,8 +79,6 @@ pub struct Solved {
     pub problem: ExportedProblem,
     /// The folder as it was read.
     pub entry: Entry,
-    /// Wall time of the call \[s\].
-    pub wall: f64,
     /// The moving particles of the problem.
     pub start: Moment,
     /// The moving particles as handed in, ascending in time.
@@ -175,7 +173,6 @@ impl Code {
             Err(why) => return Ran::Declined(format!("the problem cannot be stated: {why}")),
         };
         let end = problem.outline.times.last().copied().unwrap_or_default();
-        let started = Instant::now();
         let mut calls: Vec<Value> = Vec::new();
         if let Some(share) = pose.interrupt {
             calls.push(json!({ "stop_after": { "value": share * end, "unit": "s" } }));
@@ -205,8 +202,7 @@ impl Code {
                 return Ran::Declined("the code does not stop at `stop_after`".into());
             }
         }
-        let wall = started.elapsed().as_secs_f64();
-        match solved(problem, folder, &self.map, wall) {
+        match solved(problem, folder, &self.map) {
             Ok(solved) => Ran::Solved(Box::new(solved)),
             Err(flaws) => Ran::Failed(format!("results that cannot be used: {flaws}")),
         }
@@ -281,17 +277,12 @@ fn put(problem: &ExportedProblem, probe: Value, folder: &Path) -> Result<(), Str
 fn stopped(folder: &Path, time: f64, map: &Renamed) -> bool {
     let is_early = |frame: &Frame| frame.time <= time * (1.0 + 1e-9);
     // A code may write nothing before its end.
-    !read::has_results(folder)
+    read::names(folder).is_ok_and(|names| names.is_empty())
         || read::read(folder, map).is_ok_and(|results| results.frames.iter().all(is_early))
 }
 
 /// Reads the results of a problem.
-fn solved(
-    problem: ExportedProblem,
-    folder: &Path,
-    map: &Renamed,
-    wall: f64,
-) -> Result<Solved, String> {
+fn solved(problem: ExportedProblem, folder: &Path, map: &Renamed) -> Result<Solved, String> {
     let told = |flaws: Vec<flaw::Flaw>| {
         let mut lines = flaw::lines(&flaws);
         let others = lines.split_off(lines.len().min(1)).len();
@@ -332,7 +323,7 @@ fn solved(
         Moment { time: frame.time, states: states.collect() }
     };
     let moments: Vec<Moment> = entry.results.frames.iter().map(moment).collect();
-    Ok(Solved { problem, entry, wall, start, moments })
+    Ok(Solved { problem, entry, start, moments })
 }
 
 /// The last line of a text that is not empty.

@@ -120,6 +120,11 @@ fn couette() -> Pose {
     Pose::of("couette", "plain", &["rows=10"]).or("extrapolating-wall")
 }
 
+/// Speed of the moving plate V = Re ν/L \[m/s\].
+fn plate_speed(of: &Solved) -> Result<f64, NotApplicable> {
+    Ok(setting(of, "re")? * setting(of, "nu")? / setting(of, "width")?)
+}
+
 pub fn drag() -> Question {
     Question {
         id: "moving-wall",
@@ -127,7 +132,7 @@ pub fn drag() -> Question {
         poses: || vec![couette()],
         answer: Reads::Results(|of| {
             let of = of[0];
-            let speed = setting(of, "re")? * setting(of, "nu")? / setting(of, "width")?;
+            let speed = plate_speed(of)?;
             let all = profile(of, &of.end().states)?;
             let [low, slope] = fit::line(&all);
             let off = fit::rms(all.iter().map(|[y, u]| u - low - slope * y));
@@ -163,7 +168,7 @@ pub fn stick() -> Question {
         answer: Reads::Results(|of| {
             let of = of[0];
             let (nu, width) = (setting(of, "nu")?, setting(of, "width")?);
-            let speed = setting(of, "re")? * nu / width;
+            let speed = plate_speed(of)?;
             let time = 0.1 * width * width / nu;
             let at = of
                 .moments

@@ -16,7 +16,7 @@ fn apart(ours: &Solved, other: &Solved) -> Result<(f64, String), NotApplicable> 
         if let Some((_, _, far)) = symmetry::far_away((outline, &of.entry.results.frames)) {
             return Ok((f64::NAN, far));
         }
-        steps = steps.max(of.steps().unwrap_or(of.end().time / outline.dt));
+        steps = steps.max(of.entry.steps(&of.problem));
     }
     let most = symmetry::most_steps(&ours.problem.outline, &other.problem.outline);
     if steps > most {
@@ -24,9 +24,8 @@ fn apart(ours: &Solved, other: &Solved) -> Result<(f64, String), NotApplicable> 
             "after {steps} steps round-off explains any difference; at most {most} can be compared"
         ));
     }
-    let seen = |of: &'_ Solved| (of.problem.outline.clone(), of.entry.results.frames.clone());
-    let ((a, first), (b, second)) = (seen(ours), seen(other));
-    let found = symmetry::difference((&a, &first), (&b, &second), steps);
+    let [ours, other] = [ours, other].map(|of| (&of.problem.outline, &*of.entry.results.frames));
+    let found = symmetry::difference(ours, other, steps);
     let place =
         format!("{} of particle {} at t = {} s", found.quantity, found.particle, found.time);
     Ok((found.value / found.floor, place))

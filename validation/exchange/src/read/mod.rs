@@ -156,13 +156,9 @@ const ENDINGS: [&str; 6] = ["dump", "npz", "vtu", "vtp", "h5", "hdf5"];
 /// # Errors
 /// Every flaw that was found, at least one.
 pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
-    let mut names = Vec::new();
     let refused = |what: String| vec![Flaw::of(folder.display().to_string(), what)];
-    let entries = std::fs::read_dir(folder);
-    let entries = entries.map_err(|reason| refused(format!("cannot be read: {reason}")))?;
-    for entry in entries.flatten() {
-        names.extend(entry.file_name().into_string().ok().filter(|name| is_of_results(name)));
-    }
+    let names = names(folder).map_err(|reason| refused(format!("cannot be read: {reason}")));
+    let mut names = names?;
     names.sort_by_key(|name| (number_in(name), name.clone()));
     if names.is_empty() {
         let endings = ENDINGS.join(", *.");
@@ -203,12 +199,14 @@ fn ending(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(_, ending)| ending)
 }
 
-/// Does a folder hold a file of results, in any format?
-pub fn has_results(folder: &Path) -> bool {
-    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    entries
-        .filter_map(|entry| entry.file_name().into_string().ok())
-        .any(|name| is_of_results(&name))
+/// The names of the files of results in a folder, in no order.
+///
+/// # Errors
+/// If the folder cannot be read.
+pub fn names(folder: &Path) -> std::io::Result<Vec<String>> {
+    let names = std::fs::read_dir(folder)?.flatten();
+    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    Ok(names.filter(|name| is_of_results(name)).collect())
 }
 
 fn is_of_results(name: &str) -> bool {
