@@ -48,20 +48,15 @@ pub fn section() -> Section {
         "Each question has one short problem, criteria with reasons, and named errors that it finds; \
          `touchstone probe -- COMMAND` asks them of any code. Not applicable is no pass.",
     );
-    let details = |(code, answers): &(String, Vec<Answered>)| {
+    let of_code = |(code, answers): &(String, Vec<Answered>)| {
         let columns = ["question", "verdict", "answer"].map(TableColumn::text);
         let row = |of: &Answered| {
             vec![Cell::text(of.id.clone()), verdict(of), Cell::text(plain(&of.answer))]
         };
-        let table = Table::new("Answers", columns.into());
-        let table = answers.iter().map(row).fold(table, Table::row);
-        Block::Details {
-            summary: format!("Answers of {}", plain(code)),
-            blocks: vec![Block::Table(table)],
-        }
+        let table = Table::new(format!("Answers of {}", plain(code)), columns.into());
+        Block::Table(answers.iter().map(row).fold(table, Table::row))
     };
-    let section = section.block(Block::Table(table));
-    all.iter().map(details).fold(section, Section::block)
+    all.iter().map(of_code).fold(section.block(Block::Table(table)), Section::block)
 }
 
 fn verdict(of: &Answered) -> Cell {

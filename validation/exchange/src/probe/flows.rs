@@ -67,7 +67,7 @@ pub fn did_it_run() -> Question {
     }
 }
 
-/// Energy over that which the exact flow has left.
+/// Allowed energy over that of the exact flow at the end.
 const ENERGY: [f64; 2] = [0.98, 1.01];
 
 pub fn conservation() -> Question {
@@ -98,7 +98,7 @@ pub fn conservation() -> Question {
                     "forces of pairs that are equal and opposite change it by round-off",
                 ),
                 Criterion::new(
-                    "energy over that which viscosity leaves",
+                    "energy over its value after the viscous decay",
                     energy,
                     ENERGY,
                     "the viscosity of the disorder takes up to 1 %",

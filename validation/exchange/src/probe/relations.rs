@@ -79,7 +79,7 @@ pub fn mirrored() -> Question {
 pub fn boosted() -> Question {
     Question {
         id: "boosted",
-        text: "Seen by who moves along: the same flow?",
+        text: "In a moving frame of reference: the same flow?",
         poses: || vec![vortices(Relation::Same), vortices(Relation::Boosted)],
         answer: Reads::Results(agree),
         finds: &["absolute-velocity"],
