@@ -3,7 +3,7 @@
 use touchstone_base::{
     gate::Verdict,
     manifest::Manifest,
-    record::{Record, Status},
+    record::Record,
     reference::Reference,
     spec::{RunSpec, Task},
     submission::OURS,
@@ -18,8 +18,8 @@ use touchstone_harness::{
     suite::{CaseResults, JudgedOf, Of, Suite},
 };
 use touchstone_report::{
-    Block, Cell, Counts, Explorer, Figure, Overview, Page, Section, Table, TableColumn, VERDICTS,
-    code, counted, percent, plain, sig,
+    Block, Cell, Counts, DataFile, Explorer, Figure, Overview, Page, Section, Table, TableColumn,
+    VERDICTS, code, counted, percent, plain,
 };
 
 use crate::{limitations, probes, stiffness, time};
@@ -49,7 +49,8 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
     }
     let mut sections: Vec<Section> = suite.cases.iter().map(case_section).collect();
     sections.extend([probes::section(), reading(suite)]);
-    sections.extend([stiffness::section(suite), time::section(suite), references_section()]);
+    let steps = Section::new("steps", "Time steps and run time");
+    sections.push(steps.child(stiffness::section(suite)).child(time::section(suite)));
     sections.extend([verdicts(suite), limitations::section(suite), about(suite)]);
     Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
@@ -169,7 +170,8 @@ fn about(suite: &Suite) -> Section {
         "Results of other codes and [reference data](#references) are stored; all else comes from the runs \
          of this report.",
     );
-    of_others(suite).into_iter().fold(section, Section::prose)
+    let section = of_others(suite).into_iter().fold(section, Section::prose);
+    section.child(references_section())
 }
 
 /// The name of a case in words.
@@ -293,9 +295,8 @@ fn reading(suite: &Suite) -> Section {
 
 /// How to read the runs of a case.
 const RUNS: &str = "\
-    A run is shown with the settings that are not the defaults of its variant, which `touchstone list` and \
-    the name of the case show. Run time is the median of timings with nothing else of this program at work; \
-    ≈ marks a time that was measured while runs were made in parallel, and is rough.";
+    The file of a case has a line for each run, with the settings that are not the defaults of its variant. \
+    A run time that was not timed alone was measured while runs were made in parallel, and is rough.";
 
 /// Notes for all diagrams of a kind.
 const READING: [&str; 2] = [
@@ -349,7 +350,8 @@ fn case_section(results: &CaseResults) -> Section {
     };
     let variants = (0..variants.len()).filter(is_first).map(alike).collect();
     let runs = Section::new(format!("runs-{}", case.name()), "All runs");
-    section.child(runs.block(Block::List(variants)).block(run_table(case, &results.runs.all)))
+    let file = run_file(case, &results.runs.all);
+    section.child(runs.block(Block::List(variants)).block(Block::File(file)))
 }
 
 /// Sections and figures share a name space; figures are named by their study.
@@ -368,27 +370,46 @@ fn measured(value: f64) -> Cell {
     if is_whole { Cell::exact(value) } else { Cell::num(value, 4) }
 }
 
-fn run_table(case: &dyn Case, runs: &[JudgedRun]) -> Table {
-    let time = |record: &Record| {
-        let alone = record.cost.alone_median();
-        let seconds = alone.unwrap_or(record.cost.cpu_s);
-        let mark = if alone.is_some() { "" } else { "≈" };
-        let text = format!("{mark}{}", sig(1e3 * seconds, 3));
-        Cell { value: Some(seconds), ..Cell::text(text) }
+/// A run as a line of a file; its settings are those that are not the defaults of its variant.
+#[derive(serde::Serialize)]
+struct RunLine {
+    variant: String,
+    settings: String,
+    particles: usize,
+    steps: u64,
+    pairs: u64,
+    #[serde(rename = "run_time_s")]
+    run_time: f64,
+    timed_alone: bool,
+    status: String,
+}
+
+fn run_file(case: &dyn Case, runs: &[JudgedRun]) -> DataFile {
+    let line = |run: &JudgedRun| {
+        let (record, cost) = (&run.record, &run.record.cost);
+        let alone = cost.alone_median();
+        RunLine {
+            variant: record.run.variant.clone(),
+            settings: what(case, &record.spec()),
+            particles: cost.particles,
+            steps: cost.steps,
+            pairs: cost.pair_interactions,
+            run_time: alone.unwrap_or(cost.cpu_s),
+            timed_alone: alone.is_some(),
+            status: record.status.to_string(),
+        }
     };
-    let ended = |record: &Record| match record.status {
-        Status::Completed => String::new(),
-        _ => record.status.to_string(),
-    };
-    TableColumns::<Record>::default()
-        .code("variant", |record| record.run.variant.clone())
-        .text("set", |record| what(case, &record.spec()))
-        .num(["particles", "1"], |record| Cell::count(record.cost.particles as u64))
-        .num(["steps", "1"], |record| Cell::count(record.cost.steps))
-        .num(["pairs", "1"], |r| Cell::sci(r.cost.pair_interactions as f64, 2))
-        .num(["run time", "ms"], time)
-        .text("ended early", ended)
-        .table("All runs.", runs.iter().map(|run| &run.record))
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    let whole = runs.iter().map(line).try_for_each(|line| csv.serialize(line));
+    let csv = csv.into_inner().unwrap_or_default();
+    DataFile {
+        title: match whole {
+            Ok(()) => format!("{} (CSV)", counted(runs.len(), "run", "runs")),
+            Err(error) => format!("No file of runs: {error}"),
+        },
+        name: format!("{}-runs.csv", case.name()),
+        csv: String::from_utf8(csv).unwrap_or_default(),
+    }
 }
 
 /// Settings that differ from the defaults of the variant, as `key=value`, and the use of the run.

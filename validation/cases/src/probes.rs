@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 use touchstone_base::{gate::Verdict, pack};
-use touchstone_report::{Block, Cell, Section, Table, TableColumn, plain};
+use touchstone_report::{Cell, Section, Table, TableColumn, plain};
 
 /// Packed by the build script.
 const ANSWERS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/probes"));
@@ -31,32 +31,70 @@ pub fn answers() -> Vec<(String, Vec<Answered>)> {
     all.filter_map(|(path, text)| Some((code(&path), serde_json::from_str(&text).ok()?))).collect()
 }
 
-/// Codes against questions, and below it each answer.
+/// Codes against questions, and the answers.
 pub fn section() -> Section {
     let all = answers();
+    Section::new("probes", "Twenty questions")
+        .prose(
+            "Each question has one short problem, criteria with reasons, and named errors that it finds; \
+             `touchstone probe -- COMMAND` asks them of any code. Not applicable is no pass.",
+        )
+        .block(verdicts(&all))
+        .block(texts(&all))
+}
+
+/// A question, and the answer of each code that was asked.
+type Asked<'a> = (&'a Answered, Vec<(&'a str, Option<&'a Answered>)>);
+
+fn questions(all: &[(String, Vec<Answered>)]) -> impl Iterator<Item = Asked<'_>> {
+    let first = all.first().map_or(&[][..], |(_, answers)| answers);
+    first.iter().map(move |question| {
+        let of = |answers: &'_ [Answered]| answers.iter().position(|of| of.id == question.id);
+        let answers = all.iter().map(|(code, all)| (&**code, of(all).map(|k| &all[k])));
+        (question, answers.collect())
+    })
+}
+
+/// A verdict for each question and code, which leads to the answer.
+fn verdicts(all: &[(String, Vec<Answered>)]) -> Table {
     let mut columns = vec![TableColumn::text("question")];
-    columns.extend(all.iter().map(|(code, _)| TableColumn::text(code.clone())));
-    let caption = "Answers of codes to the same questions";
-    let mut table = Table::new(caption, columns);
-    for first in all.first().map_or(&[][..], |(_, answers)| answers) {
-        let of = |answers: &[Answered]| answers.iter().find(|of| of.id == first.id).map(verdict);
-        let mut row = vec![Cell::text(first.question.clone())];
-        row.extend(all.iter().map(|(_, answers)| of(answers).unwrap_or(Cell::text("not asked"))));
-        table = table.row(row);
-    }
-    let section = Section::new("probes", "Twenty questions").prose(
-        "Each question has one short problem, criteria with reasons, and named errors that it finds; \
-         `touchstone probe -- COMMAND` asks them of any code. Not applicable is no pass.",
-    );
-    let of_code = |(code, answers): &(String, Vec<Answered>)| {
-        let columns = ["question", "verdict", "answer"].map(TableColumn::text);
-        let row = |of: &Answered| {
-            vec![Cell::text(of.id.clone()), verdict(of), Cell::text(plain(&of.answer))]
-        };
-        let table = Table::new(format!("Answers of {}", plain(code)), columns.into());
-        Block::Table(answers.iter().map(row).fold(table, Table::row))
+    columns.extend(all.iter().map(|(code, _)| TableColumn::text(plain(code))));
+    let table = Table::new("Answers of codes to the same questions", columns);
+    let link = |of: &Answered| {
+        let text = format!("[{}](#{})", verdict(of).text, anchor(of));
+        Cell { text, is_marked: true, ..verdict(of) }
     };
-    all.iter().map(of_code).fold(section.block(Block::Table(table)), Section::block)
+    let row = |(question, answers): Asked| {
+        let answers = answers.iter().map(|(_, of)| of.map_or(Cell::text("not asked"), link));
+        [Cell::text(&question.question)].into_iter().chain(answers).collect()
+    };
+    questions(all).map(row).fold(table, Table::row)
+}
+
+/// Each answer once, with the codes that gave it.
+fn texts(all: &[(String, Vec<Answered>)]) -> Table {
+    let columns = ["question", "verdict", "codes", "answer"].map(TableColumn::text);
+    let table = Table::new("Answers, with the codes that gave them", columns.into());
+    let rows = |(question, answers): Asked| {
+        let mut rows: Vec<Vec<Cell>> = Vec::new();
+        for (code, of) in answers.iter().filter_map(|(code, of)| Some((code, (*of)?))) {
+            let [id, answer] = [&question.id, &of.answer].map(Cell::text);
+            match rows.iter_mut().find(|row| row[1] == verdict(of) && row[3] == answer) {
+                Some(row) => row[2].text += &format!(", {code}"),
+                None => rows.push(vec![id, verdict(of), Cell::text(*code), answer]),
+            }
+        }
+        if let Some(first) = rows.first_mut() {
+            first[0].anchor = anchor(question);
+        }
+        rows
+    };
+    questions(all).flat_map(rows).fold(table, Table::row)
+}
+
+/// Where the answers to its question are.
+fn anchor(of: &Answered) -> String {
+    format!("probes-{}", of.id)
 }
 
 fn verdict(of: &Answered) -> Cell {

@@ -6,7 +6,7 @@ use touchstone_harness::{
     limits::Mechanism,
     suite::{CaseResults, Suite},
 };
-use touchstone_report::{Block, Cell, Section, Table};
+use touchstone_report::{Cell, Section, Table};
 
 /// A variant at its default settings.
 pub struct StiffnessRow {
@@ -104,12 +104,11 @@ pub fn section(suite: &Suite) -> Section {
         rows
     };
     let rows: Vec<StiffnessRow> = suite.cases.iter().flat_map(of_case).collect();
-    let summary = "The recommended variant and the paper's of each case".into();
     let note = "`touchstone stability --theory` prints the table of all variants without any run. Each case \
                 compares the longest stable step by bisection with *together*; on lattices at rest the two \
                 agree within 3 %, as gates of the case `resting_box` demand.";
-    Section::new("stiffness", "What limits the time step").prose(READING).block(Block::Details {
-        summary,
-        blocks: vec![table(&rows).into(), Block::Prose(vec![note.into()])],
-    })
+    Section::new("stiffness", "What limits the time step")
+        .prose(READING)
+        .block(table(&rows))
+        .prose(note)
 }

@@ -65,7 +65,9 @@ fn check_attribute(element: &Node, attribute: &Attribute) -> Result<(), String> 
     let (tag, value) = (name(element), attribute.value());
     match attribute.name() {
         "href" if tag == "a" => {
-            match leads_beside(value) || value.starts_with("https://doi.org/") {
+            // Saved, not opened: see `DataFile`.
+            let is_saved = element.has_attribute("download") && value.starts_with("data:text/csv;");
+            match is_saved || leads_beside(value) || value.starts_with("https://doi.org/") {
                 true => Ok(()),
                 false => Err(format!("a link to {value}")),
             }
@@ -226,7 +228,8 @@ mod tests {
         let figure = "<figure id=\"f\"><svg><rect/><line/><text>a</text></svg>\
                       <figcaption><b>Figure 1. </b>What is seen.</figcaption></figure>\
                       <a href=\"#f\">f</a> <a href=\"https://doi.org/10.1006/x\">x</a>\
-                      <a href=\"figures/f.png\">x</a>";
+                      <a href=\"figures/f.png\">x</a> \
+                      <a href=\"data:text/csv;base64,YSxi\" download=\"x.csv\">x</a>";
         check_page(&page(figure)).unwrap();
     }
 
@@ -247,6 +250,8 @@ mod tests {
             ("<a href=\"java&#10;script:alert(1)\">x</a>", "link"),
             ("<a href=\"vbscript:x\">x</a>", "link"),
             ("<a href=\"data:text/html,x\">x</a>", "link"),
+            ("<a href=\"data:text/html,x\" download=\"x\">x</a>", "link"),
+            ("<a href=\"data:text/csv;base64,YSxi\">x</a>", "link"),
             ("<a href=\"../../evil.html\">x</a>", "link"),
             ("<a href=\"figures/../../evil.html\">x</a>", "link"),
             ("<a href=\"..\\evil.html\">x</a>", "link"),

@@ -42,7 +42,7 @@ pub use inline::{code, plain};
 pub use movie::Movie;
 pub use number::{counted, exact, percent, sci, seconds, sig};
 pub use overview::{Overview, Subject};
-pub use page::{Block, Page, Section, made_from};
+pub use page::{Block, DataFile, Page, Section, made_from};
 pub use render::{png, svg};
 pub use table::{Cell, Table, TableColumn, first_sentence};
 pub use ticks::Scale;

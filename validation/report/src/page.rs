@@ -108,6 +108,8 @@ pub enum Block {
     Overview(Overview),
     /// The table of all verdicts, once a page.
     Explorer(Explorer),
+    /// A link that saves a table which the page contains and does not show.
+    File(DataFile),
     /// Blocks behind a click.
     Details {
         /// The summary of folded content; inline markup.
@@ -115,6 +117,24 @@ pub enum Block {
         /// The blocks.
         blocks: Vec<Block>,
     },
+}
+
+/// A table as text, for other programs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataFile {
+    /// Text of the link.
+    pub title: String,
+    /// Name of the file that a reader saves.
+    pub name: String,
+    /// Comma-separated values with a head.
+    pub csv: String,
+}
+
+impl DataFile {
+    fn markup(&self) -> Markup {
+        let address = format!("data:text/csv;base64,{}", base64(self.csv.as_bytes()));
+        html! { p { a href=(address) download=(self.name) { (self.title) } } }
+    }
 }
 
 impl From<Figure> for Block {
@@ -306,6 +326,7 @@ impl Writer {
             }
             Block::Overview(overview) => overview.markup(),
             Block::Explorer(explorer) => explorer.markup(),
+            Block::File(file) => file.markup(),
             Block::Details { summary, blocks } => html! {
                 details {
                     summary { (inline(summary)) }
@@ -394,6 +415,14 @@ mod tests {
             shown("Why, *then*?").contains("<b>Figure 1. Why, <em>then</em>?</b></figcaption>")
         );
         assert!(shown("So.").contains("<b>Figure 1. </b>So.</figcaption>"));
+    }
+
+    #[test]
+    fn a_file_is_part_of_the_page() {
+        let [title, name, csv] = ["2 runs (CSV)", "a-runs.csv", "a,b\n1,2\n"].map(String::from);
+        let html = DataFile { title, name, csv }.markup().into_string();
+        let link = "<a href=\"data:text/csv;base64,YSxiCjEsMgo=\" download=\"a-runs.csv\">";
+        assert!(html.contains(link), "{html}");
     }
 
     #[test]

@@ -38,13 +38,15 @@ pub struct Cell {
     pub status: Option<Verdict>,
     /// A remark in small letters below it, such as the reason of a dash; inline markup.
     pub remark: String,
+    /// Name under which links lead to it, unique on the page; none if empty.
+    pub anchor: String,
 }
 
 impl Cell {
     /// Plain text, shown as it is.
     pub fn text(text: impl Into<String>) -> Self {
-        let (text, remark) = (text.into(), String::new());
-        Self { text, is_marked: false, value: None, status: None, remark }
+        let [remark, anchor] = [const { String::new() }; 2];
+        Self { text: text.into(), is_marked: false, value: None, status: None, remark, anchor }
     }
 
     /// Text of ours with inline markup.
@@ -97,6 +99,11 @@ impl Cell {
         Self { remark: remark.into(), ..self }
     }
 
+    /// Makes it the target of links.
+    pub fn anchored(self, anchor: impl Into<String>) -> Self {
+        Self { anchor: anchor.into(), ..self }
+    }
+
     /// Adds a verdict.
     pub fn with(self, status: Verdict) -> Self {
         Self { status: Some(status), ..self }
@@ -134,7 +141,8 @@ impl Cell {
         let number = (numeric && value.is_none()).then_some("number");
         let classes: Vec<&str> = number.into_iter().chain(self.status.map(class)).collect();
         html! {
-            td class=[(!classes.is_empty()).then(|| classes.join(" "))] data-v=[value]
+            td id=[(!self.anchor.is_empty()).then_some(&self.anchor)]
+                class=[(!classes.is_empty()).then(|| classes.join(" "))] data-v=[value]
                 data-label=[label] {
                 @if self.is_marked { (inline(&self.text)) } @else { (self.text) }
                 @if !self.remark.is_empty() { small { (inline(&self.remark)) } }
@@ -219,8 +227,36 @@ impl Table {
         self
     }
 
-    /// The table with its caption; behind a click if it is long.
+    /// The table without the columns in which no row has a value.
+    fn without_empty_columns(&self) -> Self {
+        let has_value = |k: usize| {
+            let mut cells = self.rows.iter().filter_map(|row| row.get(k));
+            cells.any(|cell| !matches!(&*cell.text, "" | "–") || !cell.remark.is_empty())
+        };
+        let shown: Vec<bool> = (0..self.columns.len()).map(has_value).collect();
+        let is_shown = |k: usize| shown.get(k).is_some_and(|shown| *shown);
+        let columns = self.columns.iter().enumerate().filter(|(k, _)| is_shown(*k));
+        let cells = |row: &Vec<Cell>| {
+            row.iter()
+                .enumerate()
+                .filter(|(k, _)| is_shown(*k))
+                .map(|(_, cell)| cell.clone())
+                .collect()
+        };
+        Self {
+            caption: self.caption.clone(),
+            columns: columns.map(|(_, column)| column.clone()).collect(),
+            rows: self.rows.iter().map(cells).collect(),
+        }
+    }
+
+    /// The table with its caption, without empty columns; behind a click if it is long.
     pub(super) fn markup(&self, name: &str) -> Markup {
+        let full = self.without_empty_columns();
+        full.captioned(name)
+    }
+
+    fn captioned(&self, name: &str) -> Markup {
         let cells = self.rows.len() * self.columns.len();
         let (first, rest) = first_sentence(&self.caption);
         let table = html! {
@@ -312,6 +348,16 @@ mod tests {
         assert!(!with(1).markup("Table").into_string().contains("<details>"));
         let long = with(2).markup("Table").into_string();
         assert!(long.contains("<summary><b>Table. </b>Errors fall.</summary><p>Orders too.</p>"));
+    }
+
+    #[test]
+    fn a_column_without_values_is_omitted() {
+        let columns = ["a", "b", "c"].map(TableColumn::text).into();
+        let row = |c: Cell| vec![Cell::text("1"), Cell::text("–"), c];
+        let table = Table::new("Errors", columns).row(row(Cell::text("")));
+        let shown = |table: &Table| table.markup("Table").into_string().matches("<th ").count();
+        assert_eq!(shown(&table), 1);
+        assert_eq!(shown(&table.row(row(Cell::text("–").because("not measured")))), 2);
     }
 
     #[test]

@@ -376,7 +376,7 @@ fn table(accuracy: &Accuracy, rows: &[LadderRow]) -> Table {
         .of(["finest error", "-"], finest, |error| Cell::percent(error, 2));
     let columns = GOALS.iter().fold(columns, |columns, goal| {
         let head = format!("time to {}", percent(*goal, 1));
-        columns.of([&head, "s"], |row| cheapest(&row.points, *goal), Cell::seconds)
+        columns.of([&head, ""], |row| cheapest(&row.points, *goal), Cell::seconds)
     });
     columns.table(about, rows)
 }

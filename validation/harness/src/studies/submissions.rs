@@ -185,7 +185,7 @@ const MEASURED: &str = "Particles of other codes, measured by the code that meas
              them. Versions, seconds and steps are as submitted, because this program cannot check them.";
 const DIVISIONS: &str = "Closed division: our particles, spacing and support of the kernel. Open division: \
              other particles or another resolution, at a stated cost. The best is first in each. Gates on \
-             the error judge the accuracy; *none*: no gate does. Versions and processor times are as \
+             the error judge the accuracy; a dash: no gate does. Versions and processor times are as \
              submitted.";
 
 /// Place and time of the runs that the program contains, and notes for their reader.
@@ -276,8 +276,15 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
     if rows.iter().any(|row| row.3 != rows[0].3) {
         columns = columns.text("what the error is", |(.., of)| of.to_string());
     }
+    let is_of_both = rows.iter().any(|row| row.0.division != rows[0].0.division);
+    let (mut caption, best) = ("Runs of other codes".to_string(), "the best first");
+    if is_of_both {
+        columns = columns.text("division", |(of, ..)| of.division.to_string());
+        caption += &format!(", {best} in each division.");
+    } else if let Some((of, ..)) = rows.first() {
+        caption += &format!(" in the {} division, {best}.", of.division);
+    }
     columns
-        .text("division", |(of, ..)| of.division.to_string())
         .text("code", |(of, ..)| of.to_string())
         .code("variant", |(_, run, ..)| &run.record.run.variant)
         .num(["particles", "1"], |(_, run, ..)| match run.record.cost.particles {
@@ -285,11 +292,11 @@ fn table(studies: &Studies, runs: &Runs) -> touchstone_report::Table {
             particles => Cell::count(particles as u64),
         })
         .of(["error", "-"], |(_, _, error, _)| *error, |error| Cell::percent(error, 2))
-        .of(["processor time", "s"], |(_, run, ..)| run.record.cost.cpu_s, Cell::seconds)
+        .of(["processor time", ""], |(_, run, ..)| run.record.cost.cpu_s, Cell::seconds)
         .text("accuracy", move |(_, run, ..)| of_gates(run, &accuracy)[0].clone())
         .text("other gates that fail", move |(_, run, ..)| of_gates(run, &others)[1].clone())
         .num(["gates that pass", ""], |(_, run, ..)| all_gates(run))
-        .table("Runs of other codes, the best first in each division.", rows)
+        .table(&caption, rows)
 }
 
 /// Names, without their times, of the metrics that say how accurate a run is.
@@ -314,7 +321,7 @@ fn of_gates(run: &JudgedRun, accuracy: &[String]) -> [String; 2] {
         .into_iter()
         .partition(|of| accuracy.iter().any(|name| *name == base_of(&of.gate.metric)));
     let verdict = match (of_error.is_empty(), of_error.iter().any(|of| fails(&of))) {
-        (true, _) => "none".to_string(),
+        (true, _) => "–".to_string(),
         (_, true) => Verdict::Fail.to_string(),
         _ => Verdict::Pass.to_string(),
     };
@@ -326,6 +333,9 @@ fn of_gates(run: &JudgedRun, accuracy: &[String]) -> [String; 2] {
 /// How many of the gates that apply a run passes.
 fn all_gates(run: &JudgedRun) -> Cell {
     let (apply, _) = run.applicable();
+    if apply.is_empty() {
+        return Cell::text("–");
+    }
     let passed = apply.iter().filter(|judged| !judged.judgement.verdict.is_failure()).count();
     Cell { value: Some(passed as f64), ..Cell::text(format!("{passed}/{}", apply.len())) }
 }
