@@ -37,7 +37,7 @@ pub fn section() -> Section {
     Section::new("probes", "Twenty questions")
         .prose(
             "Each question has one short problem, criteria with reasons, and named errors that it finds; \
-             `touchstone probe -- COMMAND` asks them of any code. Not applicable is no pass.",
+             `touchstone probe -- COMMAND` asks them of any code. n/a: not applicable, which is no pass.",
         )
         .block(verdicts(&all))
         .block(texts(&all))
@@ -101,7 +101,7 @@ fn verdict(of: &Answered) -> Cell {
     match &*of.verdict {
         "pass" => Cell::status(Verdict::Pass),
         "fail" => Cell::status(Verdict::Fail),
-        _ => Cell::text("–"),
+        _ => Cell::text("n/a"),
     }
 }
 
