@@ -56,7 +56,8 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
         title: "touchstone: errors, costs and limits of smoothed particle hydrodynamics".into(),
         lead: vec![format!(
             "How wrong is a particle method, what does a smaller error cost, and when does it break? \
-             {:?} tier, {made}.",
+             {:?} tier, {made}. Your own code: `touchstone probe -- COMMAND` asks it [twenty \
+             questions](#probes).",
             suite.tier
         )],
         overview: overview(&main, "Errors, costs and limits of the main cases"),
@@ -111,18 +112,17 @@ fn recommended(suite: &Suite) -> Vec<String> {
             ": in [vortices from a lattice](#taylor_green) `modern`{named} has an error of **{error}**"
         )
     });
-    let best = format!(
-        "*Recommended* is the variant that a case runs by default, *paper's* the variant of the model. No \
-         variant is best everywhere{}.",
-        but.unwrap_or_default()
-    );
-    const NUMBERS: &str = "The smaller error is bold; ± is a standard uncertainty. *Order*: power of the \
-                           spacing with which the error falls. *1/10 error*: factor in cost for a tenth of \
-                           the error. *Pairs*: pair interactions. a: column width; c0: sound speed.";
+    let best = format!("No variant is best everywhere{}.", but.unwrap_or_default());
+    const WORDS: &str = "*Recommended* is the default of a case, for a reason that it states; *paper's* is \
+                         the model of a paper that is known as a scan without title.";
+    const NUMBERS: &str = "± is a standard uncertainty; an error is bold if it is smaller by more than \
+                           twice that. *Order*: power of the spacing with which the error falls. *1/10 \
+                           error*: factor in cost for a tenth of the error. *Pairs*: pair interactions. a: \
+                           column width; c0: sound speed.";
     const VERDICTS: &str = "A number links to its gate, a bound with a reason. A *known limitation* is \
                             outside its bound and inside a wider one. *No break up to* states the largest \
                             value that was run.";
-    vec![best, NUMBERS.into(), VERDICTS.into()]
+    [best, WORDS.into(), NUMBERS.into(), VERDICTS.into()].into()
 }
 
 /// Error against run time, a panel a main case.

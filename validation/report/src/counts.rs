@@ -88,12 +88,12 @@ impl Counts {
         if self.worst().is_none() {
             return html! { p.verdict { "Nothing was judged" } };
         }
-        let [_, _, limitation, fail] = self.gates;
+        let [pass, _, limitation, fail] = self.gates;
         let failed = match fail {
-            0 => "no gate fails".into(),
+            0 => "none fails".into(),
             fail => counted(fail, "gate fails", "gates fail"),
         };
-        let mut parts = vec![failed];
+        let mut parts = vec![counted(pass, "gate passes", "gates pass"), failed];
         if limitation > 0 {
             let limited = counted(limitation, "known limitation", "known limitations");
             parts.push(format!("{limited}, {} of them unexplained", self.unexplained));
@@ -131,12 +131,14 @@ mod tests {
         );
         assert_eq!(all.headline(), headline);
         let line = all.line().into_string();
-        let words = "1 gate fails · 2 known limitations, 1 of them unexplained · 3 runs diverged, 1 of them \
+        let words = "2 gates pass · 1 gate fails · 2 known limitations, 1 of them unexplained · 3 runs diverged, 1 of them \
                      unexpected";
         assert!(line.contains(words) && line.contains("class=\"verdict fail\""), "{line}");
         let good = Counts { gates: [2, 0, 0, 0], diverged: 1, ..Counts::default() };
         assert!(
-            good.line().into_string().contains(">no gate fails · 1 run diverged, all expected<")
+            good.line()
+                .into_string()
+                .contains(">2 gates pass · none fails · 1 run diverged, all expected<")
         );
         assert_eq!(Counts::default().headline(), "Nothing was judged");
         let one = Counts { gates: [1; 4], diverged: 1, ..Counts::default() };

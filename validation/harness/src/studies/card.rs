@@ -210,6 +210,14 @@ struct Answer<'a> {
     shown: [Option<RunSpec>; 2],
 }
 
+/// Orders in the spacing of a ladder, and its finest level.
+struct Orders {
+    error: f64,
+    pairs: f64,
+    time: f64,
+    finest: cost::LadderPoint,
+}
+
 /// The recommended variant and the paper's.
 fn shown_variants(case: &dyn Case) -> [Option<&'static str>; 2] {
     let recommended = case.recommended();
@@ -255,19 +263,22 @@ impl Answer<'_> {
             let record = self.runs.completed(spec?)?;
             record.value(self.metric.clone()).map(f64::abs)
         };
-        let is_best = |own: Option<f64>, other: Option<f64>| match (own, other) {
-            (Some(own), Some(other)) => own < other,
+        let sizes = [size(first), size(second)];
+        let doubt = self.shown.iter().flatten().filter_map(|spec| self.uncertainty(spec));
+        let doubt = doubt.map(|u| u * u).sum::<f64>().sqrt();
+        // Better only if the difference is larger than its expanded uncertainty, k = 2.
+        let wins = |k: usize| match (sizes[k], sizes[1 - k]) {
+            (Some(own), Some(other)) => own + 2.0 * doubt < other,
             _ => false,
         };
-        let [own, papers] = [size(first), size(second)];
         let dash = || Cell::text("–");
         let error = |spec, wins| self.error(spec, wins);
-        let recommended = Cell::marked(code(self.case.recommended().variant));
-        let mut cells =
-            vec![recommended, first.map_or_else(dash, |spec| error(spec, is_best(own, papers)))];
+        let variant = code(self.case.recommended().variant);
+        let recommended = Cell::marked(format!("[{variant}](#runs-{})", self.case.name()));
+        let mut cells = vec![recommended, first.map_or_else(dash, |spec| error(spec, wins(0)))];
         let [order, pairs, time] = self.price();
         cells.push(order);
-        cells.push(second.map_or_else(dash, |spec| error(spec, is_best(papers, own))));
+        cells.push(second.map_or_else(dash, |spec| error(spec, wins(1))));
         cells.extend([pairs, time]);
         cells.extend([first, second].map(|spec| spec.map_or_else(dash, |spec| self.breaks(spec))));
         cells
@@ -285,9 +296,13 @@ impl Answer<'_> {
         let target = gate.map_or_else(|| self.study(), |judged| judged.gate.id.clone());
         let link = format!("[{error}](#{target})");
         let words = |value| format!("± {}", self.studies.number(&run.record, value));
-        let uncertainty = self.compared(spec).map(|found| found.uncertainty());
-        let remark = uncertainty.filter(|u| u.is_finite()).map(words).unwrap_or_default();
+        let remark = self.uncertainty(spec).map(words).unwrap_or_default();
         Cell::marked(if wins { format!("**{link}**") } else { link }).because(remark)
+    }
+
+    /// The standard uncertainty of the error of a run, if it is known.
+    fn uncertainty(&self, spec: &RunSpec) -> Option<f64> {
+        self.compared(spec).map(|found| found.uncertainty()).filter(|u| u.is_finite())
     }
 
     /// The comparison of the error of a run with a reference that has an uncertainty.
@@ -323,23 +338,23 @@ impl Answer<'_> {
     /// time grow until the error is a tenth: 10^(q/p), where q is the order at which they grow.
     fn price(&self) -> [Cell; 3] {
         match self.orders() {
-            Ok([p, pairs, time]) => {
+            Ok(Orders { error, pairs, time, finest }) => {
                 let link = |text: String| Cell::marked(format!("[{text}](#{})", self.study()));
-                let factor = |q: f64| {
-                    let factor = powf(10.0, q / p);
+                let factor = |q: f64, now: String| {
+                    let factor = powf(10.0, q / error);
                     match factor.is_finite() {
-                        true => link(format!("× {}", sig(factor, 2))),
+                        true => link(format!("× {}", sig(factor, 2))).because(format!("of {now}")),
                         false => Cell::text("–").because("not timed"),
                     }
                 };
-                [link(sig(p, 2)), factor(pairs), factor(time)]
+                let [now, run_time] = [sci(finest.pairs, 2), seconds(finest.median())];
+                [link(sig(error, 2)), factor(pairs, now), factor(time, run_time)]
             }
             Err(why) => [Cell::text("–").because(why), Cell::text("–"), Cell::text("–")],
         }
     }
 
-    /// The orders of the error, of the pair interactions and of the run time.
-    fn orders(&self) -> Result<[f64; 3], String> {
+    fn orders(&self) -> Result<Orders, String> {
         let (accuracy, ladder) = self.ladder()?;
         let points = cost::points(self.metric, ladder, self.runs);
         let levels: Vec<_> = points.iter().map(cost::LadderPoint::level).collect();
@@ -355,7 +370,9 @@ impl Answer<'_> {
             let y: Vec<f64> = points.iter().map(|point| ln(of(point))).collect();
             -slope(&x, &y).0
         };
-        Ok([found.order, growth(|point| point.pairs), growth(cost::LadderPoint::median)])
+        let [pairs, time] = [growth(|point| point.pairs), growth(cost::LadderPoint::median)];
+        let finest = points.into_iter().last().ok_or("one resolution")?;
+        Ok(Orders { error: found.order, pairs, time, finest })
     }
 
     /// The smallest value of a setting at which a run of the variant broke, or the largest at which none did.

@@ -68,9 +68,10 @@ pub fn table(flow: Flow, tier: Tier) -> ChannelTable {
         ..=500.0 => 1.0,
         _ => 0.5,
     };
-    table.over(Group::Reynolds, &["modern", recommended], reynolds, |s, re| {
-        (s.re, s.end) = (re, reach(re))
-    });
+    // In Poiseuille flow the map shows where `seed` breaks.
+    let variants = ["modern", recommended, "seed"];
+    let variants = if flow == Flow::Couette { &variants } else { &variants[..2] };
+    table.over(Group::Reynolds, variants, reynolds, |s, re| (s.re, s.end) = (re, reach(re)));
     for (re, _) in stiff::REYNOLDS {
         let set = |s: &mut ChannelSettings, rows| (s.re, s.rows) = (re, rows);
         table.over(Group::Stiff, &["modern", "stiff"], [&[40], &[40, 80]], set);
@@ -93,7 +94,7 @@ fn gates(flow: Flow, row: &Row<ChannelSettings, Group>) -> Vec<Gate> {
     let (s, variant) = (&row.settings, row.variant);
     match row.group {
         Group::Ladder => of_ladder(flow, variant, s.rows),
-        Group::Reynolds => {
+        Group::Reynolds if variant != "seed" => {
             let because = "The settings follow from one rule, and the error must be at most 1 % at every \
                            Reynolds number of the list.";
             let gates = flow.case().gates(format!("{variant}.re{}", s.re));
