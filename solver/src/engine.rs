@@ -16,7 +16,8 @@ use crate::{
     numbers::{Numbers, Symmetric},
     parallel,
     particle_data::{
-        BlockExtrema, Checkpoint, InvalidState, ParticleData, Phase, RoleCounts, Stepped,
+        BlockExtrema, Checkpoint, InvalidState, ParticleData, Phase, PreviousStep, RoleCounts,
+        Stepped,
     },
     particles::{Common, Constants, Rate, Role, State, SweptParticle},
     physics::{Derived, Particles, Physics},
@@ -50,18 +51,20 @@ impl<X: Numbers> ParticleData<X> {
         &mut self,
         equations: &mut dyn Equations<X>,
         state: &mut [State<X>],
-        along: &mut dyn FnMut(usize, usize),
+        past: &mut [PreviousStep<X>],
     ) -> Stepped {
         if self.slips {
-            let fluid = &mut state[..self.counts.fluid];
-            for wall in self.neighbours.mirrors() {
-                fluid.iter_mut().for_each(|particle| wall.put_back(particle));
-            }
+            let (fluid, neighbours) = (&mut state[..self.counts.fluid], &self.neighbours);
+            parallel::for_each_part(fluid, self.neighbours.parallel, &|_, part| {
+                for wall in neighbours.mirrors() {
+                    part.iter_mut().for_each(|particle| wall.put_back(particle));
+                }
+            });
         }
         let mut extent = self.fill(equations, state)?;
         if self.progress.built_inside_a_step || self.is_stale_soon(extent) {
-            self.sort(state, along);
-            self.build_lists(equations, &mut places(state));
+            self.sort(state, past);
+            self.build_lists(equations, &|k| state[k].position);
             self.progress.built_inside_a_step = false;
             extent = self.fill(equations, state)?;
         }
@@ -73,7 +76,7 @@ impl<X: Numbers> ParticleData<X> {
     fn refresh(&mut self, equations: &mut dyn Equations<X>, state: &[State<X>]) -> Stepped {
         let extent = self.fill(equations, state)?;
         if self.is_stale(extent) {
-            self.build_lists(equations, &mut places(state));
+            self.build_lists(equations, &|k| state[k].position);
             // Particles may have left the period by more than images make up for: wrap soon.
             self.progress.built_inside_a_step = true;
             self.fill(equations, state)?;
@@ -86,12 +89,12 @@ impl<X: Numbers> ParticleData<X> {
     fn build_lists(
         &mut self,
         equations: &mut dyn Equations<X>,
-        positions: &mut dyn Iterator<Item = Vector2<f64>>,
+        at: &(dyn Fn(usize) -> Vector2<f64> + Sync),
     ) {
         self.enter(Phase::Search);
         let RoleCounts { fluid, walls } = self.counts;
-        self.neighbours.place(positions);
-        self.neighbours.build(fluid, walls, self.extrapolates, self.parallel);
+        self.neighbours.place(self.fixed.len(), at);
+        self.neighbours.build(fluid, walls, self.extrapolates);
         self.progress.work.list_builds += 1;
         self.buffers.still = None;
         let columns = self.fixed.len() + self.neighbours.images.len();
@@ -136,31 +139,31 @@ impl<X: Numbers> ParticleData<X> {
 
     /// Gives the columns and images of wall particles the state extrapolated from the fluid.
     fn extrapolate(&mut self, equations: &mut dyn Equations<X>, state: &[State<X>], motion: f64) {
-        let own = &state[self.neighbours.wall_lists.of.clone()];
-        let mut implied = take(&mut self.buffers.extrapolated);
-        implied.clear();
-        implied.extend_from_slice(own);
+        let walls = self.neighbours.wall_lists.of.clone();
+        let own = &state[walls.clone()];
+        let mut implied = take(&mut self.buffers.states);
+        parallel::copy(own, &mut implied, self.neighbours.parallel);
         // Sums are formed at the foot of each wall particle; its column is derived again below.
-        for (wall, foot) in implied.iter_mut().zip(&self.neighbours.feet) {
+        let feet = &self.neighbours.feet;
+        parallel::for_each_pair(&mut implied, feet, self.neighbours.parallel, &|wall, foot| {
             wall.position += foot;
-        }
+        });
         // Sums read the wall particles' own state, and columns hold the state that was extrapolated last.
         equations.derive_walls(self, &implied);
         self.enter(Phase::Walls);
         equations.extrapolate(self, &mut |sweep| {
-            sweep::run(sweep, &self.neighbours.wall_lists, &mut implied, &|_, walls, states| {
-                for (wall, state) in walls.iter_mut().zip(states) {
+            sweep::run(sweep, &self.neighbours.wall_lists, &mut implied, &|k, implied, states| {
+                let own = &own[k - walls.start..];
+                for ((wall, state), own) in implied.iter_mut().zip(states).zip(own) {
+                    wall.position = own.position;
                     wall.velocity += state.velocity;
                     wall.density = state.density;
                 }
             });
         });
         self.enter(Phase::Refresh);
-        for (wall, own) in implied.iter_mut().zip(own) {
-            wall.position = own.position;
-        }
         equations.derive_walls(self, &implied);
-        self.buffers.extrapolated = implied;
+        self.buffers.states = implied;
         equations.fill_images(&self.neighbours, self.counts.fluid, motion);
     }
 
@@ -272,12 +275,16 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
     }
 
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64) {
-        fill_images(neighbours, first, P::Walls::SLIPS, motion, &mut self.columns);
+        neighbours.fill_images(first, P::Walls::SLIPS, motion, &mut self.columns);
     }
 
     fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[State<X>]) {
-        let at = of.neighbours.wall_lists.of.clone();
-        derive_all(&self.terms, &of.fixed[at.clone()], walls, &mut self.columns[at]);
+        let (at, terms) = (of.neighbours.wall_lists.of.clone(), &self.terms);
+        let fixed = &of.fixed[at.clone()];
+        let columns = &mut self.columns[at];
+        parallel::for_each_part(columns, of.neighbours.parallel, &|first, columns| {
+            derive_all(terms, &fixed[first..], &walls[first..], columns);
+        });
     }
 
     fn sweep_walls(&self, run: &mut dyn FnMut(&dyn PairSweep<Rate<X>>)) {
@@ -321,7 +328,7 @@ impl<P: Physics> Engine<P> {
         data.slips = P::Walls::SLIPS;
         data.extrapolates = !ExtrapolationOf::<P>::IS_EMPTY;
         let state = take(&mut data.state);
-        data.build_lists(&mut equations, &mut places(&state));
+        data.build_lists(&mut equations, &|k| state[k].position);
         data.state = state;
         Self { equations, data }
     }
@@ -330,7 +337,7 @@ impl<P: Physics> Engine<P> {
     pub(crate) fn restore(&mut self, from: &Checkpoint<P::Extra>) -> Result<(), &'static str> {
         let Self { equations, data } = self;
         data.replace(from)?;
-        data.build_lists(equations, &mut from.built_at.iter().copied());
+        data.build_lists(equations, &|k| from.built_at[k]);
         data.progress = from.progress;
         Ok(())
     }
@@ -339,18 +346,17 @@ impl<P: Physics> Engine<P> {
     /// before a wall along which they slip; gives the terms the largest speed; refreshes all data derived
     /// from the state.
     pub fn begin(&mut self, state: &mut Particles<P>) -> Stepped {
-        self.data.begin(&mut self.equations, state, &mut |_, _| ())
+        self.begin_with(state, &mut [])
     }
 
-    /// Starts a step as [`Engine::begin`] does, and sorts `kept` along with the first particles; `kept` may
-    /// be empty.
-    pub fn begin_with<T>(&mut self, state: &mut Particles<P>, kept: &mut [T]) -> Stepped {
-        let mut along = |i, j| {
-            if !kept.is_empty() {
-                kept.swap(i, j);
-            }
-        };
-        self.data.begin(&mut self.equations, state, &mut along)
+    /// Starts a step as [`Engine::begin`] does, and sorts earlier steps along with the first particles; there
+    /// may be none.
+    pub fn begin_with(
+        &mut self,
+        state: &mut Particles<P>,
+        past: &mut [PreviousStep<P::Extra>],
+    ) -> Stepped {
+        self.data.begin(&mut self.equations, state, past)
     }
 
     /// Refreshes all data derived from a state inside a step.
@@ -410,7 +416,7 @@ impl<P: Physics> Engine<P> {
             let derived = derived(terms, role, &common, &extra);
             *column = SweptParticle { position, velocity, common, derived };
         }
-        fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, &mut columns);
+        neighbours.fill_images(0, P::Walls::SLIPS, 1.0, &mut columns);
         if T::NORMALISES {
             normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
         }
@@ -445,6 +451,11 @@ impl<P: Physics> Engine<P> {
         let RoleCounts { fluid, walls } = self.data.counts;
         let is_empty = <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
         if is_empty { fluid } else { fluid + walls }
+    }
+
+    /// Whether the work on particles is distributed over threads.
+    pub(crate) fn parallel(&self) -> bool {
+        self.data.is_parallel()
     }
 
     /// Memory held \[bytes\].
@@ -483,31 +494,6 @@ fn together<X: Numbers>(
     drift
 }
 
-/// Positions of particles, as an iterator whose type does not depend on the scheme.
-pub(crate) fn places<X>(state: &[State<X>]) -> impl Iterator<Item = Vector2<f64>> {
-    state.iter().map(|evolved| evolved.position)
-}
-
-/// Refills the images of the particles from `first` on; an image of an image counts as an image of its
-/// particle. `motion` is the factor of the walls' own velocity in images: 1, or 0 for differences of
-/// velocities.
-fn fill_images<D: Numbers>(
-    neighbours: &Neighbours,
-    first: usize,
-    slips: bool,
-    motion: f64,
-    columns: &mut [SweptParticle<D>],
-) {
-    let real = columns.len() - 1 - neighbours.images.len();
-    for (k, image) in neighbours.images.iter().enumerate() {
-        let source = image.source as usize;
-        if source >= first {
-            let (map, source) = (&neighbours.maps[image.map as usize], &columns[source]);
-            columns[real + k] = map.apply(source, slips, motion);
-        }
-    }
-}
-
 /// Sums the moments of all particles, and gives the columns and their images the inverses.
 fn normalise<P: Physics, T: Term<P::Extra>>(
     kernel: &Smoothing<P::Kernel>,
@@ -521,10 +507,10 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     for lists in [lists, wall_lists] {
         sweep::fill(&sweep, lists, &mut inverses[lists.of.clone()]);
     }
-    for (column, inverse) in columns.iter_mut().zip(inverses) {
+    parallel::for_each_pair(columns, inverses, neighbours.parallel, &|column, inverse| {
         T::set_inverse(&mut column.derived, *inverse);
-    }
-    fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
+    });
+    neighbours.fill_images(0, P::Walls::SLIPS, 1.0, columns);
 }
 
 /// Derives columns of particles.
@@ -539,7 +525,7 @@ fn derive_blocks<X: Numbers, D: Numbers>(
     derive: &Derives<X, D>,
 ) {
     let blocks = columns[..state.len()].chunks_mut(BLOCK).zip(extents).enumerate();
-    parallel::for_each(blocks, of.parallel, &|(b, (columns, extent))| {
+    parallel::for_each(blocks, of.neighbours.parallel, &|(b, (columns, extent))| {
         let particles = b * BLOCK..b * BLOCK + columns.len();
         let state = &state[particles.clone()];
         derive(columns, state, &of.fixed[particles.clone()]);

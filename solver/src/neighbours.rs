@@ -23,6 +23,7 @@ use crate::{
     domain::Domain,
     numbers::Numbers,
     parallel,
+    particles::SweptParticle,
     walls::{Map, PlaneWall, corners},
 };
 
@@ -79,6 +80,14 @@ pub(crate) struct Lists {
     pub blocks: Vec<ListBlock>,
 }
 
+/// The lower and the upper corner of a box \[m\].
+type Corners = [Vector2<f64>; 2];
+
+/// The box around a box and points.
+fn around(of: Corners, points: &[Vector2<f64>]) -> Corners {
+    points.iter().fold(of, |[low, high], p| [low.inf(p), high.sup(p)])
+}
+
 /// A grid of cells no smaller than the list radius.
 #[derive(Clone, Copy, Debug, Default)]
 struct Grid {
@@ -88,12 +97,12 @@ struct Grid {
 }
 
 impl Grid {
-    /// Covers the points, and a margin before the first, by cells of this size. Cells are enlarged until
-    /// there are at most about two a point.
-    fn new(points: &[Vector2<f64>], size_of_cell: f64, margin: f64) -> Self {
-        let low = points.iter().fold(points[0], |a, p| a.inf(p)).map(|low| low - margin);
-        let size = points.iter().fold(points[0], |a, p| a.sup(p)) - low;
-        let most = (2 * points.len() + 16) as f64;
+    /// Covers this number of points between two corners, and a margin before the first, by cells of this
+    /// size. Cells are enlarged until there are at most about two a point.
+    fn new(points: usize, [low, high]: Corners, size_of_cell: f64, margin: f64) -> Self {
+        let low = low.map(|low| low - margin);
+        let size = high - low;
+        let most = (2 * points + 16) as f64;
         // A cell of size 0 would stay so.
         let mut cell = Vector2::repeat(size_of_cell.max(f64::MIN_POSITIVE));
         while (size.x / cell.x + 1.0) * (size.y / cell.y + 1.0) > most {
@@ -136,8 +145,13 @@ pub(crate) struct Neighbours {
     radius: f64,
     spacing: f64,
     pub domain: Domain,
+    /// Whether the work on particles is distributed over threads.
+    pub parallel: bool,
     pub maps: Vec<Map>,
     pub images: Vec<Image>,
+    /// Ranges of images, one after another, whose sources are particles or images of earlier ranges:
+    /// mirror particles, then the periodic copies along each axis.
+    stages: Vec<Range<usize>>,
     /// Lists of the fluid particles.
     pub lists: Lists,
     /// Lists of the wall particles.
@@ -148,6 +162,10 @@ pub(crate) struct Neighbours {
     pub built_at: Vec<Vector2<f64>>,
     points: Vec<Vector2<f64>>,
     grid: Grid,
+    /// Scratch: for each point, the maps that make an image of it, one bit each, or the number of its cell.
+    marks: Vec<u32>,
+    /// Scratch: the box around each block of points.
+    boxes: Vec<Corners>,
     cell_starts: Vec<u32>,
     /// Columns in the order of cells and, while lists are built, their positions; then padding for the last
     /// lanes.
@@ -208,127 +226,199 @@ impl Neighbours {
     pub fn bytes(&self) -> usize {
         let points =
             [&self.feet, &self.built_at, &self.points, &self.cell_points].map(Vec::capacity);
-        let numbers = [&self.cell_starts, &self.cell_columns].map(Vec::capacity);
+        let numbers = [&self.marks, &self.cell_starts, &self.cell_columns].map(Vec::capacity);
         self.blocks().map(ListBlock::bytes).sum::<usize>()
             + self.images.capacity() * size_of::<Image>()
             + points.into_iter().sum::<usize>() * size_of::<Vector2<f64>>()
             + numbers.into_iter().sum::<usize>() * size_of::<u32>()
+            + self.boxes.capacity() * size_of::<Corners>()
     }
 
-    /// Takes note of where the particles are, for [`Neighbours::order`] or [`Neighbours::build`].
-    pub fn place(&mut self, positions: &mut dyn Iterator<Item = Vector2<f64>>) {
-        self.points.clear();
-        self.points.extend(positions);
+    /// Takes note of where `count` particles are, for [`Neighbours::order`] or [`Neighbours::build`].
+    pub fn place(&mut self, count: usize, at: &(dyn Fn(usize) -> Vector2<f64> + Sync)) {
+        self.points.resize(count, Vector2::zeros());
+        parallel::for_each_part(&mut self.points, self.parallel, &|first, points| {
+            points.iter_mut().zip(first..).for_each(|(point, k)| *point = at(k));
+        });
+    }
+
+    /// The box around all points.
+    fn corners(&mut self) -> Corners {
+        let Self { points, boxes, .. } = self;
+        boxes.resize(points.len().div_ceil(BLOCK), Corners::default());
+        let blocks = points.chunks(BLOCK).zip(&mut *boxes);
+        parallel::for_each(blocks, self.parallel, &|(points, of)| {
+            *of = around([points[0]; 2], points);
+        });
+        boxes.iter().fold(boxes[0], |of, other| around(of, other))
     }
 
     /// The order along strips two spacings high, every other one backwards. The result does not depend on the
     /// order of the placed particles.
     pub fn order(&mut self, order: &mut Vec<u32>) {
-        let grid = Grid::new(&self.points, 2.0 * self.spacing, 0.5 * self.spacing);
+        let (count, corners) = (self.points.len(), self.corners());
+        let grid = Grid::new(count, corners, 2.0 * self.spacing, 0.5 * self.spacing);
         let [width, height] = grid.cells;
-        self.sort_by_cell(width.next_multiple_of(TILE) * height, &|p| grid.along_strips(p));
-        let columns = &mut self.cell_columns;
-        for (cell, ends) in self.cell_starts.windows(2).enumerate() {
-            let backwards = !(cell / TILE % height).is_multiple_of(2);
-            columns[ends[0] as usize..ends[1] as usize].sort_unstable_by(|&a, &b| {
-                let [a, b] = [a, b].map(|column| self.points[column as usize]);
-                let along = a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
-                if backwards { along.reverse() } else { along }
-            });
-        }
+        let cells = width.next_multiple_of(TILE) * height;
+        self.sort_by_cell(cells, &|p| grid.along_strips(p));
+        let Self { points, cell_starts: starts, cell_columns, .. } = self;
+        // Eight rows of a tile are some 1000 particles.
+        const STRETCH: usize = 8 * TILE;
+        let mut rest = &mut cell_columns[..count];
+        let stretches = (0..cells).step_by(STRETCH).map(|first| {
+            let starts = &starts[first..=(first + STRETCH).min(cells)];
+            let (columns, after) =
+                take(&mut rest).split_at_mut((starts[starts.len() - 1] - starts[0]) as usize);
+            rest = after;
+            (first, starts, columns)
+        });
+        parallel::for_each(stretches, self.parallel, &|(first, starts, columns)| {
+            for (cell, ends) in (first..).zip(starts.windows(2)) {
+                let backwards = !(cell / TILE % height).is_multiple_of(2);
+                let [start, end] = [ends[0], ends[1]].map(|end| (end - starts[0]) as usize);
+                columns[start..end].sort_unstable_by(|&a, &b| {
+                    let [a, b] = [a, b].map(|column| points[column as usize]);
+                    let along = a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y));
+                    if backwards { along.reverse() } else { along }
+                });
+            }
+        });
         order.clear();
-        order.extend_from_slice(&self.cell_columns[..self.points.len()]);
+        order.extend_from_slice(&self.cell_columns[..count]);
     }
 
     /// Builds the lists of the first `fluid` placed particles and of the `wall` ones after them. With
     /// `fluid_only` the lists of the latter list fluid particles and their images alone.
-    pub fn build(&mut self, fluid: usize, wall: usize, fluid_only: bool, parallel: bool) {
-        self.built_at.clear();
-        self.built_at.extend_from_slice(&self.points);
-        self.make_images();
-        let grid = Grid::new(&self.points, self.radius, 0.0);
+    pub fn build(&mut self, fluid: usize, wall: usize, fluid_only: bool) {
+        parallel::copy(&self.points, &mut self.built_at, self.parallel);
+        let (real, corners) = (self.points.len(), self.corners());
+        self.make_images(corners);
+        let corners = around(corners, &self.points[real..]);
+        let grid = Grid::new(self.points.len(), corners, self.radius, 0.0);
         self.grid = grid;
         self.sort_by_cell(grid.cells[0] * grid.cells[1], &|p| grid.index(p));
         let [lists, wall_lists] = [take(&mut self.lists), take(&mut self.wall_lists)];
         let up_to = if fluid_only { fluid } else { usize::MAX };
-        self.lists = self.fill(lists, 0..fluid, usize::MAX, parallel);
+        self.lists = self.fill(lists, 0..fluid, usize::MAX);
         for (point, foot) in self.points[fluid..].iter_mut().zip(&self.feet) {
             *point += foot;
         }
-        self.wall_lists = self.fill(wall_lists, fluid..fluid + wall, up_to, parallel);
+        self.wall_lists = self.fill(wall_lists, fluid..fluid + wall, up_to);
     }
 
     /// Appends the images within reach: ghosts of particles near a wall or a corner, then along each
-    /// axis the periodic copies of all of these. Maps are used in the order of [`Neighbours::new`].
-    fn make_images(&mut self) {
+    /// axis the periodic copies of all of these. Maps are used in the order of [`Neighbours::new`]. The
+    /// particles are between two corners.
+    fn make_images(&mut self, [low, high]: Corners) {
         self.images.clear();
-        let (real, radius) = (self.points.len(), self.radius);
-        let mut shift = self.maps.partition_point(|map| !map.walls().is_empty());
-        for source in 0..real {
-            let point = self.points[source];
-            let near = |wall: &PlaneWall| wall.depth(point).abs() < radius;
-            for map in 0..shift {
-                if self.maps[map].walls().iter().all(near) {
-                    self.add_image(source, map);
-                }
-            }
-        }
+        self.stages.clear();
+        let mirrors = self.maps.partition_point(|map| !map.walls().is_empty());
+        let radius = self.radius;
+        self.make_stage(0..mirrors, &|map, point| {
+            map.walls().iter().all(|wall| wall.depth(point).abs() < radius)
+        });
+        let mut first = mirrors;
         for axis in 0..2 {
             let Some(period) = self.domain.period[axis] else { continue };
-            let along = || self.points[..real].iter().map(|p| p[axis]);
-            let (low, high) = (along().fold(f64::MAX, f64::min), along().fold(f64::MIN, f64::max));
-            for source in 0..self.points.len() {
-                let x = self.points[source][axis];
-                if x + period < high + self.radius {
-                    self.add_image(source, shift);
-                }
-                if x - period > low - self.radius {
-                    self.add_image(source, shift + 1);
-                }
-            }
-            shift += 2;
+            self.make_stage(first..first + 2, &|map, point| match map {
+                Map::Shift(by) if by[axis] > 0.0 => point[axis] + period < high[axis] + radius,
+                _ => point[axis] - period > low[axis] - radius,
+            });
+            first += 2;
         }
     }
 
-    fn add_image(&mut self, source: usize, map: usize) {
-        let place = self.maps[map].place(self.points[source]);
-        self.images.push(Image { source: source as u32, map: map as u32 });
-        self.points.push(place);
+    /// Appends the images of all points so far, by those of these maps that are `near` the point.
+    fn make_stage(
+        &mut self,
+        maps: Range<usize>,
+        near: &(dyn Fn(&Map, Vector2<f64>) -> bool + Sync),
+    ) {
+        let (start, count) = (self.images.len(), self.points.len());
+        if maps.is_empty() {
+            return;
+        }
+        let Self { marks, points, maps: all, .. } = self;
+        marks.resize(count, 0);
+        let bit = |(k, map): (usize, &Map), point| u32::from(near(map, point)) << k;
+        parallel::for_each_pair(marks, points, self.parallel, &|mark, point| {
+            let bits = all[maps.clone()].iter().enumerate().map(|map| bit(map, *point));
+            *mark = bits.fold(0, |mark, bit| mark | bit);
+        });
+        for source in 0..count {
+            let mut left = self.marks[source];
+            while left != 0 {
+                let map = maps.start + left.trailing_zeros() as usize;
+                let place = self.maps[map].place(self.points[source]);
+                self.images.push(Image { source: source as u32, map: map as u32 });
+                self.points.push(place);
+                left &= left - 1;
+            }
+        }
+        self.stages.push(start..self.images.len());
+    }
+
+    /// Writes the columns of the images whose sources are particle `first` or a later one. `motion` is the
+    /// factor of the walls' own velocity in images: 1, or 0 for differences of velocities.
+    pub fn fill_images<D: Numbers>(
+        &self,
+        first: usize,
+        slips: bool,
+        motion: f64,
+        columns: &mut [SweptParticle<D>],
+    ) {
+        let real = columns.len() - 1 - self.images.len();
+        for stage in &self.stages {
+            let (sources, targets) = columns.split_at_mut(real + stage.start);
+            let images = &self.images[stage.clone()];
+            parallel::for_each_pair(targets, images, self.parallel, &|target, image| {
+                let source = image.source as usize;
+                if source >= first {
+                    let map = &self.maps[image.map as usize];
+                    *target = map.apply(&sources[source], slips, motion);
+                }
+            });
+        }
     }
 
     /// Counting sort of all columns by the number of their cell, stable.
-    fn sort_by_cell(&mut self, cells: usize, number: &dyn Fn(Vector2<f64>) -> usize) {
-        let starts = &mut self.cell_starts;
+    fn sort_by_cell(&mut self, cells: usize, number: &(dyn Fn(Vector2<f64>) -> usize + Sync)) {
+        let Self { points, marks, cell_starts: starts, parallel, .. } = self;
+        marks.resize(points.len(), 0);
+        parallel::for_each_pair(marks, points, *parallel, &|mark, point| {
+            *mark = number(*point) as u32;
+        });
         starts.clear();
         starts.resize(cells + 1, 0);
-        for &p in &self.points {
-            starts[number(p) + 1] += 1;
-        }
+        marks.iter().for_each(|cell| starts[*cell as usize + 1] += 1);
         for cell in 1..starts.len() {
             starts[cell] += starts[cell - 1];
         }
-        self.cell_columns.resize(self.points.len() + GROUP, 0);
-        self.cell_points.resize(self.points.len() + GROUP, Vector2::zeros());
-        for (column, &p) in self.points.iter().enumerate() {
-            let slot = &mut starts[number(p)];
+        self.cell_columns.resize(points.len() + GROUP, 0);
+        self.cell_points.resize(points.len() + GROUP, Vector2::zeros());
+        for (column, cell) in marks.iter().enumerate() {
+            let slot = &mut starts[*cell as usize];
             self.cell_columns[*slot as usize] = column as u32;
-            self.cell_points[*slot as usize] = p;
             *slot += 1;
         }
         // Each entry now holds the end of its cell, the start of the next one.
         starts.rotate_right(1);
         starts[0] = 0;
+        let columns = &self.cell_columns[..points.len()];
+        parallel::for_each_pair(&mut self.cell_points, columns, *parallel, &|point, column| {
+            *point = points[*column as usize];
+        });
     }
 
     /// The lists of particles `of`, which list columns of the particles before `up_to` alone.
-    fn fill(&self, mut lists: Lists, of: Range<usize>, up_to: usize, parallel: bool) -> Lists {
+    fn fill(&self, mut lists: Lists, of: Range<usize>, up_to: usize) -> Lists {
         lists.blocks.resize_with(of.len().div_ceil(BLOCK), ListBlock::default);
-        parallel::for_each(lists.blocks.iter_mut().enumerate(), parallel, &|(b, block)| {
+        parallel::for_each(lists.blocks.iter_mut().enumerate(), self.parallel, &|(b, block)| {
             let start = of.start + b * BLOCK;
             let of = start..(start + BLOCK).min(of.end);
             on_widest(FillLists { neighbours: self, block, of, up_to });
         });
-        Lists { of, parallel, ..lists }
+        Lists { of, parallel: self.parallel, ..lists }
     }
 
     /// Finds the columns nearer than the radius to the bounding box of these particles, in the order of
@@ -563,8 +653,8 @@ mod tests {
         let mut pairs = 0;
         // The last points are walls that list all columns, walls that list fluid only, or not walls.
         for (fluid, fluid_only) in [(n / 2, false), (n / 2, true), (n, false)] {
-            neighbours.place(&mut points.iter().copied());
-            neighbours.build(fluid, n - fluid, fluid_only, false);
+            neighbours.place(points.len(), &|k| points[k]);
+            neighbours.build(fluid, n - fluid, fluid_only);
             pairs = 0;
             let mut inside = 0;
             for (i, expected) in all.iter().enumerate() {
@@ -602,8 +692,9 @@ mod tests {
         }
         // The parallel path builds the same lists in the same order.
         let mut parallel = Neighbours::new(reaches, *domain, mirrors);
-        parallel.place(&mut points.iter().copied());
-        parallel.build(n, 0, false, true);
+        parallel.parallel = true;
+        parallel.place(n, &|k| points[k]);
+        parallel.build(n, 0, false);
         for (a, b) in neighbours.lists.blocks.iter().zip(&parallel.lists.blocks) {
             assert_eq!((&a.starts, &a.columns), (&b.starts, &b.columns));
         }
@@ -617,8 +708,8 @@ mod tests {
         let points: Vec<_> = (0..500).map(|_| point(&mut random, [4.0, 3.0])).collect();
         let mut neighbours =
             Neighbours::new(Reach { support: 0.5, skin: 0.1, spacing: 0.15 }, domain, &[]);
-        neighbours.place(&mut points.into_iter());
-        neighbours.build(250, 250, true, false);
+        neighbours.place(points.len(), &|k| points[k]);
+        neighbours.build(250, 250, true);
         let [fluid, wall] =
             [&neighbours.lists, &neighbours.wall_lists].map(|lists| &lists.blocks[..]);
         for (built, of, up_to) in [(fluid, 0..250, usize::MAX), (wall, 250..500, 250)] {
@@ -712,8 +803,8 @@ mod tests {
             Neighbours::new(Reach { support, skin, spacing: 0.17 }, domain, &mirrors);
         let mut lost = 0;
         let n = points.len();
-        neighbours.place(&mut points.iter().copied());
-        neighbours.build(n, 0, false, false);
+        neighbours.place(points.len(), &|k| points[k]);
+        neighbours.build(n, 0, false);
         for _ in 0..60 {
             for point in &mut points {
                 *point += Vector2::new(random(), random()) * 0.03;
@@ -721,8 +812,8 @@ mod tests {
             }
             let moved = points.iter().zip(&neighbours.built_at).map(|(p, b)| (p - b).norm());
             if moved.fold(0.0, f64::max) > share * skin {
-                neighbours.place(&mut points.iter().copied());
-                neighbours.build(n, 0, false, false);
+                neighbours.place(points.len(), &|k| points[k]);
+                neighbours.build(n, 0, false);
                 *builds += 1;
             }
             for i in 0..n {
@@ -758,7 +849,7 @@ mod tests {
         let points: Vec<_> = (0..columns * rows).map(place).collect();
         let mut neighbours =
             Neighbours::new(Reach { support: 3.1, skin: 0.0, spacing: 1.0 }, Domain::open(), &[]);
-        neighbours.place(&mut points.iter().copied());
+        neighbours.place(points.len(), &|k| points[k]);
         let mut order = Vec::new();
         neighbours.order(&mut order);
         let points: Vec<_> = order.iter().map(|&k| points[k as usize]).collect();
@@ -784,8 +875,8 @@ mod tests {
         assert!(far.len() <= 1, "from the end of the first tile to the second one alone: {far:?}");
         let mut neighbours =
             Neighbours::new(Reach { support: 3.1, skin: 0.0, spacing: 1.0 }, Domain::open(), &[]);
-        neighbours.place(&mut groups.iter().flatten().copied());
-        neighbours.build(96 * 12, 0, false, false);
+        neighbours.place(groups.len() * GROUP, &|k| groups[k / GROUP][k % GROUP]);
+        neighbours.build(96 * 12, 0, false);
         for (k, middle) in middles.iter().enumerate() {
             let inside = [(middle.x, 96.0), (middle.y, 12.0)];
             if inside.iter().all(|(at, end)| at.min(end - at) > 4.9) {
@@ -815,7 +906,7 @@ mod tests {
                 Domain::open(),
                 &[],
             );
-            neighbours.place(&mut points.iter().copied());
+            neighbours.place(points.len(), &|k| points[k]);
             neighbours.order(&mut order);
             order.iter().map(|&k| points[k as usize]).collect::<Vec<_>>()
         };

@@ -1,11 +1,14 @@
 //! Particle data: the part of a simulation that does not depend on its equations. Sorting, neighbour lists,
 //! bounds, counting and checkpoints are therefore compiled only once for each set of extra fields.
 
+use std::mem::take;
+
 use nalgebra::Vector2;
 
 use crate::{
     neighbours::{BLOCK, GROUP, Lists, Neighbours},
     numbers::Numbers,
+    parallel,
     particles::{Constants, Particle, Role, State},
     walls::Map,
 };
@@ -227,13 +230,19 @@ pub(crate) struct SweepBuffers<X> {
     /// Extremes of wall particles that extrapolate and do not move: their columns are filled once after each
     /// build of lists.
     pub still: Option<BlockExtrema>,
-    /// Wall particles with extrapolated velocities and densities; empty for other walls.
-    pub extrapolated: Vec<State<X>>,
+    /// Copies of particles: while these are sorted, and wall particles while their velocities and densities
+    /// are extrapolated.
+    pub states: Vec<State<X>>,
+    /// Copies while particles are sorted.
+    pub fixed: Vec<Constants>,
+    /// Copies while particles are sorted.
+    pub past: Vec<PreviousStep<X>>,
 }
 
 impl<X> Default for SweepBuffers<X> {
     fn default() -> Self {
-        Self { extents: Vec::new(), still: None, extrapolated: Vec::new() }
+        let (states, fixed, past) = (Vec::new(), Vec::new(), Vec::new());
+        Self { extents: Vec::new(), still: None, states, fixed, past }
     }
 }
 
@@ -243,6 +252,8 @@ pub struct ParticleData<X = ()> {
     /// Empty during a step, which owns the state.
     pub(crate) state: Vec<State<X>>,
     pub(crate) fixed: Vec<Constants>,
+    /// The place of storage of each particle of the scene.
+    pub(crate) places: Vec<u32>,
     pub(crate) counts: RoleCounts,
     /// [`crate::Walls::SLIPS`].
     pub(crate) slips: bool,
@@ -255,7 +266,6 @@ pub struct ParticleData<X = ()> {
     /// (displacement beyond which the step, not the flow, moved a particle)² \[m²\]: half a period,
     /// since images are one period away, on either side.
     pub(crate) reach2: f64,
-    pub(crate) parallel: bool,
     pub(crate) progress: Progress,
     pub(crate) order: Vec<u32>,
     pub(crate) buffers: SweepBuffers<X>,
@@ -278,6 +288,20 @@ impl<X: Numbers> ParticleData<X> {
         self.state = particles.iter().map(evolved).collect();
         self.fixed = particles.iter().map(fixed).collect();
         self.counts = RoleCounts { fluid: count(Role::Fluid), walls: count(Role::Wall) };
+        self.places.resize(self.fixed.len(), 0);
+        self.find_places();
+    }
+
+    /// Finds out where particles are stored.
+    fn find_places(&mut self) {
+        for (place, fixed) in (0..).zip(&self.fixed) {
+            self.places[fixed.id as usize] = place;
+        }
+    }
+
+    /// Whether the work on particles is distributed over threads.
+    pub fn is_parallel(&self) -> bool {
+        self.neighbours.parallel
     }
 
     /// Number of fluid particles.
@@ -289,6 +313,19 @@ impl<X: Numbers> ParticleData<X> {
     pub fn fluid(&self) -> impl ExactSizeIterator<Item = (f64, &State<X>)> + Clone {
         let fluid = self.counts.fluid;
         self.fixed[..fluid].iter().map(|f| f.mass).zip(&self.state[..fluid])
+    }
+
+    /// The particle at a place of storage.
+    pub fn at(&self, place: usize) -> Particle<X> {
+        let Constants { mass, role, .. } = self.fixed[place];
+        let State { position, velocity, density, extra } = self.state[place];
+        Particle { role, position, velocity, density, mass, extra }
+    }
+
+    /// The place of storage of each particle, in the order of the scene; places of fluid particles are the
+    /// first ones.
+    pub fn places(&self) -> &[u32] {
+        &self.places
     }
 
     /// Mass \[kg/m\] and state of the wall particles with an evolving density, in the order of storage.
@@ -309,20 +346,12 @@ impl<X: Numbers> ParticleData<X> {
 
     /// All particles in the order of the scene.
     pub fn particles(&self) -> Vec<Particle<X>> {
-        let nothing = Particle::fluid(Vector2::zeros(), Vector2::zeros(), 0.0, 0.0);
-        let mut particles = vec![nothing; self.state.len()];
-        for (id, particle) in self.stored() {
-            particles[id as usize] = particle;
-        }
-        particles
+        self.places.iter().map(|place| self.at(*place as usize)).collect()
     }
 
     /// All particles in the order of storage, with their numbers in the scene.
     pub fn stored(&self) -> impl Iterator<Item = (u32, Particle<X>)> {
-        self.fixed.iter().zip(&self.state).map(|(&Constants { mass, id, role }, evolved)| {
-            let State { position, velocity, density, extra } = *evolved;
-            (id, Particle { role, position, velocity, density, mass, extra })
-        })
+        self.fixed.iter().enumerate().map(|(place, fixed)| (fixed.id, self.at(place)))
     }
 
     /// The states of all particles in the order of storage.
@@ -376,9 +405,17 @@ impl<X: Numbers> ParticleData<X> {
     }
 
     /// Looks for a particle that is out of bounds.
-    pub fn check_bounds(&self) -> Result<(), InvalidState> {
-        let extent = self.extent(&self.state, &self.neighbours.built_at);
-        self.check(&self.state, &[extent]).map(|_| ())
+    pub fn check_bounds(&mut self) -> Result<(), InvalidState> {
+        let mut extents = take(&mut self.buffers.extents);
+        extents.resize(self.state.len().div_ceil(BLOCK), BlockExtrema::NIL);
+        let blocks = self.state.chunks(BLOCK).zip(self.neighbours.built_at.chunks(BLOCK));
+        let blocks = blocks.zip(&mut extents);
+        parallel::for_each(blocks, self.is_parallel(), &|((state, built_at), extent)| {
+            *extent = self.extent(state, built_at);
+        });
+        let checked = self.check(&self.state, &extents);
+        self.buffers.extents = extents;
+        checked.map(|_| ())
     }
 
     /// Everything on which later steps of an integrator without memory depend.
@@ -397,28 +434,31 @@ impl<X: Numbers> ParticleData<X> {
     pub fn bytes(&self) -> usize {
         self.state.capacity() * size_of::<State<X>>()
             + self.fixed.capacity() * size_of::<Constants>()
-            + self.order.capacity() * size_of::<u32>()
+            + (self.places.capacity() + self.order.capacity()) * size_of::<u32>()
             + self.buffers.extents.capacity() * size_of::<BlockExtrema>()
-            + self.buffers.extrapolated.capacity() * size_of::<State<X>>()
+            + self.buffers.states.capacity() * size_of::<State<X>>()
+            + self.buffers.fixed.capacity() * size_of::<Constants>()
+            + self.buffers.past.capacity() * size_of::<PreviousStep<X>>()
             + self.neighbours.bytes()
     }
 
-    /// Sorts fluid particles along strips and wraps them into the period. `along` swaps other data in the
-    /// order of the particles.
-    pub(crate) fn sort(&mut self, state: &mut [State<X>], along: &mut dyn FnMut(usize, usize)) {
+    /// Sorts fluid particles along strips and wraps them into the period, and sorts earlier steps along with
+    /// the particles, if there are any.
+    pub(crate) fn sort(&mut self, state: &mut [State<X>], past: &mut [PreviousStep<X>]) {
         self.enter(Phase::Sorting);
-        for evolved in &mut *state {
-            evolved.position = self.neighbours.domain.wrap(evolved.position);
-        }
-        let fluid = self.counts.fluid;
-        self.neighbours.place(&mut state[..fluid].iter().map(|e| e.position));
-        self.neighbours.order(&mut self.order);
-        let Self { fixed, order, .. } = self;
-        apply_order(order, &mut |i, j| {
-            state.swap(i, j);
-            fixed.swap(i, j);
-            along(i, j);
+        let Self { neighbours, order, fixed, buffers, .. } = self;
+        let (parallel, domain) = (neighbours.parallel, neighbours.domain);
+        parallel::for_each_part(state, parallel, &|_, part| {
+            for evolved in part {
+                evolved.position = domain.wrap(evolved.position);
+            }
         });
+        neighbours.place(self.counts.fluid, &|k| state[k].position);
+        neighbours.order(order);
+        gather(state, order, &mut buffers.states, parallel);
+        gather(fixed, order, &mut buffers.fixed, parallel);
+        gather(past, order, &mut buffers.past, parallel);
+        self.find_places();
     }
 
     /// Begins a phase.
@@ -518,33 +558,12 @@ impl<X: Numbers> ParticleData<X> {
     }
 }
 
-/// Permutes in place by swaps: entry i becomes the former entry `order[i]`.
-fn apply_order(order: &mut [u32], swap: &mut dyn FnMut(usize, usize)) {
-    for i in 0..order.len() {
-        // The present place of entry order[i]: entries before i were swapped away along the chain.
-        let mut from = order[i] as usize;
-        while from < i {
-            from = order[from] as usize;
-        }
-        order[i] = from as u32;
-        swap(i, from);
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::apply_order;
-
-    #[test]
-    fn permuting_in_place_is_gathering_by_the_order() {
-        for seed in 1_u64..50 {
-            let n = (seed % 17 + 1) as usize;
-            let mut order: Vec<u32> = (0..n as u32).collect();
-            order.sort_by_key(|&k| (u64::from(k) + 1).wrapping_mul(0x9E37_79B9 * seed) % 1009);
-            let expected = order.clone();
-            let mut permuted: Vec<u32> = (0..n as u32).collect();
-            apply_order(&mut order, &mut |i, j| permuted.swap(i, j));
-            assert_eq!(permuted, expected);
-        }
-    }
+/// Puts the first entries of a list in an order: entry k becomes the former entry `order[k]`. An empty list
+/// stays empty.
+fn gather<T: Copy + Send + Sync>(of: &mut [T], order: &[u32], former: &mut Vec<T>, parallel: bool) {
+    let count = order.len().min(of.len());
+    parallel::copy(&of[..count], former, parallel);
+    parallel::for_each_pair(of, &order[..count], parallel, &|entry, from| {
+        *entry = former[*from as usize];
+    });
 }

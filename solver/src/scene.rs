@@ -80,6 +80,10 @@ pub struct Setting<X = ()> {
     pub parallel_from: usize,
 }
 
+/// The usual [`Setting::parallel_from`]. For fewer particles, distributing the work is assumed to cost more
+/// than it saves; not measured.
+pub const PARALLEL_FROM: usize = 10_000;
+
 impl<S: Scheme> Scene<S> {
     /// A scene with the usual skin, limits and threading.
     pub fn new(
@@ -114,8 +118,7 @@ impl<X: Numbers> Setting<X> {
             skin: 0.4 * h,
             skin_share: 0.5,
             limits: DivergenceBounds::default(),
-            // For fewer particles, distributing the work is assumed to cost more than it saves; not measured.
-            parallel_from: 10_000,
+            parallel_from: PARALLEL_FROM,
         }
     }
 
@@ -147,15 +150,15 @@ impl<X: Numbers> Setting<X> {
         stored.sort_by_key(|(_, particle)| particle.role);
         let mut neighbours =
             Neighbours::new(Reach { support: support * h, skin, spacing }, domain, mirrors);
-        neighbours.feet = feet;
-        let data = ParticleData { neighbours, limits, parallel, ..Default::default() };
+        (neighbours.feet, neighbours.parallel) = (feet, parallel);
+        let data = ParticleData { neighbours, limits, ..Default::default() };
         let mut data = Box::new(data);
         data.put(&stored);
         check_feet(reads, &data.neighbours.feet, data.counts.walls)?;
         data.slack = skin_share * skin;
         data.reach2 = half_period * half_period;
         let mut state = std::mem::take(&mut data.state);
-        data.sort(&mut state, &mut |_, _| ());
+        data.sort(&mut state, &mut []);
         data.state = state;
         Ok(data)
     }

@@ -221,8 +221,8 @@ mod tests {
             Domain::open(),
             &[],
         );
-        neighbours.place(&mut columns[..count].iter().map(|column| column.position));
-        neighbours.build(count, 0, false, false);
+        neighbours.place(count, &|k| columns[k].position);
+        neighbours.build(count, 0, false);
         neighbours
     }
 

@@ -1,14 +1,17 @@
 //! Equal bits on any number of threads, and without threads.
 //!
 //! Rows are gathered, each by one thread in its own order; blocks are fixed; maxima are exact. That
-//! is the mechanism under test. 2,500 particles are five blocks, so that pools share them unevenly.
+//! is the mechanism under test. 2,500 particles are five blocks, so that pools share them unevenly. The strip
+//! has so many wall particles and images that cheap loops over these use threads too.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
     Compose, Continuity, CubicSpline, Domain, Euler, ExtrapolatingWall, Ghosts, Integrator,
     InterfaceWall, Leapfrog, NoSlip, Open, Outcome, Particle, PlaneWall, PredictorCorrector,
-    Pressure, Role, Scene, Scheme, Shifting, Smoothing, Stepper, Tait, Viscosity, lattice,
-    walls::Walls,
+    Pressure, Role, Scene, Scheme, Shifting, Smoothing, Stepper, Tait, Viscosity,
+    integrator::SingleSweep,
+    lattice,
+    walls::{SlipGhosts, Walls},
 };
 use touchstone_tests::{Random, V2, bits, patch};
 
@@ -38,8 +41,12 @@ fn check<S: Scheme<Extra = ()>>(name: &str, scene: impl Fn() -> Scene<S> + Sync)
         let mut scene = scene();
         scene.setting.parallel_from = parallel_from;
         let mut simulation = scene.build().unwrap();
-        let outcome = simulation.advance(30.0 * 0.3 * DX, 0.3 * DX, &mut ());
-        assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, 30));
+        // What is synchronised after 10 steps is taken back in the next one.
+        for steps in [10_u32, 30] {
+            let until = f64::from(steps) * 0.3 * DX;
+            let outcome = simulation.advance(until, 0.3 * DX, &mut ());
+            assert_eq!((outcome, simulation.work().steps), (Outcome::Reached, steps.into()));
+        }
         assert!(simulation.work().list_builds > 2, "{name}: rows were rebuilt on the way");
         (bits(&simulation.particles()), simulation.work())
     };
@@ -122,6 +129,48 @@ fn a_channel_of_extrapolating_walls_has_the_same_bits_on_any_number_of_threads()
     check("extrapolating walls, predictor-corrector", || {
         scene::<_, PredictorCorrector>(Domain::channel(1.0), walled(), walls())
     });
+}
+
+/// Rows and columns of a strip.
+const STRIP: [usize; 2] = [12, 400];
+
+/// A strip between walls at y = 0 and the height of the strip, along which the fluid streams.
+fn strip() -> Vec<Particle> {
+    let mut random = Random(8);
+    let points = lattice(Vector2::repeat(0.5 * DX), DX, STRIP[1], STRIP[0]);
+    let particle = |point: V2| {
+        let velocity = random.vector(-0.1, 0.1) + Vector2::new(0.3, 0.0);
+        Particle::fluid(point + random.vector(-0.1, 0.1) * DX, velocity, 1.0, DX * DX)
+    };
+    points.map(particle).collect()
+}
+
+/// Six rows of wall particles below the strip and six above.
+fn walled_strip() -> Vec<Particle> {
+    let mut all = strip();
+    for row in (-6..0).chain(STRIP[0] as i32..STRIP[0] as i32 + 6) {
+        let first = Vector2::new(0.5, f64::from(row) + 0.5) * DX;
+        let points = lattice(first, DX, STRIP[1], 1);
+        let wall = |p: V2| Particle::fluid(p, Vector2::zeros(), 1.0, DX * DX).with_role(Role::Wall);
+        all.extend(points.map(wall));
+    }
+    all
+}
+
+#[test]
+fn a_strip_of_many_images_and_wall_particles_has_the_same_bits_on_any_number_of_threads() {
+    let [height, length] = STRIP.map(|count| count as f64 * DX);
+    let domain = Domain::channel(length);
+    let walls = || {
+        let wall = |y, up| PlaneWall::new(Vector2::new(0.0, y), up, Vector2::zeros());
+        vec![wall(0.0, Vector2::y()), wall(height, -Vector2::y())]
+    };
+    check("ghosts", || scene::<_, Leapfrog>(domain, strip(), Ghosts { walls: walls() }));
+    check("slip", || scene::<_, SingleSweep>(domain, strip(), SlipGhosts { walls: walls() }));
+    check("walls", || scene::<_, PredictorCorrector>(domain, walled_strip(), InterfaceWall));
+    let eos = Tait::new(1.0, 1.0);
+    let extrapolating = || ExtrapolatingWall::<Tait, NoSlip>::new(eos, Vector2::new(0.1, -0.2));
+    check("extrapolating walls", || scene::<_, Leapfrog>(domain, walled_strip(), extrapolating()));
 }
 
 #[test]

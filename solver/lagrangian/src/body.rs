@@ -68,10 +68,17 @@ impl<L: Law> Body<L> {
 
     /// Sets the displacements of particles and images from the state.
     fn displace(&mut self, state: &[State<Symmetric>]) {
-        let of = self.displacements.iter_mut().zip(&self.reference.places);
-        for ((displacement, place), evolved) in of.zip(state) {
-            *displacement = evolved.position - place;
-        }
+        let (displacements, places) = (&mut self.displacements, &self.reference.places);
+        parallel::for_each_part(
+            &mut displacements[..state.len()],
+            self.parallel,
+            &|first, part| {
+                let of = places[first..].iter().zip(&state[first..]);
+                for (displacement, (place, evolved)) in part.iter_mut().zip(of) {
+                    *displacement = evolved.position - place;
+                }
+            },
+        );
         for (k, image) in self.reference.images.iter().enumerate() {
             self.displacements[state.len() + k] =
                 image.displaced * self.displacements[image.source];

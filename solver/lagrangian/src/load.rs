@@ -2,7 +2,7 @@
 //! derives from an energy.
 
 use nalgebra::Vector2;
-use touchstone_solver::{Smoothing, State, Symmetric, WendlandC2};
+use touchstone_solver::{Smoothing, State, Symmetric, WendlandC2, parallel};
 
 use crate::{law::Moduli, reference::ReferenceConfiguration};
 
@@ -13,6 +13,8 @@ pub struct Loaded<'a> {
     pub state: &'a [State<Symmetric>],
     /// Reference configuration.
     pub reference: &'a ReferenceConfiguration,
+    /// Whether the work is distributed over threads.
+    pub parallel: bool,
 }
 
 impl Loaded<'_> {
@@ -57,8 +59,10 @@ impl Load for () {
 pub struct Weight(pub Vector2<f64>);
 
 impl Load for Weight {
-    fn push(&self, _: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64 {
-        accelerations.iter_mut().for_each(|a| *a += self.0);
+    fn push(&self, on: &Loaded, accelerations: &mut [Vector2<f64>]) -> u64 {
+        parallel::for_each_part(accelerations, on.parallel, &|_, part| {
+            part.iter_mut().for_each(|a| *a += self.0);
+        });
         0
     }
     fn energy(&self, on: &Loaded) -> f64 {

@@ -6,6 +6,7 @@ use touchstone_solver::{
     Checkpoint, DivergenceBounds, Domain, Kernel, Leapfrog, Particle, ParticleData, Phase,
     Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
+    parallel,
     particles::{Common, SweptParticle},
     scene::{Component, require},
     walls::Walls,
@@ -50,18 +51,18 @@ impl<W: Walls<Symmetric>, C: Load> SolidScene<W, C> {
     /// Checks the scene, and builds a simulation with the kernel `K` and the stored energy `L`.
     pub fn build<K: Kernel, L: Law>(self) -> Result<Solid<K, L, C>, SceneError> {
         let Self { h, domain, particles, bodies, walls, moduli, loads, limits, .. } = self;
-        let parallel = particles.len() >= self.parallel_from;
         check(&particles, &bodies, &moduli, self.hourglass)?;
         let mut frame = Scene::<Frame<K, W>>::new(h, domain, particles, (), (), walls);
         // Rounding must not leave out a neighbour; a little more is found, and left out by its weight.
         (frame.setting.skin, frame.setting.limits) = (1e-9 * h, limits);
+        frame.setting.parallel_from = self.parallel_from;
         let data = frame.build()?.into_particles();
         let of = |(id, _): &(u32, _)| bodies.get(*id as usize).copied().unwrap_or(0);
         let bodies: Vec<u32> = data.without_memory().particles.iter().map(of).collect();
         let kernel = Smoothing::<K>::new(h);
         let accelerations = vec![Vector2::zeros(); bodies.len()];
         let reference = ReferenceConfiguration::new(&data, &kernel, bodies, domain, W::SLIPS)?;
-        let body = Body::new(reference, moduli, self.hourglass, parallel);
+        let body = Body::new(reference, moduli, self.hourglass, data.is_parallel());
         let mut solid = Solid { data, body, kernel, loads, accelerations };
         solid.evaluate();
         Ok(solid)
@@ -101,6 +102,14 @@ pub struct Solid<K, L, C> {
     accelerations: Vec<Vector2<f64>>,
 }
 
+/// The particles as input of loads.
+fn loaded<'a>(
+    data: &'a ParticleData<Symmetric>,
+    reference: &'a ReferenceConfiguration,
+) -> Loaded<'a> {
+    Loaded { state: data.fluid_state(), reference, parallel: data.is_parallel() }
+}
+
 impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
     /// Derives everything from the positions; the number of neighbours in all pair sweeps, of which a body
     /// has two, over gradients and over forces.
@@ -108,7 +117,7 @@ impl<K: Kernel, L: Law, C: Load> Solid<K, L, C> {
         self.data.enter(Phase::Forces);
         self.body.deform(self.data.fluid_mut(), &mut self.accelerations);
         self.data.enter(Phase::Walls);
-        let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };
+        let on = loaded(&self.data, &self.body.reference);
         let of_loads = self.loads.push(&on, &mut self.accelerations);
         self.data.enter(Phase::Rest);
         2 * self.body.reference.pairs() + of_loads
@@ -123,16 +132,18 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
         &mut self.data
     }
     fn step(&mut self, dt: f64) -> Stepped {
-        let half = 0.5 * dt;
-        for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
+        let (half, parallel) = (0.5 * dt, self.data.is_parallel());
+        let (moving, accelerations) = (self.data.fluid_mut(), &self.accelerations);
+        parallel::for_each_pair(moving, accelerations, parallel, &|evolved, acceleration| {
             evolved.velocity += acceleration * half;
             evolved.position += evolved.velocity * dt;
-        }
+        });
         let neighbours = self.evaluate();
         self.data.count_pairs(Phase::Rest, neighbours);
-        for (evolved, acceleration) in self.data.fluid_mut().iter_mut().zip(&self.accelerations) {
+        let (moving, accelerations) = (self.data.fluid_mut(), &self.accelerations);
+        parallel::for_each_pair(moving, accelerations, parallel, &|evolved, acceleration| {
             evolved.velocity += acceleration * half;
-        }
+        });
         self.data.check_bounds()
     }
     fn synchronise(&mut self) -> Stepped {
@@ -175,7 +186,7 @@ impl<K: Kernel, L: Law, C: Load> Stepper<Symmetric> for Solid<K, L, C> {
         self.data.bytes() + self.body.bytes() + size_of_val(&self.accelerations[..])
     }
     fn potential(&self) -> Option<Potential> {
-        let on = Loaded { state: self.data.fluid_state(), reference: &self.body.reference };
+        let on = loaded(&self.data, &self.body.reference);
         Some(Potential { loads: self.loads.energy(&on), ..self.body.potential() })
     }
 }

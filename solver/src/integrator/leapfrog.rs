@@ -8,6 +8,7 @@ use super::{Integrator, Memory, Stepped};
 use crate::{
     engine::{Engine, each},
     numbers::Numbers,
+    parallel,
     particle_data::Checkpoint,
     particles::{Rate, State},
     physics::{Particles, Physics},
@@ -98,15 +99,19 @@ pub struct Staggered {
 
 impl Staggered {
     /// Gives the state back the velocities that were held, if any were.
-    pub(super) fn release<X>(&mut self, state: &mut [State<X>]) {
-        for (evolved, velocity) in state.iter_mut().zip(self.held.drain(..)) {
-            evolved.velocity = velocity;
-        }
+    pub(super) fn release<X: Numbers>(&mut self, state: &mut [State<X>], parallel: bool) {
+        parallel::for_each_pair(state, &self.held, parallel, &|evolved, velocity| {
+            evolved.velocity = *velocity;
+        });
+        self.held.clear();
     }
 
     /// The lag of velocities that are not synchronised yet \[s\], which are held from now on.
-    pub(super) fn hold<X>(&mut self, fluid: &[State<X>]) -> KickTimes {
-        self.held.extend(fluid.iter().map(|evolved| evolved.velocity));
+    pub(super) fn hold<X: Numbers>(&mut self, fluid: &[State<X>], parallel: bool) -> KickTimes {
+        self.held.resize(fluid.len(), Vector2::zeros());
+        parallel::for_each_pair(&mut self.held, fluid, parallel, &|velocity, evolved| {
+            *velocity = evolved.velocity;
+        });
         KickTimes { velocity: self.lag, position: 0.0 }
     }
 
@@ -144,7 +149,7 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         dt: f64,
     ) -> Stepped {
         let (staggered, kick) = memory;
-        staggered.release(state);
+        staggered.release(state, engine.parallel());
         engine.begin(state)?;
         let half = 0.5 * dt;
         K::kick(engine, kick, state, KickTimes { velocity: staggered.lag + half, position: half })?;
@@ -164,7 +169,8 @@ impl<P: Physics, K: Kick<P>> Integrator<P> for Leapfrog<K> {
         let (staggered, kick) = memory;
         if staggered.is_behind() {
             engine.begin(state)?;
-            let times = staggered.hold(&state[..engine.data.fluid_count()]);
+            let fluid = &state[..engine.data.fluid_count()];
+            let times = staggered.hold(fluid, engine.parallel());
             K::kick(engine, kick, state, times)?;
         }
         engine.begin(state)

@@ -3,6 +3,7 @@
 use super::{Integrator, Stepped, advance};
 use crate::{
     engine::{Engine, each},
+    parallel,
     particles::State,
     physics::{Particles, Physics},
 };
@@ -27,8 +28,7 @@ impl<P: Physics> Integrator<P> for PredictorCorrector {
         dt: f64,
     ) -> Stepped {
         engine.begin(state)?;
-        midpoint.clear();
-        midpoint.extend_from_slice(state);
+        parallel::copy(state, midpoint, engine.parallel());
         engine.sweep_all(midpoint, &each(advance(0.5 * dt)));
         engine.refresh(midpoint)?;
         engine.sweep_all(state, &each(advance(dt)));

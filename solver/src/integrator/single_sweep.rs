@@ -7,6 +7,7 @@ use super::{
 use crate::{
     engine::{Engine, each},
     numbers::Numbers,
+    parallel,
     particle_data::{Checkpoint, PreviousStep},
     particles::{Rate, State},
     physics::{Particles, Physics},
@@ -54,7 +55,7 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         dt: f64,
     ) -> Stepped {
         let (staggered, past) = memory;
-        staggered.release(state);
+        staggered.release(state, engine.parallel());
         engine.begin_with(state, past)?;
         let (half, fluid) = (0.5 * dt, engine.data.fluid_count());
         let (kick, known) = (staggered.lag + half, 2.0 * staggered.lag);
@@ -78,13 +79,13 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         engine.sweep_all(state, &each(update));
         // The rate belongs to the middle of the last step and is extrapolated to the middle of this one.
         let ahead = if known > 0.0 { kick / known } else { 0.0 };
-        for (evolved, past) in state.iter_mut().zip(past) {
+        parallel::for_each_two(state, past, engine.parallel(), &|evolved, past| {
             let rate = (evolved.density, evolved.extra);
             past.drifted = past.drifted.advanced(known, rate);
             let next = past.drifted.advanced(dt * (1.0 + ahead), rate);
             (evolved.density, evolved.extra) = next.advanced(-dt * ahead, past.rate);
             past.rate = rate;
-        }
+        });
         staggered.lag = half;
         Ok(())
     }
@@ -97,7 +98,8 @@ impl<P: Physics> Integrator<P> for SingleSweep {
         let (staggered, past) = memory;
         if staggered.is_behind() {
             engine.begin_with(state, past)?;
-            let times = staggered.hold(&state[..engine.data.fluid_count()]);
+            let fluid = &state[..engine.data.fluid_count()];
+            let times = staggered.hold(fluid, engine.parallel());
             ForwardKick::kick(engine, &mut (), state, times)?;
         }
         engine.begin_with(state, past)

@@ -8,6 +8,7 @@ use super::{Kick, KickTimes, Memory, Stepped};
 use crate::{
     engine::{Engine, each},
     numbers::Numbers,
+    parallel,
     particles::{Rate, State},
     physics::{Particles, Physics},
     terms::{Split, Term},
@@ -73,17 +74,18 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
         let count = super::stages(times.velocity / limit);
         let s = f64::from(count);
         let length = 4.0 * times.velocity / (s * s + s - 2.0);
-        let Stages { start, older, newer } = stages;
+        let (Stages { start, older, newer }, parallel) = (stages, engine.parallel());
         for stage in [&mut *start, older, newer] {
-            stage.clear();
-            stage.extend_from_slice(state);
-            stage.iter_mut().for_each(|evolved| evolved.velocity = Vector2::zeros());
+            parallel::copy(state, stage, parallel);
+            parallel::for_each_part(stage, parallel, &|_, part| {
+                part.iter_mut().for_each(|evolved| evolved.velocity = Vector2::zeros());
+            });
         }
         let take = |_, start: &mut State<_>, rate: &Rate<_>| start.velocity = rate.velocity;
         engine.sweep_forces(start, &each(take));
-        for (newer, start) in newer.iter_mut().zip(&*start) {
+        parallel::for_each_pair(newer, start, parallel, &|newer, start| {
             newer.velocity = start.velocity * (weight(1) * length);
-        }
+        });
         for j in 2..=count {
             let share = |back: u32| weight(j) / (weight(j - back) * f64::from(j));
             let (last, before) = (f64::from(2 * j - 1) * share(1), f64::from(j - 1) * share(2));
@@ -96,11 +98,11 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
             engine.sweep_part(older, &stiff, |((_, stiff), _)| *stiff, &each(update));
             swap(older, newer);
         }
-        let fluid = engine.data.fluid_count();
-        for (evolved, difference) in state[..fluid].iter_mut().zip(&*newer) {
+        let fluid = &mut state[..engine.data.fluid_count()];
+        parallel::for_each_pair(fluid, newer, parallel, &|evolved, difference| {
             evolved.velocity += difference.velocity;
             evolved.position += evolved.velocity * times.position;
-        }
+        });
         Ok(())
     }
 }

@@ -1,4 +1,5 @@
-//! Makes runs: side by side, the longest first, or timed, one at a time while this program does nothing else.
+//! Makes runs: side by side, the longest first; long and large ones on all threads; timed ones one at a time
+//! while this program does nothing else.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -35,14 +36,24 @@ fn timed_again_below(tier: Tier) -> f64 {
     }
 }
 
-/// The part of a run in the wall time of the batch \[s\]: its whole time with repetitions if it runs alone,
-/// otherwise its part of the time of all threads.
+/// The part of a run in the wall time of the batch \[s\], from its time on all its threads together: the whole
+/// time with repetitions if it is timed, otherwise its part of the time of all threads.
 fn of_batch(job: &Job, making: &BatchOptions, seconds: f64) -> f64 {
     match job.planned.timed {
         true if seconds < timed_again_below(making.tier) => REPETITIONS as f64 * seconds,
         true => seconds,
         false => seconds / rayon::current_num_threads() as f64,
     }
+}
+
+/// The runs that are made on all threads, one at a time, and the others, each the longest first. On one thread
+/// a run of the first kind would take longer than all runs together on all threads, which would wait for it.
+fn on_all_threads<'j>(mut jobs: Vec<&'j Job>, threads: usize) -> [Vec<&'j Job>; 2] {
+    jobs.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
+    let all: f64 = jobs.iter().map(|job| job.planned.seconds).sum();
+    let keeps_waiting =
+        |job: &&Job| job.planned.is_large && job.planned.seconds > all / threads as f64;
+    jobs.into_iter().partition(keeps_waiting).into()
 }
 
 /// The runs in progress, and the callbacks.
@@ -68,13 +79,16 @@ impl<'a> Batch<'a> {
         batch
     }
 
-    /// Makes some of the jobs: the timed ones after all others.
+    /// Makes some of the jobs: first those that take all threads, then the others side by side, and last the
+    /// timed ones.
     pub(crate) fn make_all(&self, jobs: Vec<&Job>) {
-        let (timed, mut rest): (Vec<&Job>, Vec<&Job>) =
+        let (timed, rest): (Vec<&Job>, Vec<&Job>) =
             jobs.into_iter().partition(|job| job.planned.timed);
-        rest.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
+        let threads = rayon::current_num_threads();
+        let [one_by_one, side_by_side] = on_all_threads(rest, threads);
+        one_by_one.into_iter().for_each(|job| self.make(job, threads));
         // Each thread takes the longest run that is left.
-        rest.into_iter().par_bridge().for_each(|job| self.make(job));
+        side_by_side.into_iter().par_bridge().for_each(|job| self.make(job, 1));
         self.alone(&timed);
     }
 
@@ -108,18 +122,18 @@ impl<'a> Batch<'a> {
 
     /// Makes a run unless stopped, keeps its record, and reports the record, and the case if it was the last
     /// run of its case. Timed runs are profiled.
-    fn make(&self, job: &Job) {
+    fn make(&self, job: &Job, threads: usize) {
         if self.making.is_interrupted() {
             return;
         }
         let (key, start) = (job.planned.spec.key(), Instant::now());
-        if let Some(mut record) = self.run(job, job.planned.timed) {
+        if let Some(mut record) = self.run(job, threads, job.planned.timed) {
             if job.planned.timed {
                 record.cost.alone_s = vec![record.cost.cpu_s];
             }
             let name = format!("{} {}", job.case.name(), record.run.variant);
             self.keep(record);
-            let took = of_batch(job, self.making, start.elapsed().as_secs_f64());
+            let took = of_batch(job, self.making, threads as f64 * start.elapsed().as_secs_f64());
             self.tell(|tally| tally.finish(&key, name, took));
         }
         let is_last = lock(&self.tally).end(&key);
@@ -141,7 +155,7 @@ impl<'a> Batch<'a> {
 
     /// Makes a run, and finds out where its time goes if it is to be profiled; none if it failed or was
     /// interrupted.
-    fn run(&self, job: &Job, profile: bool) -> Option<Record> {
+    fn run(&self, job: &Job, threads: usize, profile: bool) -> Option<Record> {
         let (interrupt, spec, start) = (self.making.interrupt, &job.planned.spec, Instant::now());
         let begun = self.making.store.map(|store| store.begin(spec));
         let is_one = spec.is_simulation();
@@ -151,12 +165,12 @@ impl<'a> Batch<'a> {
                 return; // of a bisection nobody knows how many simulations are left
             }
             let part = progress.time / progress.end;
-            let took = of_batch(job, self.making, start.elapsed().as_secs_f64());
+            let took = of_batch(job, self.making, threads as f64 * start.elapsed().as_secs_f64());
             self.tell(|tally| tally.reach(&spec.key(), part, took));
         };
         let (progress, allow_long) = (Some(&show as _), self.making.allow_long);
         let context =
-            Context { threads: 1, allow_long, profile, interrupt, progress, ..Context::default() };
+            Context { threads, allow_long, profile, interrupt, progress, ..Context::default() };
         let gates = &self.gates[job.case.name()];
         let made = catch_unwind(AssertUnwindSafe(|| run(gates, spec, &context)));
         match made.unwrap_or(Err(RunError::Bug)) {
@@ -177,7 +191,7 @@ impl<'a> Batch<'a> {
     /// One run at a time, the first of each profiled; cheap ones again in further rounds. A record is kept as
     /// soon as it is there, and again with the timings of the later rounds.
     fn alone(&self, jobs: &[&Job]) {
-        jobs.iter().for_each(|job| self.make(job));
+        jobs.iter().for_each(|job| self.make(job, 1));
         let record = |job: &Job| lock(&self.made).records.get(&job.planned.spec.key()).cloned();
         let is_cheap = |record: &Record| {
             record.cost.alone_s.iter().any(|seconds| *seconds < timed_again_below(self.making.tier))
@@ -189,7 +203,7 @@ impl<'a> Batch<'a> {
                 if self.making.is_interrupted() {
                     break;
                 }
-                record.cost.alone_s.extend(self.run(job, false).map(|again| again.cost.cpu_s));
+                record.cost.alone_s.extend(self.run(job, 1, false).map(|again| again.cost.cpu_s));
             }
         }
         let again = cheap.into_iter().map(|(_, record)| record);

@@ -4,6 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use rayon::prelude::*;
 use touchstone_base::spec::RunSpec;
+use touchstone_solver::scene::PARALLEL_FROM;
 
 use crate::{
     jobs::{BatchOptions, Job},
@@ -15,11 +16,13 @@ use crate::{
 /// most of its ten or so runs diverge early or cover a short time.
 const SIMULATIONS: f64 = 3.0;
 
-/// Gives each job the time that its run states before its first step. A run that is refused takes none.
+/// Gives each job the time and the size that its run states before its first step. A run that is refused takes
+/// no time.
 pub fn estimate(jobs: &mut [Job], making: &BatchOptions) {
     jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
         if let Some(size) = size(job, making.allow_long) {
             job.planned.seconds = time(&job.planned.spec, &size);
+            job.planned.is_large = size.particles >= PARALLEL_FROM as f64;
         }
     });
 }

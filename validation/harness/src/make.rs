@@ -1,5 +1,5 @@
 //! Makes the runs of a plan without stored records: first the runs that are not timed, in parallel and the
-//! longest first; then the timed runs, one at a time while this program does nothing else, in rounds over all
+//! longest first, each on all threads that would keep the others waiting; then the timed runs, one at a time while this program does nothing else, in rounds over all
 //! of them, so that a change of the machine's speed affects every variant alike. If a caller waits for the
 //! first complete case, one case is made in this way before all others.
 
@@ -140,6 +140,7 @@ mod tests {
             let mut record = Record::of(spec, 1);
             record.put(ERROR, 1.0);
             (record.cost.wall_s, record.cost.cpu_s) = (7.0, 0.02);
+            record.cost.threads = context.threads;
             match spec.settings["set"][0].as_str() {
                 Some("k=panic") => panic!("staged"),
                 Some("k=cut") => {
@@ -325,6 +326,39 @@ mod tests {
             made(&jobs, &BatchOptions { progress, ..BatchOptions::new(Tier::Quick, &sources) })
         });
         assert_eq!(shares.into_inner().unwrap(), [0.0, 0.7, 0.9, 1.0]);
+    }
+
+    /// The deep tier took 4.5 hours on 16 threads, of which 15 waited for one run most of the time.
+    #[test]
+    fn a_large_run_for_which_the_others_would_wait_is_made_on_all_threads() {
+        let sources = |_: &str| "one".to_string();
+        let planned = |k: &str, seconds, is_large| {
+            let job = job(k);
+            Job { planned: Planned { seconds, is_large, ..job.planned }, ..job }
+        };
+        // 23 s, of which each of four threads has 5.75 s.
+        let jobs = [
+            planned("1", 1.0, true),
+            planned("2", 9.0, false),
+            planned("3", 10.0, true),
+            planned("4", 3.0, true),
+        ];
+        let order = Mutex::new(Vec::new());
+        let progress = |done: Done| order.lock().unwrap().push(done.share);
+        let progress: Option<&OnProgress> = Some(&progress);
+        let four = rayon::ThreadPoolBuilder::new().num_threads(4).build().unwrap();
+        let made = |jobs: &[Job]| {
+            let making = BatchOptions { progress, ..BatchOptions::new(Tier::Quick, &sources) };
+            let made = four.install(|| made(jobs, &making));
+            jobs.iter()
+                .map(|job| made.records[&job.planned.spec.key()].cost.threads)
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(made(&jobs), [1, 1, 4, 1]);
+        assert_eq!(order.lock().unwrap()[..2], [0.0, 10.0 / 23.0], "it is the first");
+        assert_eq!(made(&jobs[..1]), [4], "a run alone has all threads");
+        let timed = Job { planned: jobs[2].planned.clone().timed(), ..jobs[2].clone() };
+        assert_eq!(made(&[timed]), [1], "seconds are compared on one thread");
     }
 
     /// A run refused for its length is made when longer runs are allowed.

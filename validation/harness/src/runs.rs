@@ -38,15 +38,17 @@ pub struct Planned {
     pub gates: Vec<Gate>,
     /// Are its seconds shown? Then it is made in the quiet phase, while this program does nothing else.
     pub timed: bool,
-    /// How long it takes \[s\], by [`estimate`](crate::estimate::estimate); long runs start first, so that no
-    /// core waits for the last one.
+    /// How long it takes on one thread \[s\], by [`estimate`](crate::estimate::estimate); long runs start
+    /// first, so that no core waits for the last one.
     pub seconds: f64,
+    /// Does it have so many particles that several threads shorten it?
+    pub is_large: bool,
 }
 
 impl Planned {
     /// A run without gates.
     pub fn new(spec: RunSpec) -> Self {
-        Self { spec, gates: Vec::new(), timed: false, seconds: 1.0 }
+        Self { spec, gates: Vec::new(), timed: false, seconds: 1.0, is_large: false }
     }
 
     /// This run with gates.

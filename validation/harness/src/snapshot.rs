@@ -4,7 +4,9 @@
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
-use touchstone_solver::{Numbers, Particle, Role, State, Stepper, Symmetric};
+use touchstone_solver::{
+    Numbers, Particle, ParticleData, Role, State, Stepper, Symmetric, parallel,
+};
 
 use crate::checkpoint::RoleNames;
 
@@ -34,6 +36,12 @@ impl Point {
     pub fn is_fluid(&self) -> bool {
         self.role == Role::Fluid
     }
+}
+
+/// The particle at a place of storage.
+fn point<X: Numbers>(data: &ParticleData<X>, index: usize) -> Point {
+    let Particle { role, mass, position, velocity, .. } = data.at(index);
+    Point { index, role, mass, position, velocity }
 }
 
 /// Total momentum of the moving particles per unit depth \[kg/s\], summed in the order given.
@@ -158,30 +166,51 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
 
     /// All particles in the order of the scene.
     pub fn all(&self) -> Vec<Point> {
-        let simulation = match &self.source {
-            Source::Given(columns, _) => return columns.points.clone(),
-            Source::Ours(simulation) => simulation,
-        };
-        let nothing = Point {
-            index: 0,
-            role: Role::Fluid,
-            mass: 0.0,
-            position: Vector2::zeros(),
-            velocity: Vector2::zeros(),
-        };
-        let mut all = vec![nothing; simulation.data().state().len()];
-        for (index, (id, p)) in simulation.data().stored().enumerate() {
-            let Particle { role, mass, position, velocity, .. } = p;
-            all[id as usize] = Point { index, role, mass, position, velocity };
+        self.of_all(|point| Some(*point)).into_iter().flatten().collect()
+    }
+
+    /// Values of all particles that have one, in the order of the scene, some hundred particles at a time.
+    fn of_all<R: Send>(&self, value: impl Fn(&Point) -> Option<R> + Sync) -> Vec<Vec<R>> {
+        match &self.source {
+            Source::Given(columns, _) => vec![columns.points.iter().filter_map(value).collect()],
+            Source::Ours(simulation) => {
+                let data = simulation.data();
+                let places = data.places();
+                parallel::map_parts(places.len(), data.is_parallel(), &|part| {
+                    let points = places[part].iter().map(|place| point(data, *place as usize));
+                    points.filter_map(|point| value(&point)).collect()
+                })
+            }
         }
-        all
+    }
+
+    /// A value of each moving particle, in the order of the scene; for sums whose last bits do not depend on
+    /// the order of storage.
+    pub fn of_moving<R: Send>(
+        &self,
+        value: impl Fn(&Point) -> R + Sync,
+    ) -> impl Iterator<Item = R> {
+        let values = self.of_all(|point| point.is_fluid().then(|| value(point)));
+        values.into_iter().flatten()
+    }
+
+    /// What `find` finds in each part of the moving particles, some hundred as they are stored, on several
+    /// threads if the simulation is.
+    pub fn in_parts<R: Send>(&self, find: impl Fn(&[Point]) -> R + Sync) -> Vec<R> {
+        match &self.source {
+            Source::Given(..) => vec![find(&self.stored().collect::<Vec<_>>())],
+            Source::Ours(simulation) => {
+                let data = simulation.data();
+                parallel::map_parts(data.fluid_count(), data.is_parallel(), &|part| {
+                    find(&part.map(|place| point(data, place)).collect::<Vec<_>>())
+                })
+            }
+        }
     }
 
     /// The moving particles in the order of the scene.
     pub fn moving(&self) -> Vec<Point> {
-        let mut all = self.all();
-        all.retain(Point::is_fluid);
-        all
+        self.of_moving(|point| *point).collect()
     }
 
     /// The moving particles as they are stored, without order; for sums.

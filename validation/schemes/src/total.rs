@@ -13,7 +13,7 @@ use touchstone_maths::theory::bending;
 use touchstone_maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use touchstone_solver::{
     Compose, DivergenceBounds, Ghosts, Leapfrog, Particle, Role, SceneError, Stepper, Symmetric,
-    WendlandC2,
+    WendlandC2, scene::PARALLEL_FROM,
 };
 
 use crate::methods;
@@ -99,7 +99,7 @@ fn scene<C>(parts: Parts<Symmetric>, loads: C) -> SolidScene<Ghosts, C> {
             density: DENSITIES.map(|ratio| ratio * medium.density),
             ..limits
         },
-        parallel_from: if threads > 1 { 10_000 } else { usize::MAX },
+        parallel_from: if threads > 1 { PARALLEL_FROM } else { usize::MAX },
     }
 }
 

@@ -441,7 +441,8 @@ pub struct MakeArguments {
     /// Reuse no record: make every run again
     #[arg(long, conflicts_with = "any_build")]
     pub fresh: bool,
-    /// Number of runs made in parallel, 1 to 1024; the default is one per core
+    /// Number of runs made in parallel, 1 to 1024, and of threads inside a run for which the others would
+    /// wait; the default is one per core
     #[arg(long, value_name = "N", value_parser = threads())]
     pub threads: Option<u16>,
 }
@@ -475,6 +476,9 @@ pub struct Verify {
     /// Make no run: judge what the store has
     #[arg(long, conflicts_with_all = ["fresh", "threads"])]
     pub no_runs: bool,
+    /// Also measure the seconds that a report shows: these runs are made last, one at a time
+    #[arg(long, conflicts_with = "no_runs")]
+    pub timings: bool,
     #[command(flatten)]
     pub making: MakeArguments,
 }

@@ -155,8 +155,7 @@ impl Session {
 
     /// The stored runs of plans, whether or not timed runs were made alone.
     fn stored(&self, plans: &Plans, store: &Store, any_build: bool) -> StoredRuns {
-        let mut jobs = make::jobs(plans.clone());
-        jobs.iter_mut().for_each(|job| job.planned.timed = false);
+        let jobs = make::jobs(verify::without_timings(plans.clone()));
         let store = Some(store);
         make::stored(
             &jobs,

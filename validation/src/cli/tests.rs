@@ -109,7 +109,8 @@ impl Case for Staged {
         let spec = |variant: &str| case::spec(self, variant, &set).expect("staged settings");
         let planned = |variant: &&str| {
             let name = format!("{}.{variant}", self.name);
-            Planned::new(spec(variant)).judged(vec![gate(&name, "error")])
+            let planned = Planned::new(spec(variant)).judged(vec![gate(&name, "error")]);
+            Planned { timed: self.name == "timed", ..planned }
         };
         let runs: Vec<Planned> = self.planned.iter().map(planned).collect();
         let card = || Card::made_up(ERROR, "re", vec![spec("right")]);
@@ -137,6 +138,7 @@ static WRONG: Staged = Staged { name: "wrong", planned: &["right", "wrong"] };
 static PANICKING: Staged = Staged { name: "panicking", planned: &["right", "panicking"] };
 static DIVERGING: Staged = Staged { name: "diverging", planned: &["diverging"] };
 static MAIN: Staged = Staged { name: "main", planned: &["right"] };
+static TIMED: Staged = Staged { name: "timed", planned: &["right"] };
 static STOPPING: Staged = Staged { name: "stopping", planned: &["stopping"] };
 static ALL: [&dyn Case; 4] = [&RIGHT, &WRONG, &PANICKING, &DIVERGING];
 static SOUND: [&dyn Case; 2] = [&RIGHT, &WRONG];
@@ -200,6 +202,22 @@ fn verify_ends_with_the_verdict() {
     let folder = tempfile::tempdir().expect("a folder");
     let line = "verify right --store OUT/records";
     assert_eq!(exit_with(&ALREADY, line, folder.path()), Exit::Interrupted);
+}
+
+/// Runs that were timed alone took half of the time of `verify couette` on 16 threads.
+#[test]
+fn verify_measures_seconds_only_on_request() {
+    static OF: [&dyn Case; 1] = [&TIMED];
+    let folder = tempfile::tempdir().expect("a folder");
+    let timings = |line: &str| {
+        assert_eq!(run_on(&OF, &NEVER, line, folder.path()), Exit::Pass, "{line}");
+        let records = Store::all(&folder.path().join("records")).expect("a store");
+        records.iter().map(|record| record.cost.alone_s.len()).collect::<Vec<_>>()
+    };
+    assert_eq!(timings("verify timed --store OUT/records"), [0]);
+    assert_eq!(timings("verify timed --timings --store OUT/records"), [3]);
+    assert_eq!(timings("verify timed --store OUT/records"), [3], "a timed run serves as well");
+    assert_eq!(run_on(&OF, &NEVER, "report --out OUT", folder.path()), Exit::Pass);
 }
 
 /// An interrupt while a store is read must not judge the records read so far.

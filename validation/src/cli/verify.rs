@@ -20,12 +20,13 @@ use super::{
 };
 
 pub fn verify(arguments: &arguments::Verify, session: &Session) -> Outcome {
-    let arguments::Verify { of, store, no_runs, making } = arguments;
+    let arguments::Verify { of, store, no_runs, timings, making } = arguments;
     show(of, session, |cases| {
         if *no_runs {
             return of_store(cases, of.tier, store, making.any_build, session);
         }
         let plans = plans(cases, of.tier, session)?;
+        let plans = if *timings { plans } else { without_timings(plans) };
         run(plans, of.tier, &Store::open(store)?, *making, None, session)
     })
 }
@@ -94,6 +95,12 @@ pub fn exit(suite: &Suite) -> Exit {
 pub fn plans(cases: &[&'static dyn Case], tier: Tier, session: &Session) -> Result<Plans, Failure> {
     session.check_references(cases)?;
     Ok(suite::plans(cases, tier))
+}
+
+/// These plans with no run timed: no gate judges seconds.
+pub fn without_timings(mut plans: Plans) -> Plans {
+    plans.iter_mut().flat_map(|(_, plan)| plan).for_each(|planned| planned.timed = false);
+    plans
 }
 
 /// Makes the missing runs of a store, on a pool, with a bar, and refuses to judge interrupted runs.

@@ -52,10 +52,49 @@ fn probe(x: f64, spacings: f64, dx: f64, width: f64) -> (f64, f64) {
     (place, dx * spacings.min(room).max(1.0))
 }
 
-/// x of the foremost particle below a quarter of the height of the column \[m\]: spray is no front.
-fn foremost(water: impl Iterator<Item = Point>, height: f64) -> f64 {
-    let low = water.filter(|p| p.position.y < 0.25 * height);
-    low.map(|p| p.position.x).fold(f64::NEG_INFINITY, f64::max)
+/// Findings in a part of the water.
+struct Findings {
+    /// x of the foremost particle below a quarter of the height of the column \[m\]: spray is no front.
+    foremost: f64,
+    /// x \[m\] and volume \[m²\] of the particles within reach of a probe.
+    near: Vec<[f64; 2]>,
+    /// Whether a particle is behind a wall.
+    has_lost: bool,
+    /// The largest speed \[m/s\].
+    fastest: f64,
+}
+
+impl Findings {
+    /// Findings in these particles of the volumes [m²], with these probes (x and half of the width [m]).
+    fn of(
+        water: &[Point],
+        dam: &Dam,
+        volume: impl Fn(&Point) -> f64,
+        probes: &[(f64, f64)],
+    ) -> Self {
+        let low = water.iter().filter(|p| p.position.y < 0.25 * dam.settings.height);
+        let values = water.iter().map(|p| [p.position.x, volume(p)]);
+        // A volume that is no number makes every depth none.
+        let is_near = |[x, volume]: &[f64; 2]| {
+            !volume.is_finite() || probes.iter().any(|(place, w)| (x - place).abs() < *w)
+        };
+        Self {
+            foremost: low.map(|p| p.position.x).fold(f64::NEG_INFINITY, f64::max),
+            near: values.filter(is_near).collect(),
+            has_lost: water.iter().any(|p| dam.is_lost(p.position)),
+            fastest: water.iter().map(|p| p.velocity.norm()).fold(f64::NAN, f64::max),
+        }
+    }
+
+    fn and(mut self, other: Self) -> Self {
+        self.near.extend(other.near);
+        Self {
+            foremost: self.foremost.max(other.foremost),
+            near: self.near,
+            has_lost: self.has_lost || other.has_lost,
+            fastest: self.fastest.max(other.fastest),
+        }
+    }
 }
 
 /// The floor under water at rest \[m\]: half a spacing below its lowest particle, whose area at rest states
@@ -66,9 +105,10 @@ fn floor(water: &[Point], density: f64) -> f64 {
 }
 
 /// Mean height of the mass of all particles \[m\].
-fn centre(water: &[Point]) -> f64 {
-    let add = |(all, sum), p: &Point| (all + p.mass, sum + p.mass * p.position.y);
-    let (mass, moment) = water.iter().fold((0.0, 0.0), add);
+fn centre(water: &Snapshot) -> f64 {
+    let moments = water.of_moving(|p| [p.mass, p.mass * p.position.y]);
+    let add = |[all, sum]: [f64; 2], [mass, moment]: [f64; 2]| [all + mass, sum + moment];
+    let [mass, moment] = moments.fold([0.0; 2], add);
     moment / mass
 }
 
@@ -89,6 +129,14 @@ pub struct Samples {
     spilled: BTreeSet<usize>,
 }
 
+impl Dam {
+    /// Whether a place is behind the surface of a wall by more than the depth of a dent.
+    fn is_lost(&self, x: Vector2<f64>) -> bool {
+        let behind = (-x.x).max(x.x - self.tank.width()).max(-x.y).max(0.0);
+        behind / self.medium.dx > LOST
+    }
+}
+
 impl Samples {
     /// None yet.
     pub fn new() -> Self {
@@ -106,54 +154,47 @@ impl Samples {
     /// Takes a sample of a simulation that has been brought to a time.
     pub fn sample(&mut self, dam: &Dam, now: &Snapshot) {
         let (s, dx) = (&dam.settings, dam.medium.dx);
-        let foremost = foremost(now.stored(), s.height);
-        // In the order of the scene: the order of storage changes, and with it the last bits of a sum.
-        let water = now.moving();
-        let centre = centre(&water);
-        let half = 0.5 * s.height;
+        let (over, width) = ((HEIGHT_OVER * s.width / dx).round().max(2.0), dam.tank.width());
+        let [h1, h2, h3, h4] = PROBES.map(|x| probe(x, 2.0, dx, width));
+        let probes = [probe(HEIGHT_AT * s.width, over, dx, width), h1, h2, h3, h4];
+        let density = now.density();
+        let volume = |p: &Point| density.as_ref().map_or(0.0, |density| p.mass / density.of(p));
+        let parts = now.in_parts(|water| Findings::of(water, dam, volume, &probes));
+        let Some(found) = parts.into_iter().reduce(Findings::and) else { return };
+        let (centre, half) = (centre(now), 0.5 * s.height);
         if self.released.is_nan() {
-            self.start = [foremost, floor(&water, dam.medium.eos.density)];
+            self.start = [found.foremost, floor(&now.moving(), dam.medium.eos.density)];
             self.released = centre / half - 1.0;
         }
         let [first, floor] = self.start;
-        let width = dam.tank.width();
-        let volumes: Result<Vec<[f64; 2]>, Absent> = now
-            .density()
-            .map(|density| now.stored().map(|p| [p.position.x, p.mass / density.of(&p)]).collect());
-        let depth_at = |x: f64, spacings: f64| {
-            let (place, w) = probe(x, spacings, dx, width);
-            volumes.as_ref().map(|water| depth(water, place, w)).map_err(Absent::clone)
+        let depth_at = |(place, w)| match &density {
+            Ok(_) => Ok(depth(&found.near, place, w)),
+            Err(absent) => Err(absent.clone()),
         };
-        let over = (HEIGHT_OVER * s.width / dx).round().max(2.0);
         // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
-        let front = s.width + foremost - first;
-        let height = depth_at(HEIGHT_AT * s.width, over);
-        let [h1, h2, h3, h4] = PROBES.map(|x| depth_at(x, 2.0));
+        let front = s.width + found.foremost - first;
+        let [height, h1, h2, h3, h4] = probes.map(depth_at);
         let potential = (centre - floor) / half;
         self.rows.push([Ok(now.time()), Ok(front), height, h1, h2, h3, h4, Ok(potential)]);
-        self.look_at_walls(dam, now);
+        self.look_at_walls(dam, now, &found);
     }
 
     /// Counts lost particles, without particles that have left over the rim: the walls are several spacings
     /// thick, so such a particle is first above them, or a dent in their upper end. Measures the speed of the
     /// water that has not left.
-    fn look_at_walls(&mut self, dam: &Dam, now: &Snapshot) {
-        let Dam { tank, medium, rim, .. } = dam;
-        let reach = LOST * medium.dx;
-        let is_lost =
-            |x: Vector2<f64>| (-x.x).max(x.x - tank.width()).max(-x.y).max(0.0) / medium.dx > LOST;
+    fn look_at_walls(&mut self, dam: &Dam, now: &Snapshot, found: &Findings) {
+        let reach = LOST * dam.medium.dx;
         // Particles by their numbers are copies, which most samples do without.
-        if self.spilled.is_empty() && !now.stored().any(|p| is_lost(p.position)) {
-            let speeds = now.stored().map(|p| p.velocity.norm());
-            self.fastest = speeds.fold(self.fastest, f64::max);
+        if self.spilled.is_empty() && !found.has_lost {
+            self.fastest = self.fastest.max(found.fastest);
             self.outside = [self.outside[0].max(0.0), 0.0];
             return;
         }
         let mut lost = 0.0;
         let all = now.all().into_iter().enumerate();
         for (k, p) in all.filter(|(_, p)| p.is_fluid()) {
-            let is_lost = is_lost(p.position);
-            if is_lost && p.position.y >= rim - reach {
+            let is_lost = dam.is_lost(p.position);
+            if is_lost && p.position.y >= dam.rim - reach {
                 self.spilled.insert(k);
             }
             if !self.spilled.contains(&k) {
@@ -236,14 +277,16 @@ impl Gauge {
 
     fn read(&self, dam: &Dam, now: &Snapshot) -> Result<Vec<f64>, Absent> {
         let density = now.density()?;
-        let near: Vec<(Vector2<f64>, f64, f64)> = now
-            .stored()
-            .filter(|p| p.position.x > self.reach)
-            .map(|p| (p.position, p.mass / density.of(&p), dam.medium.eos.pressure(density.of(&p))))
-            .collect();
+        let (reach, eos) = (self.reach, dam.medium.eos);
+        let near = now.in_parts(|water| {
+            let near = water.iter().filter(|p| p.position.x > reach).map(|p| (p, density.of(p)));
+            let near =
+                near.map(|(p, density)| (p.position, p.mass / density, eos.pressure(density)));
+            near.collect::<Vec<_>>()
+        });
         let at = |spot: &Spot| {
             let (mut wet, mut sum) = (0.0, 0.0);
-            for (place, volume, pressure) in &near {
+            for (place, volume, pressure) in near.iter().flatten() {
                 let w = volume * now.weight((place - spot.place).norm_squared());
                 wet += w;
                 sum += w * pressure;

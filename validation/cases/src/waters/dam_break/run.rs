@@ -152,7 +152,7 @@ impl Problem for Dam {
 /// Mass of the water \[kg/m\], added in the order of the scene: the order of storage changes, and with it the
 /// last bits.
 fn water_mass(now: &Snapshot) -> f64 {
-    now.moving().iter().map(|p| p.mass).sum()
+    now.of_moving(|p| p.mass).sum()
 }
 
 /// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and which of
@@ -174,7 +174,7 @@ fn stops(dam: &Dam) -> (Vec<f64>, Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::waters::dam_break::metrics;
+    use crate::waters::dam_break::{lobovsky, metrics};
     use crate::waters::{dam_break::DAM_BREAK, water::ledger::WORK_VISCOSITY};
     use touchstone_base::{
         absent::Absent,
@@ -202,6 +202,27 @@ mod tests {
         };
         assert_eq!(others(&plain), others(&all));
         assert!(others(&plain).iter().all(|name| plain.metrics[name] == all.metrics[name]));
+    }
+
+    /// Water in the tank of the experiment, whose sensors read after every step, in parts of 512 particles.
+    #[test]
+    fn measurements_have_the_same_bits_on_any_number_of_threads() {
+        let spec = DAM_BREAK.spec("modern", |s| {
+            lobovsky(s);
+            (s.n, s.end) = (75, 0.02);
+        });
+        let run = |threads: usize| {
+            let context = Context { threads, ..Context::default() };
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
+            let record = pool.install(|| DAM_BREAK.run(&spec, &context)).expect("a run");
+            assert!(record.cost.particles >= touchstone_solver::scene::PARALLEL_FROM);
+            (record.state, record.metrics, record.profiles)
+        };
+        let alone = run(1);
+        for threads in [2, 3] {
+            assert!(run(threads) == alone, "{threads} threads");
+        }
     }
 
     /// Water that has left over the rim may fall for 1.5 s without a divergence by its speed.
