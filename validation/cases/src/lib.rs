@@ -16,7 +16,9 @@ use touchstone_base::reference::Reference;
 use touchstone_harness::case::{Case, RunError};
 
 use crate::{
-    fluids::{cavity, channel, manufactured, periodic_hill, taylor_couette, taylor_green},
+    fluids::{
+        cavity, channel, manufactured, periodic_hill, slip_channel, taylor_couette, taylor_green,
+    },
     lattice::{extremes, operators, resting_box, wave},
     solids::{cantilever, elastic_bar, elastic_wave, oscillating_plate, rings, spinning_disk},
     waters::{dam_break, elliptic_drop, hydrostatic, still_wedge},
@@ -33,6 +35,7 @@ pub static CASES: &[&dyn Case] = &[
     &rings::RUBBER_RINGS,
     &taylor_green::CASE,
     &taylor_couette::CASE,
+    &slip_channel::CASE,
     &manufactured::CASE,
     &cavity::CASE,
     &elliptic_drop::ELLIPTIC_DROP,

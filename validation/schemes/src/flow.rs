@@ -6,9 +6,10 @@ use touchstone_maths::exact::manufactured;
 use touchstone_solver::{
     ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion,
-    ExtrapolatingWall, Ghosts, InterfaceWall, Kernel, Leapfrog, NoSlip, Open, PredictorCorrector,
-    Pressure, QuinticSpline, Rate, ShiftAdvection, Shifting, SingleSweep, Split, SuperSteps, Tait,
-    Term, Viscosity, WendlandC2, Xsph, lane::Lane, particles::Common, terms::Pair,
+    ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Kernel, Leapfrog, NoSlip, Open,
+    PredictorCorrector, Pressure, QuinticSpline, Rate, ShiftAdvection, Shifting, SingleSweep,
+    SlipGhosts, Split, SuperSteps, Tait, Term, Viscosity, WendlandC2, Xsph, lane::Lane,
+    particles::Common, terms::Pair,
 };
 
 use crate::{Method, methods, stepped};
@@ -95,6 +96,13 @@ methods! { stepped => Method:
     cure_xsph: Seed<Fluid<BodyForce>, (Continuity, Xsph)>;
     /// The seed's with shifting.
     cure_shifting: Seed<Fluid<BodyForce>, (Continuity, Shifting)>;
+
+    /// A channel along whose walls the fluid slips, with ghosts.
+    slip: Modern<Pairs, Continuity, SlipGhosts>;
+    /// A channel along whose walls the fluid slips, because they have no viscous force, with walls that
+    /// extrapolate.
+    slip_extrapolating:
+        Modern<(Pressure<Tait>, FluidPairs<Viscosity>), Continuity, ExtrapolatingWall<Tait>>;
 
     /// Cylinders with interface and wall particles.
     cylinders_interface: Modern<Pairs, Continuity, InterfaceWall>;

@@ -6,7 +6,6 @@ use touchstone_base::gate::Cause;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     convergence::ErrorLevel,
-    method::FirstRow,
     orders::{self, Line, Refinement},
     problem::Simple,
     runs::Runs,
@@ -17,7 +16,7 @@ use touchstone_harness::{
 };
 use touchstone_maths::{exact::manufactured, metrics::norms::rms};
 use touchstone_schemes::flow;
-use touchstone_solver::{EquationOfState, PlaneWall, Role};
+use touchstone_solver::EquationOfState;
 
 use crate::fluids::unit_flow::{DECISIVE, FlowScales, Numerics, UnitFlow};
 
@@ -111,38 +110,19 @@ fn flow(s: &ManufacturedSettings, m: &Method) -> UnitFlow {
     flow
 }
 
-/// Fluid at rest with the exact pressure, and rows of particles on and behind walls of particles.
-fn particles(m: &Method, flow: &UnitFlow) -> Vec<Particle> {
+/// Fluid at rest with the exact pressure, between walls.
+fn parts(m: &Method, flow: &UnitFlow) -> Parts {
     let Medium { dx, eos, nu, .. } = flow.medium;
-    let count = (1.0 / dx).round() as usize;
-    let row = |y: f64, role: Role| {
-        let of = move |x| {
-            let density = eos.density(nu * manufactured::pressure(x));
-            Particle::fluid(x, Vector2::zeros(), density, dx * dx).with_role(role)
-        };
-        touchstone_solver::lattice(Vector2::new(0.5 * dx, y), dx, count, 1).map(of)
-    };
-    let (first, behind) =
-        (m.properties.first_row.fluid(), m.properties.first_row != FirstRow::Nowhere);
-    let rows = count + 1 - (2.0 * first) as usize;
-    let fluid = (0..rows).flat_map(|k| row((first + k as f64) * dx, Role::Fluid));
-    let last = if behind { (flow.support / dx - 1e-9).floor() as usize + 1 } else { 0 };
-    let role = |k| if k == 0 { Role::Interface } else { Role::Wall };
-    let wall =
-        (0..last).flat_map(|k| [-(k as f64) * dx, 1.0 + k as f64 * dx].map(|y| (y, role(k))));
-    fluid.chain(wall.flat_map(|(y, role)| row(y, role))).collect()
+    flow.between_walls(m.properties.first_row, |x| {
+        Particle::fluid(x, Vector2::zeros(), eos.density(nu * manufactured::pressure(x)), dx * dx)
+    })
 }
 
 fn pose(m: &Method, s: &ManufacturedSettings) -> Result<Simple, RunError> {
     let (flow, method) = (flow(s, m), m.clone());
     let (medium, rules, particles) = (flow.medium, flow.rules, flow.particles);
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
-    let scene = move || {
-        let mirror = |y, normal| PlaneWall::new(Vector2::new(0.0, y), normal, Vector2::zeros());
-        let mirrors = vec![mirror(0.0, Vector2::y()), mirror(1.0, -Vector2::y())];
-        let particles = self::particles(&method, &flow);
-        Ok(Parts { mirrors, ..flow.parts(Domain::channel(1.0), particles) })
-    };
+    let scene = move || Ok(parts(&method, &flow));
     let at_end = move |end: &Snapshot, record: &mut Record| {
         measure(&medium, end, record);
     };
@@ -276,6 +256,7 @@ mod tests {
     use touchstone_base::spec::RunSpec;
     use touchstone_harness::context::Context;
     use touchstone_harness::runs::Judged;
+    use touchstone_solver::Role;
 
     use super::*;
     use touchstone_harness::case::Case;
@@ -303,7 +284,7 @@ mod tests {
         let flow = flow(&settings, &method);
         let Medium { eos, nu, .. } = flow.medium;
         let measured = |share: [f64; 2], offset: f64| {
-            let mut all = particles(&method, &flow);
+            let mut all = parts(&method, &flow).particles;
             for p in &mut all {
                 p.velocity = manufactured::velocity(p.position) * share[0];
                 let pressure = share[1] * nu * manufactured::pressure(p.position);
@@ -316,7 +297,7 @@ mod tests {
         let [l2, pressure] = measured([1.0, 1.0], 0.4 * nu);
         assert!(l2 < 1e-12 && pressure < 1e-9, "{l2:e} {pressure:e}");
         let [l2, pressure] = measured([1.03, 1.07], 0.0);
-        let all = particles(&method, &flow);
+        let all = parts(&method, &flow).particles;
         let fluid = all.iter().filter(|p| p.role == Role::Fluid);
         let exact: Vec<f64> = fluid.map(|p| manufactured::pressure(p.position)).collect();
         let mean = exact.iter().sum::<f64>() / exact.len() as f64;
@@ -336,7 +317,7 @@ mod tests {
             let settings = CASE.chosen(variant, |s| s.n = 16);
             let flow = flow(&settings, &method);
             let dx = flow.medium.dx;
-            let all = particles(&method, &flow);
+            let all = parts(&method, &flow).particles;
             let lowest = all.iter().map(|p| p.position.y).fold(0.0, f64::min);
             assert!(
                 -lowest < flow.support && -lowest + dx >= flow.support * (1.0 - 1e-9),

@@ -3,8 +3,11 @@
 
 use nalgebra::Vector2;
 use touchstone_harness::prelude::*;
-use touchstone_harness::{case::Step, method::Properties};
-use touchstone_solver::{DivergenceBounds, Tait};
+use touchstone_harness::{
+    case::Step,
+    method::{FirstRow, Properties},
+};
+use touchstone_solver::{DivergenceBounds, PlaneWall, Role, Tait};
 
 touchstone_base::settings! {
     /// The numerical settings that all these flows have.
@@ -97,6 +100,35 @@ impl UnitFlow {
         let dx = self.medium.dx;
         Brief::new(self.medium, self.rules, self.particles, DECISIVE)
             .numbers(&self.rules.numbers([self.h_over_dx, dx]))
+    }
+
+    /// A square of fluid between plane walls at rest at y = 0 and y = 1, periodic along x: `of` makes the
+    /// particle at a place, also on and behind walls of particles.
+    pub fn between_walls(
+        &self,
+        first_row: FirstRow,
+        of: impl Fn(Vector2<f64>) -> Particle,
+    ) -> Parts {
+        let dx = self.medium.dx;
+        let count = (1.0 / dx).round() as usize;
+        let row = |y: f64, role: Role| {
+            let places = touchstone_solver::lattice(Vector2::new(0.5 * dx, y), dx, count, 1);
+            places.map(|x| of(x).with_role(role)).collect::<Vec<Particle>>()
+        };
+        let (first, depth) = (first_row.fluid(), first_row.depth());
+        let rows = count + 1 - (2.0 * first) as usize;
+        let fluid = (0..rows).flat_map(|k| row((first + k as f64) * dx, Role::Fluid));
+        let behind = match first_row {
+            FirstRow::Nowhere => 0,
+            _ => (self.support / dx - depth - 1e-9).floor() as usize + 1,
+        };
+        let wall = (0..behind).map(|k| depth + k as f64).flat_map(|behind| {
+            let role = if behind == 0.0 { Role::Interface } else { Role::Wall };
+            [-behind * dx, 1.0 + behind * dx].map(|y| row(y, role)).concat()
+        });
+        let mirror = |y, normal| PlaneWall::new(Vector2::new(0.0, y), normal, Vector2::zeros());
+        let mirrors = vec![mirror(0.0, Vector2::y()), mirror(1.0, -Vector2::y())];
+        Parts { mirrors, ..self.parts(Domain::channel(1.0), fluid.chain(wall).collect()) }
     }
 
     /// The scene of these particles.
