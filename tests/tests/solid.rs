@@ -433,69 +433,6 @@ type Rings<T> = Compose<
     Symmetric,
 >;
 
-fn turned(p: Solid, turn: Rotation2<f64>) -> Solid {
-    let extra = symmetric(turn * matrix(p.extra) * turn.inverse());
-    Solid { position: turn * p.position, velocity: turn * p.velocity, extra, ..p }
-}
-
-/// Two discs of 147 particles that meet off-centre at 0.15 c each, after 100 steps, with this ξ.
-fn collision(method: &Method<Symmetric>, xi: f64, turn: Rotation2<f64>) -> Vec<Solid> {
-    let centre = Vector2::new(7.6, 2.0);
-    let disc: Vec<V2> =
-        lattice(Vector2::repeat(-7.0), 1.0, 15, 15).filter(|x| x.norm() < 6.8).collect();
-    let particles = [1.0, -1.0].into_iter().flat_map(|side| {
-        let velocity = Vector2::new(-0.15 * side, 0.0);
-        disc.iter().map(move |x| Particle::fluid(x + centre * side, velocity, 1.0, 1.0))
-    });
-    let particles: Vec<Solid> = particles.map(|p| turned(p, turn)).collect();
-    let medium = Medium {
-        alpha: 1.0,
-        beta: 2.0,
-        shear_modulus: 0.22,
-        xsph: 0.5,
-        xi,
-        exponent: N,
-        ..method.properties.medium(Tait::new(1.0, 1.0), [1.0, 1.5])
-    };
-    let parts = Parts::new(medium, Domain::open(), particles);
-    let mut simulation = (method.build)(parts).unwrap();
-    assert_eq!(simulation.advance(30.0, 0.3, &mut ()), Outcome::Reached);
-    simulation.particles()
-}
-
-/// Largest difference in spacings, c, ⁰ρ and K between a turned run and a run of the turned scene.
-fn frame_dependence(method: &Method<Symmetric>, xi: f64) -> f64 {
-    let turn = rotation(PI / 6.0);
-    let here = collision(method, xi, Rotation2::identity());
-    let there = collision(method, xi, turn);
-    let size = here.iter().map(|p| matrix(p.extra).amax()).fold(0.0, f64::max);
-    assert!(size > 0.01, "nothing happened");
-    let mut largest = 0.0_f64;
-    for (here, there) in here.into_iter().map(|p| turned(p, turn)).zip(there) {
-        for part in [
-            (here.position - there.position).amax(),
-            (here.velocity - there.velocity).amax(),
-            (here.density - there.density).abs(),
-            (matrix(here.extra) - matrix(there.extra)).amax(),
-        ] {
-            largest = if part > largest || part.is_nan() { part } else { largest };
-        }
-    }
-    largest
-}
-
-#[test]
-fn a_turned_collision_is_the_collision_turned_with_principal_axes_only() {
-    let principal = frame_dependence(&touchstone_schemes::solid::seed(), XI);
-    let component = frame_dependence(&touchstone_schemes::solid::componentwise(), XI);
-    let none = frame_dependence(&touchstone_schemes::solid::seed(), 0.0);
-    println!(
-        "turned by 30 degrees: principal {principal:e}, component {component:e}, none {none:e}"
-    );
-    assert!(principal < 1e-10 && none < 1e-10, "principal axes {principal:e}, none {none:e}");
-    assert!(component > 1e-6, "componentwise {component:e}");
-}
-
 // Memory ------------------------------------------------------------------------------------------
 
 #[test]
