@@ -147,6 +147,9 @@ class Question(Problem):
             self.declines("elastic bodies are not part of this scheme")
         if self.json["walls"]["planes"] and self.fluid.all():
             self.declines("walls are particles, no planes")
+        if "rigid_body" in self.json:
+            self.declines("rigid bodies are not part of this scheme")
+        self.slips = self.json["boundary"].startswith("Free slip")
 
     @staticmethod
     def declines(why):

@@ -76,9 +76,9 @@ fn stored_answers_are_the_answers_of_our_variants() {
 fn walls_of_particles_drag_and_hold_the_fluid() {
     let folder = tempfile::tempdir().unwrap();
     let line = "--variant extrapolating-wall --wall-particles \
-                --only moving-wall,no-slip,body-force,still-water";
+                --only moving-wall,no-slip,free-slip,body-force,still-water";
     let (all, exit) = answers(folder.path(), line);
-    assert_eq!((ids(&all, "pass").len(), exit), (4, 0), "{all:#?}");
+    assert_eq!((ids(&all, "pass").len(), exit), (5, 0), "{all:#?}");
 }
 
 /// One constant of our solver is wrong; the question that names it says by which factor, to 5 %.
@@ -106,6 +106,17 @@ fn a_wrong_constant_fails_the_question_that_names_it_with_its_factor() {
         let found = all[0]["factor"].as_f64().unwrap();
         assert!((found / expected - 1.0).abs() < 0.05, "{line}: {found}");
     }
+}
+
+/// Variants that are wrong by construction.
+#[test]
+fn a_wall_that_sticks_and_a_stress_by_components_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let (all, _) = answers(folder.path(), "--variant sticking --only free-slip");
+    assert_eq!(ids(&all, "fail"), ["free-slip"], "{all:#?}");
+    assert!(all[0]["answer"].as_str().unwrap().starts_with("the wall sticks"), "{:#}", all[0]);
+    let (all, _) = answers(folder.path(), "--variant componentwise --only turned");
+    assert_eq!(ids(&all, "fail"), ["turned"], "{all:#?}");
 }
 
 #[test]
@@ -141,7 +152,7 @@ fn a_code_that_declines_is_not_applicable_and_no_pass() {
 #[test]
 fn a_run_that_breaks_must_say_so() {
     let folder = tempfile::tempdir().unwrap();
-    let only = |text| {
+    let only = |text: &str| {
         answers(
             folder.path(),
             &format!("--timeout 2 --only breaks {}", script(folder.path(), text)),
@@ -149,6 +160,8 @@ fn a_run_that_breaks_must_say_so() {
     };
     let (honest, exit) = only(r#"$TOUCHSTONE solve "$1""#);
     assert_eq!((ids(&honest, "pass"), exit), (vec!["breaks"], 0), "{honest:#?}");
+    let (all, exit) = only("echo 'no convergence' >&2; exit 1");
+    assert_eq!((ids(&all, "fail"), exit), (vec!["breaks"], 1), "it stops everywhere: {all:#?}");
     for dishonest in [
         // Exit code 0 after a divergence: no results, or results that are no numbers.
         r#"$TOUCHSTONE solve "$1"; exit 0"#,
@@ -159,6 +172,8 @@ fn a_run_that_breaks_must_say_so() {
         // A crash says nothing.
         "kill -SEGV $$",
     ] {
+        let mild = r#"grep -q '"dt": 0.2' "$1/problem.json" || exec $TOUCHSTONE solve "$1""#;
+        let dishonest = &format!("{mild}\n{dishonest}");
         let started = Instant::now();
         let (all, exit) = only(dishonest);
         assert_eq!((ids(&all, "fail"), exit), (vec!["breaks"], 1), "{dishonest}: {all:#?}");

@@ -16,13 +16,14 @@ COLUMNS = ["code", "fault", "true_factor", "question", "verdict", "factor", "unc
 # The factor by which a quantity is wrong; None where the fault is none.
 FAULTS = {
     "small_sph": {
-        "copy-of-start": 0, "other-results": None, "no-run": None, "normalisation": 1.02, "no-self": 0.6924,
-        "pressure-factor": 0.5, "smoothing-length": None, "viscosity": 2, "eta": 0.9933, "dynamic-viscosity": None,
-        "artificial-viscosity": None, "sound-speed": 1.1, "gamma": 0.5**0.5, "euler": None, "density-floor": None,
-        "mirror": None, "absolute-velocity": None, "border": None, "race": None, "order-of-numbers": None,
-        "one-sided": None, "twice-counted": None, "missed-neighbours": None, "wall-speed": 0.5, "wall-at-rest": 0,
-        "wall-sign": -1, "wall-place": None, "slip": None, "wall-term": None, "body-force": 1.03, "force-twice": 2,
-        "gravity": 0.5, "corner": None, "late-output": None, "dead-setting": None, "no-correction": None,
+        "copy-of-start": 0, "other-results": None, "no-run": None, "normalisation": 1.02, "no-self": 0.7863,
+        "pressure-factor": 0.5, "smoothing-length": None, "spacing-for-h": 1.2**-2, "viscosity": 2, "eta": 0.9933,
+        "dynamic-viscosity": 1.5, "artificial-viscosity": None, "sound-speed": 1.1, "gamma": 0.5**0.5, "euler": None,
+        "density-floor": None, "mirror": None, "absolute-velocity": None, "border": None, "race": None,
+        "order-of-numbers": None, "one-sided": None, "twice-counted": None, "missed-neighbours": None,
+        "wall-speed": 0.5, "wall-at-rest": 0, "wall-sign": -1, "wall-place": None, "slip": None, "stick": None,
+        "wall-term": None, "body-force": 1.03, "force-twice": 2, "gravity": 0.5, "corner": None, "no-buoyancy": None,
+        "mass-for-volume": None, "late-output": None, "dead-setting": None, "no-correction": None,
         "approximate-restart": None, "stuck": None, "nan": None,
     },
     "pysph wcsph": {
@@ -30,20 +31,23 @@ FAULTS = {
         "normalisation": 1.02, "artificial-viscosity": None, "euler": None,
     },
     "lammps": {
-        "viscosity": 2, "dynamic-viscosity": None, "body-force": 1.03, "force-twice": 2, "gravity": 0.5,
+        "viscosity": 2, "dynamic-viscosity": 1.5, "body-force": 1.03, "force-twice": 2, "gravity": 0.5,
         "wall-speed": 0.5, "wall-at-rest": 0, "wall-sign": -1, "sound-speed": 1.1, "normalisation": 1.02,
-        "artificial-viscosity": None, "border": None,
+        "artificial-viscosity": None, "border": None, "stick": None,
     },
     # By `--mutate`.
     "touchstone modern": {
         "viscosity=2": 2, "body_force=1.03": 1.03, "wall_speed=0.5": 0.5, "sound_speed=1.1": 1.1,
         "normalisation=1.02": 1.02, "body_force=0.5": 0.5, "plane-stress": 0.9176, "rotation-as-strain": None,
-        "one-sided-gradient": None,
+        "one-sided-gradient": None, "componentwise-stress": None, "stick": None,
     },
     # Unmodified only.
     "touchstone plain": {}, "touchstone seed": {}, "touchstone consistent": {}, "pysph tvf": {}, "pysph edac": {},
 }
 ADAPTERS = {"pysph": "pysph_fluid/run.py", "lammps": "lammps_sph/run.py"}
+# Variants of our own program with a fault: gradients of `seed` are not corrected at free faces.
+VARIANTS = {"rotation-as-strain": "seed", "one-sided-gradient": "seed", "componentwise-stress": "componentwise",
+            "stick": "sticking"}
 # Names of the faults of our own program in the questions.
 NAMES = {"body_force=0.5": "gravity"}
 
@@ -61,9 +65,7 @@ def probe(code, fault, program, finds):
     elif fault == "plane-stress":
         command = ["--only", "bending", "--", sys.executable, os.path.join(HERE, "plane_stress.py")]
     elif of == "touchstone":
-        # Gradients of `seed` are not corrected at free faces.
-        variant = "seed" if fault in ("rotation-as-strain", "one-sided-gradient") else variant
-        command = ["--variant", variant, *(["--mutate", fault] if fault and "=" in fault else [])]
+        command = ["--variant", VARIANTS.get(fault, variant), *(["--mutate", fault] if fault and "=" in fault else [])]
     else:
         adapter = os.path.join(HERE, "..", ADAPTERS[of])
         command = ["--wall-particles", "--", PYTHON, adapter, *([variant] if variant else []), *planted]

@@ -1,15 +1,15 @@
 /* A weakly compressible SPH code in one file, whose errors are known: small_sph [--fault NAME] FOLDER
  *
  * Continuity, symmetric pressure, viscosity of Morris, leapfrog (kick, drift, kick), cells. Walls are planes:
- * images of the particles have the velocity 2 V - v (no slip) or the mirrored one (slip). SI units, two dimensions,
- * masses per unit depth. Exit code 77: it cannot solve the problem; 3: the run diverged.
+ * images of the particles have the velocity 2 V - v (no slip) or the mirrored one (slip). A rigid body is particles
+ * with the pressure of the water around, which move as one. SI units, two dimensions, masses per unit depth. Exit code 77: it cannot solve the problem; 3: the run diverged.
  */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-struct particle { int id; double m, x[2], v[2], rho, p, old[2]; };
+struct particle { int id, body; double m, x[2], v[2], rho, p, old[2]; };
 struct plane { double point[2], n[2], v[2]; };
 
 static const char *fault = "";
@@ -22,7 +22,7 @@ static double corner[2], size[2];
 static double (*force)[2];
 static struct plane walls[8];
 static int planes, no_slip, sums_density, threads;
-static double rho0, c0, nu, alpha, gam, background, g[2], period[2], support, h, dx, step;
+static double body_mass, rho0, c0, nu, alpha, gam, background, g[2], period[2], support, h, dx, step;
 static int is_quintic;
 
 static void stop(int code, const char *why) { fprintf(stderr, "%s\n", why); exit(code); }
@@ -111,7 +111,9 @@ static int read_problem(char *json, double *times, int most) {
 }
 
 static void read_particles(char *csv) {
-    if (strncmp(csv, "id[-],role[-],x[m],y[m],u[m/s],v[m/s],density[kg/m^3],pressure[Pa],mass[kg/m]\n", 78))
+    const char *columns = "id[-],role[-],x[m],y[m],u[m/s],v[m/s],density[kg/m^3],pressure[Pa],mass[kg/m]";
+    size_t known = strlen(columns);
+    if (strncmp(csv, columns, known) || (csv[known] != '\n' && strncmp(csv + known, ",body[-]\n", 9)))
         stop(77, "small_sph does not know these columns");
     int lines = 0;
     for (char *at = csv; *at; at++) lines += *at == '\n';
@@ -120,9 +122,13 @@ static void read_particles(char *csv) {
     for (char *at = strchr(csv, '\n'); at && at[1]; at = strchr(at + 1, '\n')) {
         struct particle *p = &all[count];
         double role, pressure;
-        if (sscanf(at, "%d,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf", &p->id, &role, &p->x[0], &p->x[1], &p->v[0],
-                   &p->v[1], &p->rho, &pressure, &p->m) != 9)
+        if (sscanf(at, "%d,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%lf,%d", &p->id, &role, &p->x[0], &p->x[1], &p->v[0],
+                   &p->v[1], &p->rho, &pressure, &p->m, &p->body) < 9)
             stop(2, "particles.csv");
+        if (p->body) { /* its sums are those of the water that it displaces */
+            body_mass += p->m;
+            if (!is("mass-for-volume")) p->m = rho0 * dx * dx;
+        }
         if (role == 0) count++;
         else if (planes == 0) stop(77, "small_sph has planes for walls, no particles");
     }
@@ -137,8 +143,9 @@ static double pressure(double rho) {
 
 /* W at r, and W'/r in `slope`. */
 static double kernel(double r, double *slope) {
-    double l = is("smoothing-length") ? support / (is_quintic ? 2 : 3) : h, q = r / l, w = 0, d = 0;
-    double unit = is_quintic ? 7 / (478 * M_PI * l * l) : 10 / (7 * M_PI * l * l);
+    double l = is("smoothing-length") ? support / (is_quintic ? 2 : 3) : is("spacing-for-h") ? dx : h;
+    double q = r / l, w = 0, d = 0, area = is("spacing-for-h") ? h * h : l * l;
+    double unit = is_quintic ? 7 / (478 * M_PI * area) : 10 / (7 * M_PI * area);
     if (is_quintic) {
         static const double parts[3][2] = {{3, 1}, {2, -6}, {1, 15}};
         for (int k = 0; k < 3; k++) {
@@ -160,9 +167,9 @@ static struct particle image(const struct particle *of, const struct plane *wall
     double speed = is("wall-speed") ? 0.5 : is("wall-at-rest") ? 0 : is("wall-sign") ? -1 : 1;
     for (int k = 0; k < 2; k++) {
         p.x[k] = of->x[k] - 2 * distance * wall->n[k];
-        int sticks = no_slip && !is("slip");
+        int sticks = is("stick") || (no_slip && !is("slip"));
         p.v[k] = sticks ? 2 * speed * wall->v[k] - of->v[k] : of->v[k] - 2 * along * wall->n[k];
-        if (is("wall-term") && sticks) p.v[k] = speed * wall->v[k];
+        if (is("wall-term")) p.v[k] = speed * wall->v[k];
         if (is("wall-place") && sticks) /* half a spacing behind */
             p.v[k] = wall->v[k] + (wall->v[k] - of->v[k]) * (distance - dx / 2) / (distance + dx / 2);
         pull += g[k] * (p.x[k] - of->x[k]);
@@ -286,8 +293,28 @@ static void sum_of(int i, enum sum which, double *out) {
     }
 }
 
+/* The pressure of the water around, and the density that belongs to it. */
+static void fill_body(void) {
+    static int list[100000];
+    for (int i = 0; i < count; i++) {
+        if (!all[i].body) continue;
+        double weights = 0, sum = 0, slope, r[2];
+        for (int n = 0, all_near = candidates(&near[i], list); n < all_near; n++) {
+            struct particle *b = &near[list[n]];
+            way(&near[i], b, r);
+            double w = b->body ? 0 : kernel(hypot(r[0], r[1]), &slope);
+            weights += w, sum += w * (b->p + b->rho * (g[0] * r[0] + g[1] * r[1]));
+        }
+        near[i].p = weights > 0 ? fmax(sum / weights, 0) : 0;
+        near[i].rho = rho0 * pow(1 + gam * (near[i].p - background) / (rho0 * c0 * c0), 1 / gam);
+        all[i].p = near[i].p, all[i].rho = near[i].rho;
+    }
+}
+
 static void find_forces(void) {
+    double on_body[2] = {0, 0};
     find_sources();
+    if (body_mass > 0) fill_body();
     for (int i = 0; i < count; i++) {
         double x = is("body-force") ? 1.03 : is("force-twice") ? 2 : 1, y = is("gravity") ? 0.5 : 1;
         force[i][0] = x * g[0], force[i][1] = y * g[1];
@@ -296,7 +323,11 @@ static void find_forces(void) {
             for (int k = 0; k < 2; k++) force[i][k] -= 1e-3 * c0 / h * all[i].v[k];
         if (is("mirror")) /* a frame that turns */
             force[i][0] += 1e-3 * c0 / h * all[i].v[1], force[i][1] -= 1e-3 * c0 / h * all[i].v[0];
+        for (int k = 0; k < 2 && all[i].body; k++) on_body[k] += all[i].m * (force[i][k] - g[k]);
     }
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 2 && all[i].body; k++)
+            force[i][k] = g[k] + (is("no-buoyancy") ? 0 : on_body[k] / body_mass);
 }
 
 static void check(void) {
@@ -316,6 +347,7 @@ static void change_density(double dt) {
     find_sources();
     for (int i = 0; i < count; i++) {
         double sum = 0;
+        if (all[i].body) continue;
         sum_of(i, sums_density ? DENSITY : CONTINUITY, &sum);
         all[i].rho = sums_density ? sum : all[i].rho + dt * sum;
         if (is("density-floor")) all[i].rho = fmax(all[i].rho, 0.1);

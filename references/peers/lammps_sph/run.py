@@ -28,6 +28,9 @@ pull, skin = np.hypot(*problem.g), 0.3 * problem.dx
 lines = [f"units si\ndimension 2\natom_style sph\natom_modify map array\nnewton on\ncomm_modify vel yes",
          "boundary " + " ".join("s" if of is None else "p" for of in problem.period) + " p", "read_data data.lmp",
          f"pair_style sph/taitwater{style}", f"pair_coeff * * {problem.rho} {problem.c0} {strength} {problem.support}",
+         # Walls along which the fluid slips have no viscous force.
+         f"pair_coeff 1*{len(masses)} {len(masses) + 1}*{2 * len(masses)} {problem.rho} {problem.c0} 0 {problem.support}"
+         if problem.slips and problem.fault != "stick" else "",
          f"neighbor {skin} bin\nneigh_modify every 1 delay 0 check yes\ncompute rho all sph/rho/atom",
          f"group fluid type <= {len(masses)}\ngroup wall type > {len(masses)}\nfix walls wall setforce 0 0 0",
          "fix move all sph\nfix plane all enforce2d",

@@ -16,6 +16,8 @@ from pysph.sph.integrator_step import EulerStep
 problem = Question(sys.argv)
 if sys.argv[1] != "wcsph" and "surface is free" in problem.json["boundary"]:
     problem.declines("the background pressure of this scheme needs particles all around")
+if problem.slips:
+    problem.declines("walls of this scheme have a viscous force")
 WCSPH, array, quintic = scheme.WCSPHScheme, utils.get_particle_array, kernels.QuinticSpline.__init__
 init, configure = WCSPH.__init__, WCSPH.configure_solver
 

@@ -34,7 +34,7 @@ pub fn answers() -> Vec<(String, Vec<Answered>)> {
 /// Codes against questions, and the answers.
 pub fn section() -> Section {
     let all = answers();
-    Section::new("probes", "Twenty questions")
+    Section::new("probes", "Questions for any code")
         .prose(
             "Each question has one short problem, criteria with reasons, and named errors that it finds; \
              `touchstone probe -- COMMAND` asks them of any code. n/a: not applicable, which is no pass.",

@@ -48,7 +48,7 @@ pub enum Command {
     Challenge(Earlier),
     /// Measure and judge particles that another code wrote, and keep their record in a store
     Submit(Submit),
-    /// Ask a code twenty plain questions, each with one short problem, and say what is wrong by which factor
+    /// Ask a code plain questions, each with one short problem, and say what is wrong by which factor
     Probe(Probe),
     /// Solve an exported problem by the method that it was exported from, as another code would
     #[command(hide = true)]

@@ -191,6 +191,7 @@ fn earlier_rows(table: &mut Profile, folder: &Path) -> Result<(), Failure> {
 struct Document {
     spec: RunSpec,
     relation: Option<String>,
+    rigid_body: Option<Value>,
     #[serde(default)]
     probe: Probe,
 }
@@ -215,7 +216,11 @@ pub fn solve(arguments: &arguments::Solve, session: &Session) -> Outcome {
     let text = text.map_err(|why| Failure::usage(format!("{path:?} cannot be read: {why}")))?;
     let document: Document = serde_json::from_str(&text)
         .map_err(|why| Failure::usage(format!("{path:?} is no problem: {why}")))?;
-    let Document { spec, relation, probe } = document;
+    let Document { spec, relation, rigid_body, probe } = document;
+    if rigid_body.is_some() {
+        let reason = "it has no rigid bodies that float in a fluid".into();
+        return Err(Failure { exit: Exit::Declines, reason });
+    }
     let case = touchstone_cases::find_in(session.cases, &spec.case)?;
     let relation =
         relation.map(|name| Relation::named(&name)).transpose().map_err(Failure::usage)?;

@@ -16,7 +16,7 @@ use touchstone_harness::{
     foreign::Frame,
 };
 
-use super::Pose;
+use super::{Pose, floating};
 use crate::{
     flaw,
     problem::{ExportedProblem, PROBLEM},
@@ -163,7 +163,11 @@ impl Code {
         let usual = if self.walls_of_particles { pose.particles } else { pose.planes };
         let mut spec = case::spec(case, asked.filter(has).unwrap_or(usual), &pose.set)?;
         spec.allow_unstable = pose.set.iter().any(|set| set.starts_with("dt="));
-        ExportedProblem::seen(case, spec, pose.relation, false)
+        let mut problem = ExportedProblem::seen(case, spec, pose.relation, false)?;
+        if let Some(draft) = pose.draft {
+            floating::put_in(&mut problem, draft);
+        }
+        Ok(problem)
     }
 
     /// Lets the code solve the problem of a pose in a new folder.
@@ -180,7 +184,7 @@ impl Code {
         calls.push(if calls.is_empty() { json!({}) } else { json!({ "resume": true }) });
         let last = calls.len() - 1;
         for (k, probe) in calls.into_iter().enumerate() {
-            if let Err(why) = put(&problem, probe, folder) {
+            if let Err(why) = put(&problem, pose.draft.is_some(), probe, folder) {
                 return Ran::Failed(format!("the problem cannot be written: {why}"));
             }
             match self.call(folder, pose.threads.unwrap_or(1)) {
@@ -258,12 +262,20 @@ fn end(child: &mut Child) {
 }
 
 /// Writes a problem. `probe` is for this call alone.
-fn put(problem: &ExportedProblem, probe: Value, folder: &Path) -> Result<(), String> {
+fn put(
+    problem: &ExportedProblem,
+    is_floating: bool,
+    probe: Value,
+    folder: &Path,
+) -> Result<(), String> {
     let words = |error: &dyn std::fmt::Display| error.to_string();
     let output = files::OutputFolder::create(folder).map_err(|error| words(&error))?;
     let mut files = write::files(problem, Format::Csv).map_err(|error| words(&error))?;
     let mut document = problem.to_json();
     document["probe"] = probe;
+    if is_floating {
+        document["rigid_body"] = floating::statement(problem);
+    }
     for (name, bytes) in &mut files {
         if *name == PROBLEM {
             *bytes = format!("{document:#}\n").into_bytes();

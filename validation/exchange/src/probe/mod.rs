@@ -12,6 +12,7 @@
 pub mod code;
 mod conduct;
 mod fit;
+mod floating;
 mod flows;
 mod operators;
 mod relations;
@@ -43,6 +44,8 @@ pub struct Pose {
     pub threads: Option<u16>,
     /// Share of the end at which the run is interrupted and continued.
     pub interrupt: Option<f64>,
+    /// Rows in the water of a rigid box that floats in the tank.
+    pub draft: Option<usize>,
 }
 
 impl Pose {
@@ -113,9 +116,26 @@ pub struct Factor {
 
 impl fmt::Display for Factor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Two digits of the uncertainty.
-        let digits = (1.0 - log10(self.uncertainty).floor()).clamp(1.0, 9.0) as usize;
-        write!(f, "{:.digits$} ± {:.digits$}", self.value, self.uncertainty)
+        // Two digits of the uncertainty, and of what no run determines none.
+        let shown = self.uncertainty.abs().max(NO_RUN_DETERMINES);
+        let digits = (1.0 - log10(shown).floor()).clamp(1.0, 9.0) as usize;
+        let value = fixed(self.value, digits);
+        match self.uncertainty.abs() < NO_RUN_DETERMINES {
+            true => f.write_str(value.trim_end_matches('0').trim_end_matches('.')),
+            false => write!(f, "{value} ± {:.digits$}", self.uncertainty),
+        }
+    }
+}
+
+/// Uncertainties below this are not shown.
+const NO_RUN_DETERMINES: f64 = 1e-5;
+
+/// A number with these digits behind the point, and no sign of a 0.
+fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|digit| matches!(digit, '0' | '.')) => zero.into(),
+        _ => text,
     }
 }
 
@@ -145,8 +165,9 @@ impl Finding {
         Self { diagnosis: diagnosis.into(), factor: None, criteria: criteria.into() }
     }
 
-    fn with(self, factor: Factor) -> Self {
-        Self { factor: Some(factor), ..self }
+    fn with(self, Factor { value, uncertainty }: Factor) -> Self {
+        // No sign of a 0.
+        Self { factor: Some(Factor { value: value + 0.0, uncertainty }), ..self }
     }
 }
 
@@ -157,7 +178,7 @@ pub type NotApplicable = String;
 pub enum Reads {
     /// In complete results of all poses.
     Results(fn(&[&Solved]) -> Result<Finding, NotApplicable>),
-    /// In the end of the only pose, whatever it was.
+    /// In the results of the first pose, and in the end of the second, whatever it was.
     Ends(fn(&Ran) -> Answer),
 }
 
@@ -306,8 +327,10 @@ pub fn questions() -> Vec<Question> {
         flows::conservation(),
         flows::drag(),
         flows::stick(),
+        flows::slip(),
         flows::force(),
         flows::still(),
+        floating::floats(),
         solids::spin(),
         solids::bend(),
         waves::order(),
@@ -344,12 +367,9 @@ pub fn ask(
 
 /// The answer to a question from the results of its poses.
 fn answer(question: &Question, ran: &[&Ran]) -> Answer {
-    let read = match (&question.answer, ran) {
-        (Reads::Ends(read), [ran]) => return read(ran),
-        (Reads::Ends(_), _) => {
-            return Answer::Failed("the question has more than one problem".into());
-        }
-        (Reads::Results(read), _) => read,
+    let (ran, last) = match (&question.answer, ran) {
+        (Reads::Ends(_), [all @ .., last]) => (all, Some(*last)),
+        _ => (ran, None),
     };
     let mut solved = Vec::new();
     for ran in ran {
@@ -359,8 +379,33 @@ fn answer(question: &Question, ran: &[&Ran]) -> Answer {
             other => return Answer::Failed(other.failure()),
         }
     }
-    match read(&solved) {
-        Ok(found) => Answer::Found(found),
-        Err(why) => Answer::NotApplicable(why),
+    match (&question.answer, last) {
+        (Reads::Results(read), _) => {
+            read(&solved).map_or_else(Answer::NotApplicable, Answer::Found)
+        }
+        (Reads::Ends(read), Some(last)) => read(last),
+        (Reads::Ends(_), None) => Answer::Failed("the question has no problem".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn factors_have_the_digits_that_are_known_and_no_sign_of_zero() {
+        for (value, uncertainty, words) in [
+            (1.967, 0.034, "1.967 ± 0.034"),
+            (1.0, 0.0, "1"),
+            (-0.0, 0.0, "0"),
+            (-1e-9, 0.0, "0"),
+            (0.98214, 0.0, "0.98214"),
+            (-0.0002, 0.005, "0.0000 ± 0.0050"),
+            (0.500322, 2.3e-5, "0.500322 ± 0.000023"),
+            (-121.4, 6.3, "-121.4 ± 6.3"),
+        ] {
+            let found = Factor { value, uncertainty }.to_string();
+            assert_eq!(found, words);
+        }
     }
 }

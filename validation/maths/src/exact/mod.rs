@@ -4,6 +4,7 @@ pub mod elliptic_drop;
 pub mod hydrostatic;
 pub mod impact;
 pub mod manufactured;
+pub mod plane_wave;
 pub mod start_up;
 pub mod taylor_couette;
 pub mod taylor_green;

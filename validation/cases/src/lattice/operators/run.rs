@@ -1,21 +1,17 @@
 //! One operator: scene, steps, record.
 
-use std::f64::consts::TAU;
-
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{
-    absent::Absent,
-    functions::{cos, sin},
-    random::Random,
-    record::Status,
-};
+use touchstone_base::{absent::Absent, functions::cos, random::Random, record::Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Parameter, Step},
     snapshot::{ParticleArrays, Point, Snapshot},
 };
-use touchstone_maths::theory::time_step::{self, Mode};
+use touchstone_maths::{
+    exact::plane_wave::{K, PRESSURE, SPEED, scalar, slope, vector},
+    theory::time_step::{self, Mode},
+};
 use touchstone_schemes::lattice::summing_step;
 use touchstone_solver::{EquationOfState, Tait};
 
@@ -34,12 +30,6 @@ touchstone_base::metrics! {
          W/(r^2 + eta^2) (laplacian), -(m_j/rho_i) (v_i - v_j).grad W (divergence)";
 }
 
-/// Wave number along each axis \[1/m\].
-const K: f64 = TAU;
-/// Amplitude of the pressure \[ρ₀c₀²\]: linear in the equation of state, up to round-off.
-const PRESSURE: f64 = 1e-6;
-/// Amplitude of the velocity \[c₀\].
-const SPEED: f64 = 0.1;
 /// Amplitude of the density that is summed \[ρ₀\].
 const DENSITY: f64 = 0.5;
 /// η² of (6) \[h²\]: a guard against 0/0 and no more.
@@ -65,16 +55,6 @@ fn medium(method: &Method, s: &OperatorSettings) -> Medium {
     let medium = method.properties.medium(Tait::new(1.0, 1.0), [dx, s.h_over_dx * dx]);
     // Viscosity as fast as sound.
     Medium { nu: medium.h * medium.eos.sound_speed, eta2_over_h2: ETA2, ..medium }
-}
-
-/// sin Kx cos Ky.
-fn scalar(x: Vector2<f64>) -> f64 {
-    sin(K * x.x) * cos(K * x.y)
-}
-
-/// (sin Kx cos Ky, cos Kx sin Ky), of which the first part is [`scalar`].
-fn vector(x: Vector2<f64>) -> Vector2<f64> {
-    Vector2::new(scalar(x), cos(K * x.x) * sin(K * x.y))
 }
 
 impl Operator {
@@ -110,9 +90,8 @@ impl Operator {
             Self::Gradient => {
                 let density = start.densities()?;
                 each(&|k, start, end| {
-                    let [x, y] = [start.position.x, start.position.y];
-                    let gradient = Vector2::new(cos(K * x) * cos(K * y), -sin(K * x) * sin(K * y));
-                    [accelerated(start, end), -gradient * (PRESSURE * K / density[k])]
+                    let exact = -slope(start.position) * (PRESSURE * K / density[k]);
+                    [accelerated(start, end), exact]
                 })
             }
             Self::Laplacian => each(&|_, start, end| {
