@@ -7,12 +7,8 @@ use std::ops::ControlFlow;
 use touchstone_base::functions::{cos, ln, log2, modulus, powf, rotation, sin, sinh};
 use touchstone_base::reference::Reference;
 
-use nalgebra::{Matrix2, Rotation2, Vector2};
-use touchstone_harness::{
-    case,
-    context::Context,
-    method::{Medium, Method, Parts},
-};
+use nalgebra::{Matrix2, Vector2};
+use touchstone_harness::{case, context::Context};
 use touchstone_maths::theory::lattice::SquareLattice;
 use touchstone_solver::{
     ArtificialViscosity, CauchyStress, ComponentStress, Compose, Continuity, CubicSpline, Domain,
@@ -78,10 +74,6 @@ const STRESSES: [(&str, Accelerate); 3] = [
 
 fn matrix(s: Symmetric) -> Tensor {
     Matrix2::new(s.xx, s.xy, s.xy, s.yy)
-}
-
-fn symmetric(m: Tensor) -> Symmetric {
-    Symmetric { xx: m.m11, yy: m.m22, xy: 0.5 * (m.m12 + m.m21) }
 }
 
 /// Each component of size 0.1 K at most.
