@@ -22,7 +22,7 @@ use crate::{
     particles::{Common, Constants, Rate, Role, State, SweptParticle},
     physics::{Derived, Particles, Physics},
     sweep::{self, BlockUpdate, PairSweep, Sweep},
-    terms::{Rates, Term, moments::InverseMoments},
+    terms::{Divergence, Rates, Term, moments::InverseMoments},
     walls::{Extrapolated, Extrapolation, WallState, Walls},
 };
 
@@ -207,6 +207,8 @@ pub(crate) struct TypedEquations<P: Physics> {
     pub columns: Vec<SweptParticle<Derived<P>>>,
     /// Inverses of moments: empty where no force needs them.
     inverses: Vec<Symmetric>,
+    /// Divergences of the velocity \[1/s\]: empty where no force needs them.
+    divergences: Vec<f64>,
 }
 
 type ExtrapolationOf<P> = <<P as Physics>::Walls as Walls<<P as Physics>::Extra>>::Extrapolation;
@@ -324,6 +326,7 @@ impl<P: Physics> Engine<P> {
             extrapolation: walls.extrapolation(),
             columns: vec![],
             inverses: vec![],
+            divergences: vec![],
         };
         data.slips = P::Walls::SLIPS;
         data.extrapolates = !ExtrapolationOf::<P>::IS_EMPTY;
@@ -374,7 +377,7 @@ impl<P: Physics> Engine<P> {
 
     /// Sums the forces: `update` with dv/dt, for fluid particles.
     pub fn sweep_forces(&mut self, targets: &mut Particles<P>, update: &BlockUpdate<P::Extra>) {
-        self.normalise();
+        self.sum_before_forces();
         let sweep = self.equations.forces(true);
         self.data.sweep(Phase::Forces, &sweep, &self.equations, targets, update);
     }
@@ -400,7 +403,7 @@ impl<P: Physics> Engine<P> {
 
     /// Sums forces and drift in one pair sweep: `update` with the whole rate.
     pub fn sweep_all(&mut self, targets: &mut Particles<P>, update: &BlockUpdate<P::Extra>) {
-        self.normalise();
+        self.sum_before_forces();
         let sweep = self.equations.all(true);
         self.data.sweep(Phase::Both, &sweep, &self.equations, targets, update);
     }
@@ -419,6 +422,9 @@ impl<P: Physics> Engine<P> {
         neighbours.fill_images(0, P::Walls::SLIPS, 1.0, &mut columns);
         if T::NORMALISES {
             normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
+        }
+        if T::DIVERGES {
+            diverge::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
         }
         let sum = Rates { terms, read: whole, moving: false };
         let sweep = Sweep { kernel, columns: &columns, sum };
@@ -463,20 +469,26 @@ impl<P: Physics> Engine<P> {
         self.data.bytes()
             + self.equations.columns.capacity() * size_of::<SweptParticle<Derived<P>>>()
             + self.equations.inverses.capacity() * size_of::<Symmetric>()
+            + self.equations.divergences.capacity() * size_of::<f64>()
     }
 
-    /// Gives the forces the inverse moments, if they use them.
-    pub(crate) fn normalise(&mut self) {
+    /// Gives the forces the inverse moments and the divergences, if they use them.
+    pub(crate) fn sum_before_forces(&mut self) {
         const {
             let is_sound = !P::Forces::NORMALISES || ExtrapolationOf::<P>::IS_EMPTY;
             assert!(is_sound, "moments of fluid alone");
         };
-        const { assert!(!P::Drift::NORMALISES, "a drift sums its own moments") };
+        const { assert!(!P::Drift::NORMALISES && !P::Drift::DIVERGES, "a drift forms its own sums") };
+        let TypedEquations { kernel, columns, inverses, divergences, .. } = &mut self.equations;
         if P::Forces::NORMALISES {
             self.data.count(Phase::Forces);
-            let TypedEquations { kernel, columns, inverses, .. } = &mut self.equations;
             let neighbours = &self.data.neighbours;
             normalise::<P, (P::Forces, P::Drift)>(kernel, neighbours, columns, inverses);
+        }
+        if P::Forces::DIVERGES {
+            self.data.count(Phase::Forces);
+            let neighbours = &self.data.neighbours;
+            diverge::<P, (P::Forces, P::Drift)>(kernel, neighbours, columns, divergences);
         }
     }
 }
@@ -511,6 +523,22 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
         T::set_inverse(&mut column.derived, *inverse);
     });
     neighbours.fill_images(0, P::Walls::SLIPS, 1.0, columns);
+}
+
+/// Sums the divergence of the velocity at each fluid particle, and gives it to the columns and their images.
+fn diverge<P: Physics, T: Term<P::Extra>>(
+    kernel: &Smoothing<P::Kernel>,
+    neighbours: &Neighbours,
+    columns: &mut [SweptParticle<T::Derived>],
+    divergences: &mut Vec<f64>,
+) {
+    let sweep = Sweep { kernel, columns, sum: Divergence { weight: T::weight } };
+    divergences.resize(neighbours.lists.of.end, 0.0);
+    sweep::fill(&sweep, &neighbours.lists, divergences);
+    for (column, divergence) in columns.iter_mut().zip(divergences) {
+        T::set_divergence(&mut column.derived, *divergence);
+    }
+    fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
 }
 
 /// Derives columns of particles.

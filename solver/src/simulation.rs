@@ -206,7 +206,7 @@ impl<S: Scheme> Stepper<S::Extra> for Simulation<S> {
         let Self { engine, memory } = self;
         let mut state = take(&mut engine.data.state);
         let synchronised = S::Integrator::synchronise(engine, memory, &mut state);
-        engine.normalise();
+        engine.sum_before_forces();
         engine.data.state = state;
         synchronised
     }

@@ -69,7 +69,7 @@ impl<P: Physics<Forces = Split<E, T>>, E: Term<P::Extra>, T: Term<P::Extra>> Kic
         state: &mut Particles<P>,
         times: KickTimes,
     ) -> Stepped {
-        const { assert!(!T::NORMALISES, "moments are not summed for a part") };
+        const { assert!(!T::NORMALISES && !T::DIVERGES, "no sums are formed before a part") };
         let Split(_, stiff, limit) = engine.equations.terms.0.clone();
         let count = super::stages(times.velocity / limit);
         let s = f64::from(count);

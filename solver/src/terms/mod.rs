@@ -4,6 +4,7 @@
 //! contains tuples of terms. The empty tuple `()` costs nothing, and a term in no tuple is not in the
 //! program. The pair sweep in `sweep.rs` uses terms only through the trait [`Term`].
 
+mod acoustic_damper;
 mod artificial_stress;
 mod artificial_viscosity;
 mod body_force;
@@ -23,6 +24,8 @@ mod tensile_stress;
 mod viscosity;
 mod xsph;
 
+pub use acoustic_damper::AcousticDamper;
+pub(crate) use acoustic_damper::Divergence;
 pub use artificial_stress::{ArtificialStress, Tensile};
 pub use artificial_viscosity::ArtificialViscosity;
 pub use body_force::BodyForce;
@@ -107,6 +110,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     const IS_EMPTY: bool = false;
     /// Whether [`Term::set_inverse`] is read, for which each sweep of forces needs a sweep of moments before.
     const NORMALISES: bool = false;
+    /// Whether [`Term::set_divergence`] is read, for which each sweep of forces needs a sweep of divergences
+    /// before.
+    const DIVERGES: bool = false;
 
     /// Receives the largest speed of the scene \[m/s\], before each step.
     fn prepare(&mut self, _max_speed: f64) {}
@@ -122,6 +128,14 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Stores the inverse of the [`moments`] of the particle in its derived data.
     #[inline(always)]
     fn set_inverse(_derived: &mut Self::Derived, _inverse: Symmetric) {}
+    /// The factor of pairs with this particle in the sum of a divergence.
+    #[inline(always)]
+    fn weight(_derived: &Self::Derived) -> f64 {
+        1.0
+    }
+    /// Stores the divergence of the velocity at the particle \[1/s\] in its derived data.
+    #[inline(always)]
+    fn set_divergence(_derived: &mut Self::Derived, _divergence: f64) {}
     /// Adds the contributions of the neighbours j of `pair` to the sums.
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -199,6 +213,7 @@ macro_rules! tuple_of_terms {
             type Sum = ($($member::Sum,)*);
             const IS_EMPTY: bool = true $(&& $member::IS_EMPTY)*;
             const NORMALISES: bool = false $(|| $member::NORMALISES)*;
+            const DIVERGES: bool = false $(|| $member::DIVERGES)*;
 
             fn prepare(&mut self, max_speed: f64) {
                 $(self.$index.prepare(max_speed);)*
@@ -214,6 +229,14 @@ macro_rules! tuple_of_terms {
             #[inline(always)]
             fn set_inverse(derived: &mut Self::Derived, inverse: Symmetric) {
                 $($member::set_inverse(&mut derived.$index, inverse);)*
+            }
+            #[inline(always)]
+            fn weight(derived: &Self::Derived) -> f64 {
+                1.0 $(* $member::weight(&derived.$index))*
+            }
+            #[inline(always)]
+            fn set_divergence(derived: &mut Self::Derived, divergence: f64) {
+                $($member::set_divergence(&mut derived.$index, divergence);)*
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(

@@ -68,6 +68,8 @@ pub enum Constant {
     Xsph,
     /// density diffusion
     DensityDiffusion,
+    /// acoustic damper
+    AcousticDamper,
     /// particle shifting
     Shifting,
     /// how far a particle may move before neighbour lists are built again

@@ -21,6 +21,8 @@ pub enum Mechanism {
     ArtificialViscosity,
     /// Density diffusion.
     Diffusion,
+    /// Acoustic damper.
+    Damper,
     /// The motion of the matter: the time h/V in which it crosses a smoothing length.
     Motion,
     /// A body force: the time (h/F)^(1/2).
@@ -31,12 +33,13 @@ pub enum Mechanism {
 
 impl Mechanism {
     /// All mechanisms, in the order of tables.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Waves,
         Self::ShearWaves,
         Self::Viscosity,
         Self::ArtificialViscosity,
         Self::Diffusion,
+        Self::Damper,
         Self::Motion,
         Self::Force,
         Self::Contact,
@@ -50,6 +53,7 @@ impl Mechanism {
             Self::Viscosity => "viscosity",
             Self::ArtificialViscosity => "artificial viscosity",
             Self::Diffusion => "density diffusion",
+            Self::Damper => "acoustic damper",
             Self::Motion => "motion",
             Self::Force => "body force",
             Self::Contact => "contact",
@@ -58,7 +62,7 @@ impl Mechanism {
 
     /// Is it a part of the problem, and not only of the method?
     fn is_physical(self) -> bool {
-        !matches!(self, Self::ArtificialViscosity | Self::Diffusion)
+        !matches!(self, Self::ArtificialViscosity | Self::Diffusion | Self::Damper)
     }
 }
 
@@ -94,6 +98,7 @@ impl TimeStepLimits {
             .with(Mechanism::Viscosity, alone(|mode| mode.viscous))
             .with(Mechanism::ArtificialViscosity, alone(Mode::artificial))
             .with(Mechanism::Diffusion, alone(|mode| mode.density))
+            .with(Mechanism::Damper, alone(|mode| mode.damped))
     }
 
     /// The limits of a leapfrog without damping, with this limit of elastic waves \[s\].

@@ -46,6 +46,8 @@ pub struct Medium {
     pub exponent: u32,
     /// δ of the density diffusion.
     pub diffusion: f64,
+    /// α₂ of the acoustic damper.
+    pub damper: f64,
     /// Amplitude of the shifting.
     pub shift: f64,
 }
@@ -70,6 +72,11 @@ impl Medium {
         self.diffusion * self.h * self.sound_speed
     }
 
+    /// The bulk viscosity α₂ ρ0 c0 h of the acoustic damper \[Pa s\].
+    pub fn bulk_viscosity(&self) -> f64 {
+        self.damper * self.density * self.sound_speed * self.h
+    }
+
     /// The longest step of forward Euler for the viscous term alone \[s\].
     pub fn explicit_limit(&self) -> f64 {
         time_step::explicit_limit(self.stiffest, self.h, self.nu)
@@ -78,11 +85,14 @@ impl Medium {
     /// The parameters on which waves in the medium depend, for terms that read these settings.
     pub fn waves(&self, uses: &[MediumSetting]) -> time_step::WaveMedium {
         let used = |setting, value| if uses.contains(&setting) { value } else { 0.0 };
-        let (alpha, delta) = (
-            used(MediumSetting::Alpha, self.alpha),
-            used(MediumSetting::Diffusion, self.diffusion),
-        );
-        time_step::WaveMedium { c0: self.sound_speed, h: self.h, nu: self.nu, alpha, delta }
+        time_step::WaveMedium {
+            c0: self.sound_speed,
+            h: self.h,
+            nu: self.nu,
+            alpha: used(MediumSetting::Alpha, self.alpha),
+            delta: used(MediumSetting::Diffusion, self.diffusion),
+            damper: used(MediumSetting::Damper, self.damper),
+        }
     }
 }
 
@@ -103,6 +113,8 @@ pub enum MediumSetting {
     Exponent,
     /// δ of the density diffusion.
     Diffusion,
+    /// α₂ of the acoustic damper.
+    Damper,
     /// Amplitude of the shifting.
     Shift,
     /// Whether mirror particles use the curvature of the velocity profile at their wall.
@@ -124,6 +136,7 @@ impl MediumSetting {
         (Self::Xi, "xi", |medium, value| medium.xi = value),
         (Self::Exponent, "exponent", |medium, value| medium.exponent = value as u32),
         (Self::Diffusion, "diffusion", |medium, value| medium.diffusion = value),
+        (Self::Damper, "damper", |medium, value| medium.damper = value),
         (Self::Shift, "shift", |medium, value| medium.shift = value),
         (Self::WallCurvature, "wall_curvature", |_, _| {}),
         (Self::WallGravity, "wall_gravity", |_, _| {}),

@@ -205,6 +205,7 @@ impl View {
             xi: m.xi,
             exponent: m.exponent,
             diffusion: m.diffusion,
+            damper: m.damper,
             shift: m.shift,
         }
     }

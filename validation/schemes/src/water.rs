@@ -4,9 +4,10 @@
 use touchstone_harness::method::{self, Standard};
 use touchstone_maths::metrics::budget::{Metered, WaterDrift, WaterForces};
 use touchstone_solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity, Continuity,
-    CubicSpline, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Leapfrog,
-    Open, PredictorCorrector, Pressure, SlipGhosts, Tait, WendlandC2, Xsph, terms::Hydrostatic,
+    AcousticDamper, ArtificialStress, ArtificialViscosity, BodyForce, Compose,
+    ConsistentContinuity, Continuity, CubicSpline, DensityDiffusion, ExtrapolatingWall, FluidPairs,
+    Ghosts, InterfaceWall, Leapfrog, Open, PredictorCorrector, Pressure, SlipGhosts, Tait,
+    WendlandC2, Xsph, terms::Hydrostatic,
 };
 
 use crate::{Method, methods};
@@ -49,6 +50,8 @@ methods! { metered => WaterMethod:
     free_seed: Seed<Open>;
     /// Wendland kernel, walls that extrapolate, density diffusion.
     modern: Modern;
+    /// `modern` with an acoustic damper.
+    damped: Modern<(Continuity, Diffusion), Walls, (Slipping, AcousticDamper)>;
     /// `modern` with artificial viscosity between water and walls.
     sticking: Modern<(Continuity, Diffusion), Walls, ArtificialViscosity<Tait>>;
     /// `modern` with the density diffusion of Molteni and Colagrossi.

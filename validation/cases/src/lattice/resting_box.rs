@@ -138,7 +138,8 @@ fn stiffness(s: &BoxSettings) -> f64 {
 /// The waves of the box in the lattice of a method, in units of c₀ and h.
 fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
-    let medium = time_step::WaveMedium { c0: 1.0, h: 1.0, nu, alpha, delta };
+    let medium =
+        time_step::WaveMedium { nu, alpha, delta, ..time_step::WaveMedium::of_sound(1.0, 1.0) };
     time_step::modes(&method.properties.square([s.h_over_dx, ETA2]), s.n, &medium)
 }
 

@@ -44,6 +44,7 @@ pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
         xi: m.xi * of(Constant::ArtificialStress),
         exponent: m.exponent,
         diffusion: m.diffusion * of(Constant::DensityDiffusion),
+        damper: m.damper * of(Constant::AcousticDamper),
         shift: m.shift * of(Constant::Shifting),
     };
     let stretch = Vector2::new(1.0, of(Constant::Height));
@@ -119,6 +120,7 @@ mod tests {
             xsph: 0.5,
             xi: 0.3,
             diffusion: 0.4,
+            damper: 0.8,
             shift: 0.6,
             ..method.properties.medium(Tait::new(1000.0, 20.0), [0.1, 0.15])
         };
@@ -136,7 +138,17 @@ mod tests {
     fn numbers(parts: &Parts) -> Vec<f64> {
         let m = parts.medium;
         let mut all = vec![m.nu, m.shear_modulus, m.acceleration.y, m.wall_acceleration.y, m.alpha];
-        all.extend([m.beta, m.xsph, m.xi, m.diffusion, m.shift, m.h, m.density, m.sound_speed]);
+        all.extend([
+            m.beta,
+            m.xsph,
+            m.xi,
+            m.diffusion,
+            m.damper,
+            m.shift,
+            m.h,
+            m.density,
+            m.sound_speed,
+        ]);
         all.extend([m.eos.density, m.eos.sound_speed]);
         for p in &parts.particles {
             all.extend([p.position.x, p.position.y, p.velocity.x, p.velocity.y, p.density, p.mass]);
@@ -170,6 +182,7 @@ mod tests {
             (Constant::ArtificialStress, 1),
             (Constant::Xsph, 1),
             (Constant::DensityDiffusion, 1),
+            (Constant::AcousticDamper, 1),
             (Constant::Shifting, 1),
             (Constant::ListLifetime, 0),
         ];
@@ -194,7 +207,7 @@ mod tests {
         };
         let [one, other] = [1, 2].map(moved);
         // Position of the first particle, the only one of fluid, by less than 1e-3 dx = 1e-4.
-        assert_eq!(one.iter().map(|(k, _)| *k).collect::<Vec<_>>(), [15, 16]);
+        assert_eq!(one.iter().map(|(k, _)| *k).collect::<Vec<_>>(), [16, 17]);
         assert!(one.iter().all(|(_, by)| by.abs() <= 1e-4) && one != other);
         assert_eq!(one, moved(1), "a seed says it all");
     }

@@ -106,6 +106,7 @@ impl Properties {
             xi: 0.0,
             exponent: 1,
             diffusion: 0.0,
+            damper: 0.0,
             shift: 0.0,
         }
     }

@@ -1,10 +1,10 @@
 //! How each term and each wall is constructed from the parameters of a medium, and which settings it reads.
 
 use touchstone_solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress, ConjugateStress,
-    ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure, ConsistentViscosity,
-    Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs, Ghosts,
-    InterfaceWall, JaumannRate, Linear, NoSlip, Open, PlaneWall, Pressure, ShiftAdvection,
+    AcousticDamper, ArtificialStress, ArtificialViscosity, BodyForce, CauchyStress,
+    ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
+    ConsistentViscosity, Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs,
+    Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, Open, PlaneWall, Pressure, ShiftAdvection,
     Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension},
 };
@@ -84,6 +84,9 @@ from_medium! {
     },
         "density diffusion: dρ_i/dt += 2 diffusion h c0 Σ m_j/ρ_j F_ij (ρ0/c0²) (w_j - w_i - g·(r_j - r_i)), \
          ∇W = -F r, dw = dp/ρ";
+    AcousticDamper [] (Damper) = |m| Self { bulk: m.bulk_viscosity() },
+        "acoustic damper: dv_i/dt += damper ρ0 c0 h/ρ_i Σ m_j/ρ_j (D_i + D_j) ∇W_ij, D_i = -Σ m_j/ρ_j v_ij·∇W_ij; \
+         a particle of a wall counts twice, with D_j = 0";
     Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing),
         "shifting: dr_i/dt = v_i - shift v_max h Σ m_j/ρ_j (1 + 0.2 (W_ij/W(dx))⁴) ∇W_ij";
     ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing)),

@@ -12,9 +12,9 @@
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    ArtificialViscosity, BodyForce, ConsistentContinuity, Continuity, DensityDiffusion,
-    EquationOfState, FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation, State, Stepper, Term,
-    Xsph,
+    AcousticDamper, ArtificialViscosity, BodyForce, ConsistentContinuity, Continuity,
+    DensityDiffusion, EquationOfState, FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation,
+    State, Stepper, Term, Xsph,
     terms::{Rest, Tensile},
 };
 
@@ -76,6 +76,7 @@ pub trait Viscous<X>: Term<X> {}
 
 impl<X, E: EquationOfState, const ALL: bool> Viscous<X> for ArtificialViscosity<E, ALL> {}
 impl<X, T: Viscous<X>> Viscous<X> for FluidPairs<T> where Self: Term<X> {}
+impl<X, T: Viscous<X>> Viscous<X> for (T, AcousticDamper) {}
 
 impl<X, E: EquationOfState, R: Tensile<f64>> WaterForces<X> for (Pressure<E, R>, BodyForce) {
     fn pairs(&self) -> impl Term<X> {

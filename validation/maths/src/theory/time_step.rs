@@ -5,7 +5,7 @@
 //!
 //! p' = -ω ĝ·v - γ_ρ p,  v' = ω ĝ p - Γ v,
 //!
-//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k), γ_ρ = δ h c₀ λ₀(k), symbols from [`super::lattice`].
+//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k) + α₂ c₀ h g gᵀ, γ_ρ = δ h c₀ λ₀(k), symbols from [`super::lattice`].
 //! The limit is the largest dt for which no k of the box grows. A periodic box of n × n particles has only
 //! the wave vectors 2π(i, j)/(n dx), so its limit is exact; an infinite lattice is the limit of large n.
 //! Moving, disordered or strongly compressed particles become unstable at smaller steps: see the notes of
@@ -37,6 +37,15 @@ pub struct WaveMedium {
     pub alpha: f64,
     /// δ of the density diffusion -δ h c₀ λ₀ ρ.
     pub delta: f64,
+    /// α₂ of the acoustic damper, α₂ c₀ h g (g·v).
+    pub damper: f64,
+}
+
+impl WaveMedium {
+    /// A fluid of this sound speed \[m/s\] and smoothing length \[m\] without any damping.
+    pub const fn of_sound(c0: f64, h: f64) -> Self {
+        Self { c0, h, nu: 0.0, alpha: 0.0, delta: 0.0, damper: 0.0 }
+    }
 }
 
 /// How a step advances (p, v).
@@ -109,6 +118,8 @@ pub struct Mode {
     pub density: f64,
     /// ν λ(k), the part of Γ that is Morris' viscosity \[1/s\].
     pub viscous: f64,
+    /// α₂ c₀ h |g|², the part of ĝ·Γĝ that is the acoustic damper \[1/s\].
+    pub damped: f64,
     /// [`explicit_limit`], from which super-time-stepping computes its number of stages \[s\].
     pub explicit: f64,
 }
@@ -164,28 +175,31 @@ const SEARCHED_SINGLY: u16 = 20;
 impl Mode {
     /// The wave with phase `theta` = k dx \[rad\].
     pub fn new(lattice: &SquareLattice, theta: Vector2<f64>, medium: &WaveMedium) -> Self {
-        let WaveMedium { c0, h, nu, alpha, delta } = *medium;
+        let WaveMedium { c0, h, nu, alpha, delta, damper } = *medium;
         let g = lattice.gradient(theta);
         // At the corners of the zone g is round-off; P is diagonal there.
         let along = if g.norm() > 1e-12 { g.normalize() } else { Vector2::x() };
         let across = Vector2::new(-along.y, along.x);
         let p = lattice.artificial(theta) * (alpha * c0 / h);
         let viscous = nu * lattice.laplacian(theta) / (h * h);
+        let damped = damper * c0 / h * g.norm_squared();
         Self {
             along,
             omega: c0 * g.norm() / h,
-            longitudinal: viscous + along.dot(&(p * along)),
+            longitudinal: viscous + along.dot(&(p * along)) + damped,
             coupling: across.dot(&(p * along)),
             transverse: viscous + across.dot(&(p * across)),
             density: delta * c0 / h * lattice.diffusion(theta),
             viscous,
+            damped,
             explicit: explicit_limit(lattice.stiffest(), h, nu),
         }
     }
 
     /// The larger eigenvalue of α c₀ h P(k), the part of Γ that is not Morris' viscosity \[1/s\].
     pub fn artificial(&self) -> f64 {
-        let Self { longitudinal, coupling, transverse, viscous, .. } = *self;
+        let Self { coupling, transverse, viscous, damped, .. } = *self;
+        let longitudinal = self.longitudinal - damped;
         let (mean, half) = (0.5 * (longitudinal + transverse), 0.5 * (longitudinal - transverse));
         // Without artificial viscosity a difference of equal numbers, which is 0.
         mean - viscous + (half * half + coupling * coupling).sqrt()
@@ -388,7 +402,7 @@ mod tests {
     use approx::assert_relative_eq;
     use touchstone_solver::kernel::{CubicSpline, Kernel, QuinticSpline, WendlandC2};
 
-    const WATER: WaveMedium = WaveMedium { c0: 1.0, h: 1.0, nu: 0.0, alpha: 0.0, delta: 0.0 };
+    const WATER: WaveMedium = WaveMedium::of_sound(1.0, 1.0);
     use Integrator::{Euler, Leapfrog, PredictorCorrector, SingleSweep};
 
     type Rate = fn(&Mode) -> f64;
@@ -403,6 +417,7 @@ mod tests {
             transverse: 0.0,
             density: 0.0,
             viscous: gamma,
+            damped: 0.0,
             explicit: 0.0,
         }
     }
@@ -419,7 +434,7 @@ mod tests {
         assert!((expected * nu / (h * h) - 0.3264).abs() < 1e-4, "{expected} s by hand");
         let found = explicit_limit(lattice.stiffest(), h, nu);
         assert!((found / expected - 1.0).abs() < 1e-12, "{found} s, expected {expected} s");
-        let medium = WaveMedium { c0: 1.0, h, nu, alpha: 0.0, delta: 0.0 };
+        let medium = WaveMedium { nu, ..WaveMedium::of_sound(1.0, h) };
         for mode in modes(&lattice, 8, &medium) {
             let apart = (mode.explicit / expected - 1.0).abs();
             assert!(apart < 1e-12, "{} s of a wave, expected {expected} s", mode.explicit);
@@ -514,6 +529,24 @@ mod tests {
             alone(|mode| mode.omega).min(alone(|mode| mode.viscous)) / together - 1.0
         });
         assert_rounds_to("excess", &["0.00", "0.28", "0.13", "0.04", "0.01"], &excess);
+    }
+
+    /// With γ = α₂ ω² h/c₀ the limit (2 - γ dt) 2 ≥ (ω dt)² of the fastest wave is (c₀/h) dt = (α₂² + 4/ω²)^(1/2)
+    /// - α₂ with ω in c₀/h. A shear wave is not damped.
+    #[test]
+    fn the_acoustic_damper_limits_the_step_by_the_square_of_the_symbol_of_the_gradient() {
+        let lattice = SquareLattice::of::<WendlandC2>(1.5, 0.01);
+        let undamped = modes(&lattice, 80, &WATER);
+        let fastest = 2.0 / limit_alone(&undamped, |mode| mode.omega);
+        for damper in [0.1, 0.5, 1.0, 2.0] {
+            let modes = modes(&lattice, 80, &WaveMedium { damper, ..WATER });
+            let expected = (damper * damper + 4.0 / (fastest * fastest)).sqrt() - damper;
+            assert_relative_eq!(time_step_limit(&modes, Leapfrog), expected, max_relative = 1e-12);
+            let alone = limit_alone(&modes, |mode| mode.damped);
+            assert_relative_eq!(alone, 2.0 / (damper * fastest * fastest), max_relative = 1e-12);
+            let others = modes.iter().map(|mode| mode.transverse.max(mode.artificial()));
+            assert!(others.fold(0.0, f64::max) < 1e-12);
+        }
     }
 
     /// Table 2.2: largest ω dt at γ/ω = 0.1, 1, 10 and largest γ dt.

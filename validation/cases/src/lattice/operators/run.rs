@@ -134,7 +134,7 @@ impl OperatorVariant {
             Operator::Laplacian => {
                 let eta2 = if self.is_corrected { 0.0 } else { ETA2 };
                 let unit =
-                    time_step::WaveMedium { c0: 1.0, h: 1.0, nu: 1.0, alpha: 0.0, delta: 0.0 };
+                    time_step::WaveMedium { nu: 1.0, ..time_step::WaveMedium::of_sound(1.0, 1.0) };
                 let lattice = method.properties.square([ratio, eta2]);
                 let mode = Mode::new(&lattice, Vector2::repeat(phase), &unit);
                 mode.viscous / (2.0 * (phase * ratio).powi(2)) / corrected

@@ -88,8 +88,11 @@ impl Wave {
             nu: s.nu,
             ..method.properties.medium(eos, [dx, h]).set_by(s)
         };
-        let waves =
-            time_step::WaveMedium { c0: sound_speed, h, nu: s.nu, alpha: 0.0, delta: s.diffusion };
+        let waves = time_step::WaveMedium {
+            nu: s.nu,
+            delta: s.diffusion,
+            ..time_step::WaveMedium::of_sound(sound_speed, h)
+        };
         let mode = Mode::new(&lattice, theta, &waves);
         let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
         // The predictor-corrector amplifies sound at every dt, which is part of the comparison.

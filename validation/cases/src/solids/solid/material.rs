@@ -87,7 +87,7 @@ pub fn limits(
     }
     let wave = material.p_wave_speed();
     let alpha = medium.alpha * material.sound_speed() / wave;
-    let waves = time_step::WaveMedium { c0: wave, h: medium.h, nu: 0.0, alpha, delta: 0.0 };
+    let waves = time_step::WaveMedium { alpha, ..time_step::WaveMedium::of_sound(wave, medium.h) };
     let limits = method.limits([h_over_dx, 0.01], LIMIT_BOX, &waves);
     // Both kinds of waves have the rates of one gradient.
     let shear = limits.alone(Mechanism::Waves) * wave / material.shear_wave_speed();

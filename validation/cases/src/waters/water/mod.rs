@@ -91,6 +91,8 @@ touchstone_base::settings! {
         exponent: usize ["-"] in 1..=12 = 4,
         /// density diffusion, in h c0
         diffusion: f64 ["-"] in 0.0..=1.0 = 0.1,
+        /// acoustic damper: bulk viscosity, in rho h c0
+        damper: f64 ["-"] in 0.0..=10.0 = 1.0,
         /// Courant number dt (c0 + v)/h, v the largest speed expected
         courant: f64 ["-"] in 1e-6..=10.0 = 0.25,
         /// time step; auto: by the Courant number
