@@ -532,11 +532,11 @@ fn diverge<P: Physics, T: Term<P::Extra>>(
     columns: &mut [SweptParticle<T::Derived>],
     divergences: &mut Vec<f64>,
 ) {
-    let sweep = Sweep { kernel, columns, sum: Divergence { weight: T::weight } };
+    let sweep = Sweep { kernel, columns, sum: Divergence };
     divergences.resize(neighbours.lists.of.end, 0.0);
     sweep::fill(&sweep, &neighbours.lists, divergences);
     for (column, divergence) in columns.iter_mut().zip(divergences) {
-        T::set_divergence(&mut column.derived, *divergence);
+        T::set_divergence(&mut column.derived, &column.common, *divergence);
     }
     fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
 }

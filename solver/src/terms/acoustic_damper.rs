@@ -1,86 +1,63 @@
-//! Acoustic damper: dvᵢ/dt += (ζ/ρᵢ) Σⱼ Vⱼ (Dᵢ + Dⱼ) ∇ᵢWᵢⱼ, D = ∇·v (Sun et al. 2023).
+//! Acoustic damper: pressure (5) with −ζ ∇·v in place of the pressure (Sun et al. 2023).
 
 use super::{Common, In, Kernel, Lane, Pair, PairSum, Rate, Term, Vector2};
 use crate::particles::SweptParticle;
 
-/// dvᵢ/dt += (ζ/ρᵢ) Σⱼ Vⱼ (Dᵢ + Dⱼ) ∇ᵢWᵢⱼ \[m/s²\] with the divergence Dᵢ = Σⱼ Vⱼ (vⱼ − vᵢ)·∇ᵢWᵢⱼ \[1/s\]: a
-/// bulk viscosity ζ = α₂ ρ₀ c₀ h (Sun, Pilloton, Antuono & Colagrossi 2023; sums over pairs and volumes
-/// *inferred*).
+/// dvᵢ/dt += ζ Σⱼ mⱼ (Dᵢ/ρᵢ² + Dⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\] with the divergence Dᵢ = −Σⱼ mⱼ vᵢⱼ·∇ᵢWᵢⱼ/ρᵢ \[1/s\] of
+/// the continuity equation (3): a bulk viscosity ζ = α₂ ρ₀ c₀ h (Sun, Pilloton, Antuono & Colagrossi 2023; the
+/// weights of pairs *inferred*).
 ///
-/// A wave of sound with wave number k decays as exp(−½ α₂ c₀ h k² t). A velocity without divergence is left
-/// alone: a rotation on any particles, a shear on a lattice. Both sums are adjoint, so the term takes the
-/// power ζ Σ Vᵢ Dᵢ² from the particles, which is never negative, and it conserves linear and angular momentum.
-///
-/// The sum of D needs a sweep before each sweep of forces. A boundary particle is the mirror particle of
-/// particle i for both sums, with D = Dᵢ and the velocity −vᵢ relative to the wall, whose component along the
-/// wall does not count: twice its pair with a particle at rest and D = 0. Power and momentum of the fluid then
-/// obey the same identities beside walls at rest.
+/// A wave of sound with wave number k decays as exp(−½ α₂ c₀ h k² t). A motion without divergence is left
+/// alone: a rotation on any particles, a shear on a lattice, and a flow that keeps the density of every
+/// particle. Both sums are adjoint as those of pressure and continuity: the term takes the power
+/// ζ Σ Vᵢ Dᵢ² from the particles, also beside boundary particles at rest, which have D = 0, and it conserves
+/// linear and angular momentum. The sum of D needs a sweep before each sweep of forces.
 #[derive(Clone, Copy, Debug)]
 pub struct AcousticDamper {
     /// Bulk viscosity ζ \[Pa s\].
     pub bulk: f64,
 }
 
-/// The factor of pairs with a fluid particle and with a boundary particle.
-const WEIGHTS: [f64; 2] = [1.0, 2.0];
-
 impl<X> Term<X> for AcousticDamper {
-    /// D \[1/s\], and the factor of pairs with this particle.
-    type Derived = (f64, f64);
+    /// D/ρ² \[m⁶/kg²/s\]; 0 of boundary particles.
+    type Derived = f64;
     type Sum = Vector2<f64>;
     const DIVERGES: bool = true;
 
     #[inline(always)]
-    fn derived(&self, _: &Common, _: &X) -> (f64, f64) {
-        (0.0, WEIGHTS[0])
+    fn derived(&self, _: &Common, _: &X) -> f64 {
+        0.0
     }
     #[inline(always)]
-    fn set_on_boundary((_, weight): &mut (f64, f64)) {
-        *weight = WEIGHTS[1];
+    fn set_divergence(derived: &mut f64, own: &Common, divergence: f64) {
+        *derived = divergence / (own.density * own.density);
     }
     #[inline(always)]
-    fn weight((_, weight): &(f64, f64)) -> f64 {
-        *weight
+    fn pair<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, f64>, sum: &mut In<Vector2<f64>, V>) {
+        *sum += pair.r * (pair.other.mass * pair.f * (pair.derived[0] + pair.derived[1]));
     }
     #[inline(always)]
-    fn set_divergence((own, _): &mut (f64, f64), divergence: f64) {
-        *own = divergence;
-    }
-    #[inline(always)]
-    fn pair<V: Lane, K: Kernel>(
-        &self,
-        pair: &Pair<V, K, (f64, f64)>,
-        sum: &mut In<Vector2<f64>, V>,
-    ) {
-        let [(own, _), (other, weight)] = pair.derived;
-        *sum += pair.r * (pair.other.volume * pair.f * (own * weight + other));
-    }
-    #[inline(always)]
-    fn finish(&self, own: &Common, _: (f64, f64), sum: Vector2<f64>, rate: &mut Rate<X>) {
-        rate.velocity -= sum * (self.bulk / own.density);
+    fn finish(&self, _: &Common, _: f64, sum: Vector2<f64>, rate: &mut Rate<X>) {
+        rate.velocity -= sum * self.bulk;
     }
 }
 
-/// Sums D of each particle, for [`Term::set_divergence`]; `weight` reads [`Term::weight`] of a column.
-pub(crate) struct Divergence<R> {
-    pub weight: R,
-}
+/// Sums D of each particle, for [`Term::set_divergence`].
+pub(crate) struct Divergence;
 
-impl<S, R: Fn(&S) -> f64 + Sync> PairSum<S, f64> for Divergence<R> {
-    type Derived = f64;
+impl<S> PairSum<S, f64> for Divergence {
+    type Derived = ();
     type Sum = f64;
 
     #[inline(always)]
-    fn read(&self, _: usize, derived: &S) -> f64 {
-        (self.weight)(derived)
+    fn read(&self, _: usize, _: &S) {}
+    #[inline(always)]
+    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K>, sum: &mut V) {
+        *sum += pair.other.mass * pair.f * pair.v_dot_r();
     }
     #[inline(always)]
-    fn add<V: Lane, K: Kernel>(&self, pair: &Pair<V, K, f64>, sum: &mut V) {
-        *sum += pair.other.volume * pair.f * (pair.derived[1] * pair.v_dot_r());
-    }
-    #[inline(always)]
-    fn result(&self, _: &SweptParticle<S>, sum: f64) -> f64 {
-        sum
+    fn result(&self, own: &SweptParticle<S>, sum: f64) -> f64 {
+        sum / own.common.density
     }
 }
 
@@ -202,10 +179,9 @@ mod tests {
         let divergence = |p: &Particle| {
             let each = |q: &Particle| {
                 let r = p.position - q.position;
-                q.mass / q.density * kernel.f(r.norm_squared()) * (p.velocity - q.velocity).dot(&r)
+                q.mass * kernel.f(r.norm_squared()) * (p.velocity - q.velocity).dot(&r)
             };
-            let fluid: f64 = of.iter().map(|(_, q, _)| each(q)).sum();
-            fluid + 2.0 * walls.iter().map(each).sum::<f64>()
+            of.iter().map(|(_, q, _)| q).chain(&walls).map(each).sum::<f64>() / p.density
         };
         let mut sums =
             Sums { power: 0.0, loss: 0.0, force: Vector2::zeros(), size: 0.0, torque: 0.0 };

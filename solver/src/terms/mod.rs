@@ -128,14 +128,9 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Stores the inverse of the [`moments`] of the particle in its derived data.
     #[inline(always)]
     fn set_inverse(_derived: &mut Self::Derived, _inverse: Symmetric) {}
-    /// The factor of pairs with this particle in the sum of a divergence.
-    #[inline(always)]
-    fn weight(_derived: &Self::Derived) -> f64 {
-        1.0
-    }
     /// Stores the divergence of the velocity at the particle \[1/s\] in its derived data.
     #[inline(always)]
-    fn set_divergence(_derived: &mut Self::Derived, _divergence: f64) {}
+    fn set_divergence(_derived: &mut Self::Derived, _own: &Common, _divergence: f64) {}
     /// Adds the contributions of the neighbours j of `pair` to the sums.
     fn pair<V: Lane, K: Kernel>(
         &self,
@@ -231,12 +226,8 @@ macro_rules! tuple_of_terms {
                 $($member::set_inverse(&mut derived.$index, inverse);)*
             }
             #[inline(always)]
-            fn weight(derived: &Self::Derived) -> f64 {
-                1.0 $(* $member::weight(&derived.$index))*
-            }
-            #[inline(always)]
-            fn set_divergence(derived: &mut Self::Derived, divergence: f64) {
-                $($member::set_divergence(&mut derived.$index, divergence);)*
+            fn set_divergence(derived: &mut Self::Derived, own: &Common, divergence: f64) {
+                $($member::set_divergence(&mut derived.$index, own, divergence);)*
             }
             #[inline(always)]
             fn pair<V: Lane, K: Kernel>(

@@ -85,8 +85,8 @@ from_medium! {
         "density diffusion: dρ_i/dt += 2 diffusion h c0 Σ m_j/ρ_j F_ij (ρ0/c0²) (w_j - w_i - g·(r_j - r_i)), \
          ∇W = -F r, dw = dp/ρ";
     AcousticDamper [] (Damper) = |m| Self { bulk: m.bulk_viscosity() },
-        "acoustic damper: dv_i/dt += damper ρ0 c0 h/ρ_i Σ m_j/ρ_j (D_i + D_j) ∇W_ij, D_i = -Σ m_j/ρ_j v_ij·∇W_ij; \
-         a particle of a wall counts twice, with D_j = 0";
+        "acoustic damper: dv_i/dt += damper ρ0 c0 h Σ m_j (D_i/ρ_i² + D_j/ρ_j²) ∇W_ij, D_i = -Σ m_j/ρ_i \
+         v_ij·∇W_ij, 0 of particles of a wall";
     Shifting [] (Shift) = |m| Shifting::new(m.shift, m.h, m.w_at_spacing),
         "shifting: dr_i/dt = v_i - shift v_max h Σ m_j/ρ_j (1 + 0.2 (W_ij/W(dx))⁴) ∇W_ij";
     ShiftAdvection [] (Shift) = |m| ShiftAdvection(Shifting::new(m.shift, m.h, m.w_at_spacing)),

@@ -8,7 +8,7 @@
 //! Two pair sweeps are sufficient for water, one over all terms and one over pressure and continuity, because
 //! the power of a sweep has three parts: by dv/dt, by dρ/dt and by dx/dt without v. Only XSPH contributes to
 //! the last one. The differences between the sweeps are artificial viscosity in dv/dt and density diffusion
-//! in dρ/dt. An artificial stress, which also acts in dv/dt, needs a third sweep.
+//! in dρ/dt. An artificial stress and an acoustic damper, which also act in dv/dt, need a sweep each.
 
 use nalgebra::Vector2;
 use touchstone_solver::{
@@ -21,9 +21,9 @@ use touchstone_solver::{
 /// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
 pub type Slope<'a, X> = &'a dyn Fn(f64, &State<X>, &Rate<X>) -> f64;
 
-/// Powers of terms \[W/m\]: artificial viscosity (16), (17), artificial stress (18), (19), density diffusion,
-/// XSPH (22), and pressure against walls whose particles are outside of the energy budget.
-pub type Powers = [f64; 5];
+/// Powers of terms \[W/m\]: artificial viscosity (16), (17), artificial stress (18), (19), acoustic damper,
+/// density diffusion, XSPH (22), and pressure against walls whose particles are outside of the energy budget.
+pub type Powers = [f64; 6];
 
 /// Powers by the rates of one sweep.
 struct PowerSums {
@@ -69,14 +69,27 @@ pub trait WaterForces<X>: Term<X> {
     fn pairs(&self) -> impl Term<X>;
     /// The pressure with its artificial stress.
     fn pressure(&self) -> Pressure<impl EquationOfState, impl Tensile<f64>>;
+    /// The acoustic damper, if there is one.
+    fn damper(&self) -> Option<AcousticDamper> {
+        None
+    }
 }
 
-/// Artificial viscosity.
-pub trait Viscous<X>: Term<X> {}
+/// Artificial viscosity, with an acoustic damper or without.
+pub trait Viscous<X>: Term<X> {
+    /// The damper, if there is one.
+    fn damper(&self) -> Option<AcousticDamper> {
+        None
+    }
+}
 
 impl<X, E: EquationOfState, const ALL: bool> Viscous<X> for ArtificialViscosity<E, ALL> {}
 impl<X, T: Viscous<X>> Viscous<X> for FluidPairs<T> where Self: Term<X> {}
-impl<X, T: Viscous<X>> Viscous<X> for (T, AcousticDamper) {}
+impl<X, T: Viscous<X>> Viscous<X> for (T, AcousticDamper) {
+    fn damper(&self) -> Option<AcousticDamper> {
+        Some(self.1)
+    }
+}
 
 impl<X, E: EquationOfState, R: Tensile<f64>> WaterForces<X> for (Pressure<E, R>, BodyForce) {
     fn pairs(&self) -> impl Term<X> {
@@ -95,6 +108,9 @@ impl<X, E: EquationOfState, R: Tensile<f64>, V: Viscous<X>> WaterForces<X>
     }
     fn pressure(&self) -> Pressure<impl EquationOfState, impl Tensile<f64>> {
         self.0
+    }
+    fn damper(&self) -> Option<AcousticDamper> {
+        self.1.damper()
     }
 }
 
@@ -132,9 +148,13 @@ where
             0 => 0.0,
             _ => power(&mut self.data().fluid(), &self.rates(&pressure), slope) - bare.velocity,
         };
-        let viscosity = all.velocity - bare.velocity - stress;
+        let damper = forces
+            .damper()
+            .map_or(0.0, |damper| power(&mut self.data().fluid(), &self.rates(&damper), slope));
+        let viscosity = all.velocity - bare.velocity - stress - damper;
         let walls = bare.velocity + bare.density + walls;
-        ([viscosity, stress, all.density - bare.density, all.position, walls], all.force)
+        let diffusion = all.density - bare.density;
+        ([viscosity, stress, damper, diffusion, all.position, walls], all.force)
     }
 }
 
@@ -150,7 +170,8 @@ mod tests {
     use crate::metrics::energy::{FluidEnergy, Water, water_slope};
     use touchstone_base::random::Random;
 
-    type Forces = (Pressure<Tait, ArtificialStress>, ArtificialViscosity<Tait>, BodyForce);
+    type Forces =
+        (Pressure<Tait, ArtificialStress>, (ArtificialViscosity<Tait>, AcousticDamper), BodyForce);
     type Drift = (Continuity, Xsph, DensityDiffusion);
     type Method = Compose<CubicSpline, Forces, Drift, InterfaceWall, PredictorCorrector>;
 
@@ -181,7 +202,7 @@ mod tests {
         let stress = ArtificialStress::new(0.3, 4, Smoothing::<CubicSpline>::new(h).w(DX * DX));
         let forces = (
             Pressure { eos, tensile: stress },
-            ArtificialViscosity::new(0.4, 0.8, h, eos),
+            (ArtificialViscosity::new(0.4, 0.8, h, eos), AcousticDamper { bulk: 0.7 }),
             BodyForce(WATER.gravity),
         );
         let diffusion = DensityDiffusion::new(0.1 * h * eos.sound_speed);
@@ -230,8 +251,9 @@ mod tests {
         let bare = power_of(&simulation, &Pressure::new(forces.0.eos));
         let of_walls = power(&mut simulation.data().walls(), &simulation.wall_rates(), &slope);
         let alone = [
-            power_of(&simulation, &forces.1),
+            power_of(&simulation, &forces.1.0),
             power_of(&simulation, &forces.0) - bare,
+            power_of(&simulation, &forces.1.1),
             power_of(&simulation, &drift.2),
             power_of(&simulation, &drift.1),
             bare + power_of(&simulation, &drift.0) + of_walls,
@@ -239,7 +261,7 @@ mod tests {
         for (k, (found, power)) in powers.into_iter().zip(alone).enumerate() {
             let error = found - power;
             assert!(error.abs() < 1e-13 * bare.abs(), "{k}: {error:e} of {power:e}");
-            assert!(k == 4 || power.abs() > 1e-6 * bare.abs(), "{k} shows something");
+            assert!(k == 5 || power.abs() > 1e-6 * bare.abs(), "{k} shows something");
         }
         let total = simulation.total_rates();
         let each = simulation.data().fluid().zip(&total);
@@ -255,7 +277,7 @@ mod tests {
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         let (powers, _) = simulation.powers(&water_slope(&WATER));
-        assert!(powers[0] < 0.0, "viscosity heats");
+        assert!(powers[0] < 0.0 && powers[2] < 0.0, "viscosity and damper heat");
         let total: f64 = powers.iter().sum();
         let (dt, start) = (1e-6, energy(0.0));
         let (whole, half) = (energy(dt) - start, energy(0.5 * dt) - start);

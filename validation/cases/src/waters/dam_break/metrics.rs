@@ -100,6 +100,18 @@ pub const IMPULSE_AWAY: [MetricKey; 4] = four(
      fluid, minus 1",
     ["impulse_P1_away", "impulse_P2_away", "impulse_P3_away", "impulse_P4_away"],
 );
+/// Distance of the history of the pressure on each sensor from that of the reference with the same model.
+pub const PRESSURE_AWAY: [MetricKey; 4] = four(
+    "rms distance of the pressure/(rho g H) from that of the same model by volume of fluid, both means over \
+     0.01 (H/g)^(1/2), from 0.1 to 2.5 (H/g)^(1/2) after the arrival at P1",
+    ["P1_away", "P2_away", "P3_away", "P4_away"],
+);
+/// Ringing of the pressure on each sensor.
+pub const RINGING: [MetricKey; 4] = four(
+    "rms of the pressure/(rho g H) minus its mean over 0.5 (H/g)^(1/2), of means over 0.01 (H/g)^(1/2), for \
+     t (g/H)^(1/2) from 3.2 to 5.8",
+    ["P1_ringing", "P2_ringing", "P3_ringing", "P4_ringing"],
+);
 /// Impulse on each sensor, at the end of its window.
 pub const IMPULSE: [MetricKey; 4] = four(
     "impulse from the arrival at P1 on, for that many (H/g)^(1/2), over the measured one, minus 1",
@@ -118,7 +130,7 @@ pub fn every() -> Vec<MetricName> {
     ] {
         all.extend(distance.named(what));
     }
-    let of_probes = [LEVEL_AWAY, IMPULSE_AWAY, IMPULSE].concat();
+    let of_probes = [LEVEL_AWAY, IMPULSE_AWAY, PRESSURE_AWAY, RINGING, IMPULSE].concat();
     all.extend(of_probes.into_iter().map(MetricName::from));
     all
 }

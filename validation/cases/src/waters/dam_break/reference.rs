@@ -9,14 +9,14 @@ use touchstone_base::{
 };
 use touchstone_harness::snapshot::Snapshot;
 use touchstone_maths::metrics::curve::{
-    Points, best_shift, distance, end_of, integral, squares, until, value,
+    Points, best_shift, distance, end_of, integral, mean, squares, until, value,
 };
 
 use super::{
     Dam, DamSettings,
     metrics::{
         ARRIVAL, Distance, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
-        LEVEL_AWAY, LEVELS, PEAK, POTENTIAL_AWAY, Z,
+        LEVEL_AWAY, LEVELS, PEAK, POTENTIAL_AWAY, PRESSURE_AWAY, RINGING, Z,
     },
 };
 
@@ -158,6 +158,15 @@ const ARRIVED: f64 = 0.1;
 /// wave that it falls back into has not yet closed over air.
 pub const WINDOWS: [f64; 2] = [1.0, 2.5];
 
+/// Histories of pressure are compared during this time after the arrival \[(H/g)^(1/2)\]: by volume of fluid the
+/// arrival is known to 0.021.
+const HISTORY: [f64; 2] = [0.1, 2.5];
+/// The ringing is that of this time \[(H/g)^(1/2)\], after the first impact and before the jet closes over air,
+/// about a mean over [`SMOOTH`].
+const RINGS: [f64; 2] = [3.2, 5.8];
+/// Four periods of the slowest oscillation of 30 spacings \[(H/g)^(1/2)\].
+const SMOOTH: f64 = 0.5;
+
 /// When a wave with this pressure on P1 \[ρ g H\] arrives.
 pub fn arrival(pressure: &[(f64, f64)]) -> f64 {
     pressure.iter().find(|(_, p)| *p > ARRIVED).map_or(f64::NAN, |(t, _)| *t)
@@ -221,7 +230,8 @@ pub fn compare(dam: &Dam, end: &Snapshot, record: &mut Record) {
                 pressures_of_lobovsky(record);
             }
             Some(absent) => {
-                let all = [&LEVELS.metrics()[..], &LEVEL_AWAY, &[ARRIVAL, PEAK]].concat();
+                let levels = [&LEVELS.metrics()[..], &LEVEL_AWAY].concat();
+                let all = [&levels[..], &[ARRIVAL, PEAK], &PRESSURE_AWAY, &RINGING].concat();
                 record.leave_all_out(&all, absent);
                 let impulses = WINDOWS
                     .map(|w| [IMPULSE, IMPULSE_AWAY].concat().into_iter().map(move |of| of.at(w)));
@@ -298,9 +308,25 @@ fn pressures_of_lobovsky(record: &mut Record) {
             put_if_reached(record, IMPULSE[k].at(window), times, || a / b - 1.0);
             put_if_reached(record, IMPULSE_AWAY[k].at(window), times, || a / c - 1.0);
         }
+        let history = during(&MODEL.pressure[k], HISTORY.map(|after| models + after));
+        let away = || distance(computed, &history, models - ours);
+        put_if_reached(record, PRESSURE_AWAY[k], [reached, ours + HISTORY[1]], away);
+        put_if_reached(record, RINGING[k], [reached, RINGS[1]], || ringing(computed));
     }
     let peak = pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
     record.put_or(PEAK, ours.is_finite().then_some(peak), DRY);
+}
+
+/// A curve between two times.
+fn during(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> Points {
+    curve.iter().filter(|(t, _)| (from..=to).contains(t)).copied().collect()
+}
+
+/// rms of a pressure about its mean over [`SMOOTH`], for the times [`RINGS`].
+fn ringing(pressure: &[(f64, f64)]) -> f64 {
+    let about = |t: f64| mean(pressure, [t - 0.5 * SMOOTH, t + 0.5 * SMOOTH]);
+    let mean: Points = pressure.iter().map(|(t, _)| (*t, about(*t))).collect();
+    distance(pressure, &during(&mean, RINGS), 0.0)
 }
 
 #[cfg(test)]

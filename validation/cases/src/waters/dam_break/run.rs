@@ -40,8 +40,8 @@ const MOST_SAMPLES: f64 = 2e4;
 
 /// The metrics that take pair sweeps of their own.
 pub const COSTLY: &[MetricKey] = &{
-    let [a, b, c, d, e, f] = ledger::METRICS;
-    [a, b, c, d, e, f, MOMENTUM_GAP]
+    let [a, b, c, d, e, f, g] = ledger::METRICS;
+    [a, b, c, d, e, f, g, MOMENTUM_GAP]
 };
 
 /// All that accumulates over a run.

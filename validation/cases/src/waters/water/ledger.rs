@@ -16,6 +16,7 @@ touchstone_base::metrics! {
     WORK_VISCOSITY = "work_viscosity" ["-"]
         "energy that artificial viscosity has added until the end/{}";
     WORK_STRESS = "work_stress" ["-"] "energy that artificial stress has added until the end/{}";
+    WORK_DAMPER = "work_damper" ["-"] "energy that the acoustic damper has added until the end/{}";
     WORK_DIFFUSION = "work_diffusion" ["-"]
         "energy that density diffusion has added until the end/{}";
     WORK_XSPH = "work_xsph" ["-"] "energy that XSPH has added until the end/{}";
@@ -23,11 +24,12 @@ touchstone_base::metrics! {
 }
 
 /// The works of the terms of [`Powers`], which are columns of the series too.
-const WORKS: [MetricKey; 5] = [WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
+const WORKS: [MetricKey; 6] =
+    [WORK_VISCOSITY, WORK_STRESS, WORK_DAMPER, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
 /// Metrics of a ledger, which needs pair sweeps of its own.
-pub const METRICS: [MetricKey; 6] =
-    [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
+pub const METRICS: [MetricKey; 7] =
+    [ENERGY_GAP, WORK_VISCOSITY, WORK_STRESS, WORK_DAMPER, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
 
 /// Keeps the balances of a run.
 #[derive(Default, Serialize, Deserialize)]
@@ -41,7 +43,7 @@ pub struct Ledger {
     impulse: Vector2<f64>,
     unexplained: f64,
     /// t \[s\], kinetic, potential and compression energy, then the [`WORKS`] \[J/m\].
-    rows: Vec<[f64; 9]>,
+    rows: Vec<[f64; 10]>,
 }
 
 impl Ledger {
@@ -52,15 +54,15 @@ impl Ledger {
         let time = simulation.time();
         self.balance_momentum(&*simulation, water.gravity, pairs);
         let FluidEnergy { kinetic, potential, compression } = water.energy(&*simulation);
-        let [a, b, c, d, e] = self.works(time, &powers);
-        self.rows.push([time, kinetic, potential, compression, a, b, c, d, e]);
+        let [a, b, c, d, e, f] = self.works(time, &powers);
+        self.rows.push([time, kinetic, potential, compression, a, b, c, d, e, f]);
         self.powers = powers;
     }
 
     /// Works from the first sample to a time, by the trapezoidal rule over the powers of each sample;
     /// negative for a term that takes energy from the particles.
-    fn works(&self, time: f64, powers: &Powers) -> [f64; 5] {
-        let Some(last) = self.rows.last() else { return [0.0; 5] };
+    fn works(&self, time: f64, powers: &Powers) -> Powers {
+        let Some(last) = self.rows.last() else { return Powers::default() };
         let half = 0.5 * (time - last[0]);
         std::array::from_fn(|k| last[4 + k] + half * (powers[k] + self.powers[k]))
     }
@@ -104,7 +106,7 @@ impl Ledger {
 
     /// The largest |E(t) − E(0) − work(t)| so far \[J/m\].
     fn gap(&self) -> f64 {
-        let balance = |row: &[f64; 9]| row[1] + row[2] + row[3] - row[4..].iter().sum::<f64>();
+        let balance = |row: &[f64; 10]| row[1] + row[2] + row[3] - row[4..].iter().sum::<f64>();
         let start = self.rows.first().map_or(0.0, balance);
         self.rows.iter().map(|row| (balance(row) - start).abs()).fold(0.0, f64::max)
     }
@@ -189,8 +191,8 @@ mod tests {
         ledger.rows.clear();
         for time in [0.0, 1.0, 3.0] {
             let powers = std::array::from_fn(|k| (k + 1) as f64 * time);
-            let [a, b, c, d, e] = ledger.works(time, &powers);
-            ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e]);
+            let [a, b, c, d, e, f] = ledger.works(time, &powers);
+            ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e, f]);
             ledger.powers = powers;
         }
         ledger.measure(&end, 50.0, "it", &mut record);
@@ -199,9 +201,9 @@ mod tests {
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
         }
         // Work of terms is no gap; work of terms that is missing in the energy is one.
-        ledger.rows = vec![[0.0; 9], [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 1.5, 0.5]];
+        ledger.rows = vec![[0.0; 10], [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.5, 0.5]];
         assert!(ledger.gap() < 1e-12, "{}", ledger.gap());
-        ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 5.0, 0.0, -4.0]);
+        ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 5.0, 0.0, -4.0]);
         assert!((ledger.gap() - 4.0).abs() < 1e-12, "{}", ledger.gap());
     }
 }
