@@ -24,6 +24,7 @@ fn a_program_has_no_symbol_of_what_its_scheme_does_not_name() {
         "ArtificialViscosity",
         "ArtificialStress",
         "DensityDiffusion",
+        "AcousticDamper",
         "BodyForce",
         "InterfaceWall",
         "PredictorCorrector",

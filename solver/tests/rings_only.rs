@@ -21,6 +21,7 @@ fn rings_have_no_symbol_of_a_wall_an_exponent_or_a_fluid_term() {
         "Viscosity",
         "BodyForce",
         "DensityDiffusion",
+        "AcousticDamper",
         "Shifting",
         "ArtificialStress",
         "Componentwise",

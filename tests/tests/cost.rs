@@ -2,12 +2,12 @@
 
 use nalgebra::Vector2;
 use touchstone_solver::{
-    ArtificialStress, ArtificialViscosity, BodyForce, Compose, ConsistentContinuity,
-    ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion, Domain,
-    ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic, Integrator, Leapfrog, Linear,
-    NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure, Scene, ShiftAdvection, Shifting,
-    Simulation, State, Stepper, Tait, Term, Viscosity, Xsph, particles::SweptParticle,
-    physics::Derived,
+    AcousticDamper, ArtificialStress, ArtificialViscosity, BodyForce, Compose,
+    ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline,
+    DensityDiffusion, Domain, ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic,
+    Integrator, Leapfrog, Linear, NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure,
+    Scene, ShiftAdvection, Shifting, Simulation, State, Stepper, Tait, Term, Viscosity, Xsph,
+    particles::SweptParticle, physics::Derived,
 };
 use touchstone_tests::{assert_small, difference, patch};
 
@@ -46,6 +46,8 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [8, 16]);
     assert_eq!(sizes::<ArtificialViscosity<Linear>>(), [0, 16]);
     assert_eq!(sizes::<FluidPairs<ArtificialViscosity<Tait>>>(), [16, 16]);
+    // The divergence of each neighbour.
+    assert_eq!(sizes::<AcousticDamper>(), [8, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);
     assert_eq!(sizes::<Shifting>(), [0, 16]);
     // In addition to the shift: the gradient of both components of velocity, and a symmetric matrix.

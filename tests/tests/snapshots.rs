@@ -390,6 +390,7 @@ fn bounds_of_water(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
     let smooths = "a mean of velocities moves particles, and hardly changes their energy";
     let mut bounds = vec![
         ("work_viscosity", Bound::Within(-1.0, 0.0), damps),
+        ("work_damper", Bound::Within(-1.0, 0.0), damps),
         ("work_diffusion", Bound::Within(-1.0, 0.0), damps),
         ("work_stress", Bound::Within(0.0, 0.5), stress),
         ("work_xsph", Bound::Within(-0.05, 0.05), smooths),
@@ -418,12 +419,17 @@ fn bounds_of_tank() -> Vec<(&'static str, Bound, &'static str)> {
     let level = "the levels of four stations, of which the gates allow 0.03 H in the mean";
     let head =
         "a jet of 1.5 times the speed of a fall from H bears 5 rho g H, a shock several times that";
+    let history = "the largest impulse over its window of 2.5 is 3.1 rho g H (H/g)^(1/2)";
     let clock = "the front crosses 3.4 H at 1.5 (g H)^(1/2)";
     vec![
         ("levels_rms", Bound::Below(0.06), level),
         ("levels_shift", Bound::Within(-0.4, 0.4), "as of the front"),
         ("peak_P1", Bound::Within(0.0, 20.0), head),
         ("arrival", Bound::Within(2.0, 3.0), clock),
+        ("P1_away", Bound::Below(1.2), history),
+        ("P2_away", Bound::Below(1.2), history),
+        ("P3_away", Bound::Below(1.2), history),
+        ("P4_away", Bound::Below(1.2), history),
         ("spilled", Bound::Within(0.0, 0.05), "by volume of fluid 2 % leave, uncertain by 1 %"),
     ]
 }

@@ -45,6 +45,27 @@ pub static FREE_SLIP: Cause = Cause::new(
     "Friction at the walls, with a boundary layer that is resolved or modelled.",
 );
 
+/// Sound of an impact.
+pub static RINGS: Cause = Cause::new(
+    "The impact leaves sound between wall and surface: a quarter wave across a layer of 0.28 H, at 12.5 √(g/H) \
+     for c0 = 14 √(g H) with 30 and 60 spacings and not with twice this sound speed. Slower oscillations of 30 \
+     spacings do not depend on the sound speed and vanish with 60.",
+    "An acoustic damper with h/dx 2 and more sound speed, as in `damped`.",
+);
+
+/// A kernel of 50 neighbours.
+pub static WIDE_KERNEL: Cause = Cause::new(
+    "A kernel of 2 spacings smooths the density over more of the column, whose surface is then less sharp.",
+    "Finer spacing.",
+);
+
+/// An acoustic damper where few particles touch a wall.
+pub static DAMPED_SPLASH: Cause = Cause::new(
+    "Unexplained. The acoustic damper acts on drops at a wall by a force that changes faster than its impulse is \
+     sampled, and a drop may be half a spacing inside the wall.",
+    "A wall that continues the divergence of the water.",
+);
+
 /// Sums over too few neighbours.
 pub static SHORT_KERNEL: Cause = Cause::new(
     "The strain moves rows of particles two initial spacings apart, and a smoothing length of 1.5 spacings \

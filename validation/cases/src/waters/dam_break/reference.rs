@@ -331,6 +331,8 @@ fn ringing(pressure: &[(f64, f64)]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use crate::waters::dam_break::{
         lobovsky,
@@ -454,6 +456,21 @@ mod tests {
         is(metric(FRONT.rms.into()), 0.0, 1e-3);
     }
 
+    /// A sine on a parabola: the mean over 0.5 of t² is t² + 0.5²/12, and an oscillation at 12 fits it six times.
+    #[test]
+    fn the_ringing_is_the_oscillation_about_the_slow_change_of_a_pressure() {
+        let amplitude = 0.3;
+        let at = |t: f64| 0.2 * t * t + amplitude * touchstone_base::functions::sin(24.0 * PI * t);
+        let pressure: Points =
+            (0..700).map(|k| 0.01 * f64::from(k) + 0.005).map(|t| (t, at(t))).collect();
+        is(ringing(&pressure), amplitude / SQRT_2, 0.02 * amplitude);
+        let slow: Points = pressure.iter().map(|(t, _)| (*t, 0.2 * t * t)).collect();
+        assert!(ringing(&slow) < 0.005, "{}", ringing(&slow));
+        let early: Points =
+            pressure.iter().map(|(t, p)| (*t, if *t < 2.9 { 9.0 } else { *p })).collect();
+        is(ringing(&early), ringing(&pressure), 1e-12);
+    }
+
     /// The numbers of the reference's README.
     #[test]
     fn the_reference_is_read_in_the_units_of_the_cases() {
@@ -511,8 +528,14 @@ mod tests {
         is(metric(FRONT_AWAY.at(2)), 0.03, 1e-4);
         is(metric(POTENTIAL_AWAY.into()), 0.01, 1e-4);
         is(metric(ARRIVAL.into()), arrival(&MODEL.pressure[0]) + 0.3, 0.011);
+        let rms = |k: usize| {
+            let from = arrival(&MODEL.pressure[0]);
+            let history = during(&MODEL.pressure[k], [from + 0.1, from + 2.5]);
+            distance(&[(0.0, 0.0)], &history, 0.0)
+        };
         for k in 0..4 {
             is(metric(LEVEL_AWAY[k].into()), 0.01 * (k + 1) as f64, 1e-4);
+            is(metric(PRESSURE_AWAY[k].into()) / (too_much(k) * rms(k)), 1.0, 0.05);
             for window in WINDOWS {
                 // The arrival is known to 0.011 of a window of 1, in which the pressure on P4 doubles.
                 is(metric(IMPULSE_AWAY[k].at(window)), too_much(k), 0.022);
