@@ -538,7 +538,7 @@ fn diverge<P: Physics, T: Term<P::Extra>>(
     for (column, divergence) in columns.iter_mut().zip(divergences) {
         T::set_divergence(&mut column.derived, &column.common, *divergence);
     }
-    fill_images(neighbours, 0, P::Walls::SLIPS, 1.0, columns);
+    neighbours.fill_images(0, P::Walls::SLIPS, 1.0, columns);
 }
 
 /// Derives columns of particles.
