@@ -166,32 +166,38 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
 
     /// All particles in the order of the scene.
     pub fn all(&self) -> Vec<Point> {
-        self.of_all(|point| Some(*point)).into_iter().flatten().collect()
-    }
-
-    /// Values of all particles that have one, in the order of the scene, some hundred particles at a time.
-    fn of_all<R: Send>(&self, value: impl Fn(&Point) -> Option<R> + Sync) -> Vec<Vec<R>> {
         match &self.source {
-            Source::Given(columns, _) => vec![columns.points.iter().filter_map(value).collect()],
+            Source::Given(columns, _) => columns.points.clone(),
             Source::Ours(simulation) => {
                 let data = simulation.data();
-                let places = data.places();
-                parallel::map_parts(places.len(), data.is_parallel(), &|part| {
-                    let points = places[part].iter().map(|place| point(data, *place as usize));
-                    points.filter_map(|point| value(&point)).collect()
-                })
+                let (places, parallel) = (data.places(), data.is_parallel());
+                let mut all = vec![point(data, 0); places.len()];
+                parallel::for_each_pair(&mut all, places, parallel, &|this, place| {
+                    *this = point(data, *place as usize);
+                });
+                all
             }
         }
     }
 
-    /// A value of each moving particle, in the order of the scene; for sums whose last bits do not depend on
-    /// the order of storage.
-    pub fn of_moving<R: Send>(
-        &self,
-        value: impl Fn(&Point) -> R + Sync,
-    ) -> impl Iterator<Item = R> {
-        let values = self.of_all(|point| point.is_fluid().then(|| value(point)));
-        values.into_iter().flatten()
+    /// Values of all moving particles in the order of the scene, for sums: the order of storage changes, and
+    /// with it the last bits of a sum. A value takes less memory than a particle.
+    pub fn of_moving<R: Send>(&self, value: impl Fn(Point) -> R + Sync) -> impl Iterator<Item = R> {
+        let parts = match &self.source {
+            Source::Given(..) => vec![self.stored().map(value).collect()],
+            Source::Ours(simulation) => {
+                let (data, fluid) = (simulation.data(), simulation.data().fluid_count());
+                let places = data.places();
+                parallel::map_parts(places.len(), data.is_parallel(), &|part| {
+                    let mut values = Vec::with_capacity(part.len());
+                    let places = places[part].iter().map(|place| *place as usize);
+                    let moving = places.filter(|place| *place < fluid);
+                    values.extend(moving.map(|place| value(point(data, place))));
+                    values
+                })
+            }
+        };
+        parts.into_iter().flatten()
     }
 
     /// What `find` finds in each part of the moving particles, some hundred as they are stored, on several
@@ -210,7 +216,9 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
 
     /// The moving particles in the order of the scene.
     pub fn moving(&self) -> Vec<Point> {
-        self.of_moving(|point| *point).collect()
+        let mut all = self.all();
+        all.retain(Point::is_fluid);
+        all
     }
 
     /// The moving particles as they are stored, without order; for sums.
