@@ -48,7 +48,7 @@ fn of_batch(job: &Job, making: &BatchOptions, seconds: f64) -> f64 {
 
 /// The runs that are made on all threads, one at a time, and the others, each the longest first. On one thread
 /// a run of the first kind would take longer than all runs together on all threads, which would wait for it.
-fn on_all_threads<'j>(mut jobs: Vec<&'j Job>, threads: usize) -> [Vec<&'j Job>; 2] {
+fn on_all_threads(mut jobs: Vec<&Job>, threads: usize) -> [Vec<&Job>; 2] {
     jobs.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
     let all: f64 = jobs.iter().map(|job| job.planned.seconds).sum();
     let keeps_waiting =
