@@ -314,7 +314,7 @@ fn a_record_states_the_step_that_was_used_and_the_one_that_was_planned() {
 }
 
 /// A short run of each case.
-const SHORT: [&str; 22] = [
+const SHORT: [&str; 23] = [
     "couette --variant seed --set rows=8 --set end=0.1",
     "poiseuille --set rows=8 --set end=0.1",
     "taylor_green --set n=20 --set end=0.1",
@@ -324,6 +324,7 @@ const SHORT: [&str; 22] = [
     "elliptic_drop --set n=12",
     "hydrostatic --set rows=8 --set columns=8 --set end=1",
     "taylor_couette --set layers=6 --set end=0.5",
+    "slip_channel --set n=8",
     "acoustic_wave",
     "shear_wave --set span=0.2",
     "elastic_bar --set n=24",
