@@ -1,5 +1,6 @@
 //! Tests of the command, in one program that is linked once.
 
+mod baselines;
 mod cases;
 mod cli;
 mod common;

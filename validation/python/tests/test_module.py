@@ -42,6 +42,24 @@ def test_settings_are_those_of_the_program():
         ts.problem("nothing")
 
 
+def test_a_baseline_fails_what_gets_worse(tmp_path):
+    of, file = ts.problem("couette", rows=10), tmp_path / "baseline.json"
+
+    def judged(factor, **options):
+        frames = [{"t": t, **of.particles, "u": factor * of.particles["u"]} for t in of.times]
+        return ts.judge(of, frames, baseline=file, **options)
+
+    with pytest.raises(ts.Refused, match="no baseline"):
+        judged(1.0)
+    first = judged(1.0, update_baseline=True)
+    assert file.exists() and first.changes == []
+    again = judged(1.0)
+    assert {change.change for change in again.changes} == {"same"} and again.passes is False, "gates fail"
+    of.particles["v"] = of.particles["v"] + 1e-5
+    worse = {change.metric: change for change in judged(1.0).changes if change.fails}
+    assert worse["v_rms"].before == 0 and worse["v_rms"].now > 10 * worse["v_rms"].resolution
+
+
 def test_verdicts_are_those_of_the_command(tmp_path):
     own = tmp_path / "own"
     assert touchstone("export", "couette", "--solve", "--out", str(own)).returncode == 0

@@ -17,10 +17,11 @@ comes with this package, measures and judges: verdicts are those of its commands
 from ._program import Refused
 from ._questions import Answer, Criterion, NotApplicable, main, probe, questions, summary
 from ._problem import Problem, Quantity, Wall, load, problem, problems
-from ._verdicts import Judgement, Verdict, judge, records, save
+from ._verdicts import Change, Judgement, Verdict, judge, records, save
 
 __all__ = [
     "Answer",
+    "Change",
     "Criterion",
     "Judgement",
     "NotApplicable",

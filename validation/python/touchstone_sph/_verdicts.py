@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tempfile
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Optional, Union
 
@@ -52,6 +52,26 @@ class Verdict:
 
 
 @dataclass(frozen=True)
+class Change:
+    """A metric in the baseline of a code and now."""
+
+    metric: str
+    unit: str
+    #: The values; None of a metric that is not measured.
+    before: Optional[float]
+    now: Optional[float]
+    #: The largest difference that counts as none.
+    resolution: float
+    #: ``same``, ``better``, ``new``, or a failure: ``worse``, ``gone``, ``changed`` (it has no better direction).
+    change: str
+
+    @property
+    def fails(self) -> bool:
+        """Does it break the promise that nothing became worse?"""
+        return self.change in ("worse", "gone", "changed")
+
+
+@dataclass(frozen=True)
 class Judgement:
     """How wrong the results of a code are."""
 
@@ -61,12 +81,15 @@ class Judgement:
     verdicts: list[Verdict]
     #: The whole record, as ``touchstone submit --store`` keeps it.
     record: dict[str, Any]
+    #: Every metric of the baseline and of these results; empty without a baseline.
+    changes: list[Change] = field(default_factory=list)
 
     @property
     def passes(self) -> Optional[bool]:
-        """Did a gate apply, and none fail? None if no gate applies."""
-        judged = [of.verdict for of in self.verdicts if of.verdict != "not applicable"]
-        return all(verdict != "fail" for verdict in judged) if judged else None
+        """Did no gate fail, and no metric of the baseline? None if no gate applies and there is no baseline."""
+        fails = [of.verdict == "fail" for of in self.verdicts if of.verdict != "not applicable"]
+        fails += [of.fails for of in self.changes]
+        return not any(fails) if fails else None
 
 
 def save(
@@ -143,6 +166,8 @@ def judge(
     method: Optional[Mapping[str, Any]] = None,
     system: Optional[Mapping[str, Any]] = None,
     store: Union[str, Path, None] = None,
+    baseline: Union[str, Path, None] = None,
+    update_baseline: bool = False,
 ) -> Judgement:
     """Measures and judges the results of a code, by ``touchstone submit``.
 
@@ -154,6 +179,8 @@ def judge(
         method: ``code``, ``version``, ``scheme``, ``settings`` and so on; see `save`.
         system: ``seconds`` of the time loop and so on; see `save`.
         store: a folder that keeps the record.
+        baseline: a file with the metrics of an earlier version of the code, with which these are compared.
+        update_baseline: writes the metrics into that file, which may be absent, and fails no change.
 
     Raises:
         Refused: if results are incomplete or not those of the problem; the text names every fault.
@@ -170,20 +197,32 @@ def judge(
     with tempfile.TemporaryDirectory() as folder:
         submission, kept = Path(folder, "submission"), Path(folder, "store")
         save(problem, frames, submission, method, system)
-        _program.run("submit", problem.name, str(submission), "--store", str(kept), judged=True)
+        options = ["--baseline", str(baseline)] if baseline is not None else []
+        options += ["--update-baseline"] if update_baseline else []
+        submit = ["submit", problem.name, str(submission), "--json", "--store"]
+        of = _program.answer(*submit, str(kept), *options, judged=True)
         if store is not None:
-            _program.run("submit", problem.name, str(submission), "--store", str(store), judged=True)
+            _program.run(*submit, str(store), judged=True)
         (path,) = kept.glob("*.json")
         record = json.loads(path.read_text(encoding="utf-8"))
-        verdicts = _program.answer("verify", problem.name, "--no-runs", "--store", str(kept), "--json", judged=True)
-    (of,) = [of for of in verdicts["submissions"] if not of["embedded"]]
-    metrics = {name: _quantity(metric) for name, metric in record["metrics"].items()}
-    return Judgement(metrics, [*map(_verdict, of["judged"]), *map(_skipped, of["not_applicable"].items())], record)
+    metrics = {name: _quantity(metric) for name, metric in of.get("metrics", {}).items()}
+    verdicts = [*map(_verdict, of["judged"]), *map(_skipped, of["not_applicable"].items())]
+    changes = [] if update_baseline else [_change(change) for change in of.get("baseline", [])]
+    return Judgement(metrics, verdicts, record, changes)
+
+
+def _number(value: Any) -> Any:
+    """A number of a document, in which infinities and NaN are objects."""
+    return float(value["not_finite"]) if isinstance(value, dict) else value
 
 
 def _quantity(metric: dict[str, Any]) -> Quantity:
-    value = metric["value"]
-    return Quantity(float(value["not_finite"]) if isinstance(value, dict) else value, metric["unit"])
+    return Quantity(_number(metric["value"]), metric["unit"])
+
+
+def _change(of: dict[str, Any]) -> Change:
+    before, now, resolution = map(_number, (of["before"], of["now"], of["resolution"]))
+    return Change(of["metric"], of["unit"], before, now, resolution, of["change"])
 
 
 def _verdict(of: dict[str, Any]) -> Verdict:

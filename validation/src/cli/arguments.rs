@@ -395,8 +395,35 @@ pub struct Submit {
     /// and the problem.json that `export` wrote
     pub folder: PathBuf,
     /// Folder for the record, as in `verify` and `report`
-    #[arg(long, value_name = "DIR", required_unless_present = "check")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["check", "baseline"])]
     pub store: Option<PathBuf>,
+    /// Fail if a metric is worse than in this file, which --update-baseline wrote for an earlier version of the
+    /// code: by more than 1 % of the bound of its gate or, without a gate, of the larger value
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    pub baseline: Option<PathBuf>,
+    /// Write the metrics of this submission into the file of --baseline, which may have earlier ones; changes
+    /// are shown and do not fail
+    #[arg(long, requires = "baseline")]
+    pub update_baseline: bool,
+    #[command(flatten)]
+    pub how: Submission,
+    /// List all missing and invalid entries, and record nothing
+    #[arg(long)]
+    pub check: bool,
+    /// Print every gate, not only those that did not pass
+    #[arg(long, conflicts_with = "json")]
+    pub all: bool,
+    /// Print the verdicts as JSON on standard output, as an entry of `submissions` of verdicts.json
+    #[arg(long, conflicts_with = "check")]
+    pub json: bool,
+    /// Write the verdicts as JUnit XML, one test case per gate, and one for the baseline
+    #[arg(long, value_name = "FILE", conflicts_with = "check")]
+    pub junit: Option<PathBuf>,
+}
+
+/// The problem of a submission, and how its files are read.
+#[derive(Debug, Default, Args)]
+pub struct Submission {
     /// Name of the variant whose problem it solves, if the folder has no problem.json
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
@@ -406,21 +433,9 @@ pub struct Submit {
     /// Names of columns in the results, as in `--map x=pos_x,y=pos_y`
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = pair)]
     pub map: Vec<(String, String)>,
-    /// List all missing and invalid entries, and record nothing
-    #[arg(long)]
-    pub check: bool,
     /// Continue even if the estimate exceeds 4 GB of memory
     #[arg(long)]
     pub allow_long: bool,
-    /// Print every gate, not only those that did not pass
-    #[arg(long, conflicts_with = "json")]
-    pub all: bool,
-    /// Print the verdicts as JSON on standard output, as an entry of `submissions` of verdicts.json
-    #[arg(long, conflicts_with = "check")]
-    pub json: bool,
-    /// Write the verdicts as JUnit XML, one test case per gate
-    #[arg(long, value_name = "FILE", conflicts_with = "check")]
-    pub junit: Option<PathBuf>,
 }
 
 /// `OURS=THEIRS`. Our columns depend on the case and on the submitted file.
@@ -512,9 +527,9 @@ pub struct Report {
 
 #[derive(Debug, Args)]
 pub struct Compare {
-    /// The earlier report or store
+    /// The earlier report or store; or one submission: its folder, its record, or the output of `submit --json`
     pub before: PathBuf,
-    /// The later report or store
+    /// The later one
     pub after: PathBuf,
     /// Print the differences as JSON on standard output
     #[arg(long)]

@@ -6,11 +6,13 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::json;
 use touchstone_base::{
+    files,
     functions::ln,
     gate::{Bound, Verdict},
     record::{Record, Status},
     submission::MACHINE,
 };
+use touchstone_exchange::submission::METHOD;
 use touchstone_harness::{
     case::{Case, Planned},
     gates::GateIndex,
@@ -20,8 +22,9 @@ use touchstone_harness::{
 };
 
 use super::{
-    Exit, Failure, Outcome, Session, arguments,
+    Exit, Failure, Outcome, Session, arguments, baseline, exchange,
     judged::{self, SubmissionVerdicts, VERDICTS, Verdicts},
+    metrics::{self, SHARE, Scales},
     output,
 };
 
@@ -84,22 +87,78 @@ fn add(all: &mut Vec<Submitted>, record: Record, session: &Session) {
         known.record = Some(record);
         return;
     }
-    let case = session.cases.iter().find(|case| case.name() == record.run.case);
-    let judged = case.and_then(|case| {
-        let run = suite::submitted(&GateIndex::of(*case), record.clone());
-        SubmissionVerdicts::of(*case, &run, false)
-    });
+    let judged = verdicts(&record, session);
     all.extend(judged.map(|of| Submitted { of, record: Some(record) }));
 }
 
-impl Submitted {
-    /// The parts that a new version of a code keeps: code, scheme, division and problem.
-    fn name(&self) -> String {
-        let SubmissionVerdicts { submission: by, .. } = &self.of;
-        let sealed = by.seed.map_or(String::new(), |seed| format!(", sealed by seed {seed}"));
-        format!("{}, {} ({}) of {}{sealed}", by.code, by.scheme, by.division, self.of.problem())
-    }
+/// The verdicts on a run of another code, if its case is known.
+fn verdicts(record: &Record, session: &Session) -> Option<SubmissionVerdicts> {
+    let case = session.cases.iter().find(|case| case.name() == record.run.case)?;
+    let run = suite::submitted(&GateIndex::of(*case), record.clone());
+    SubmissionVerdicts::of(*case, &run, false)
+}
 
+/// The verdicts on one submission: in its folder, its record or the output of `submit --json`. None of a folder
+/// of something else.
+///
+/// # Errors
+/// If the submission is refused, or a file has none.
+fn submission(path: &Path, session: &Session) -> Result<Option<SubmissionVerdicts>, Failure> {
+    if path.join(METHOD).exists() {
+        let (_, record) = exchange::measured(None, path, &Default::default(), session)?;
+        return Ok(verdicts(&record, session));
+    }
+    if !path.is_file() {
+        return Ok(None);
+    }
+    let of_record = match baseline::read(path) {
+        Ok(record) => verdicts(&record, session),
+        Err(_) => None,
+    };
+    let text = || files::read_text(path, baseline::MOST_BYTES).ok();
+    let found = of_record.or_else(|| serde_json::from_str(&text()?).ok());
+    let none =
+        || format!("{} is neither a record nor the output of `submit --json`", path.display());
+    found.map(Some).ok_or_else(|| Failure::usage(none()))
+}
+
+/// Compares all metrics of two submissions of one problem, and the verdicts on them.
+fn of_two(
+    [was, is]: [&SubmissionVerdicts; 2],
+    arguments: &arguments::Compare,
+    session: &Session,
+) -> Outcome {
+    let [before, after] = [was, is].map(SubmissionVerdicts::problem);
+    if before != after {
+        let words = format!("the submissions solve two problems: {before}, and {after}");
+        return Err(Failure::usage(words));
+    }
+    let case = touchstone_cases::find_in(session.cases, &is.case)?;
+    let scales = Scales::new(&GateIndex::of(case), &is.judged);
+    let metrics = scales.changes(&was.metrics, &is.metrics);
+    let [old, new] = [was, is].map(|of| by_name(of.judged.iter()));
+    let mut changes = paired(&old, &new, |_, was, is| of_gate(was, is));
+    changes.retain(|change| change.kind != ChangeKind::Value); // the table has the values
+    changes.sort_by_key(|change| change.kind);
+    let gone = metrics.iter().filter(|of| of.change == metrics::Change::Gone).count();
+    let losses = gone + changes.iter().filter(|change| change.kind.is_loss()).count();
+    let failures = changes.iter().filter(|change| change.kind == ChangeKind::Failing).count();
+    let json = || {
+        json!({
+            "problem": after, "before": was.submission, "after": is.submission, "metrics": metrics,
+            "new_failures": failures, "losses": losses, "changes": changes,
+        })
+    };
+    let text = || {
+        let ended = |of: &SubmissionVerdicts| format!("{}, {}", of.submission, of.status);
+        let head = format!("{after}\nbefore  {}\nnow     {}\n\n", ended(was), ended(is));
+        head + &metrics::table(&metrics) + &of_kinds(&changes)
+    };
+    output::answer(arguments.json, json, text)?;
+    Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
+}
+
+impl Submitted {
     /// Version and digests, by which two runs of one code differ.
     fn who(&self) -> String {
         let by = &self.of.submission;
@@ -110,7 +169,7 @@ impl Submitted {
 
     /// Changes of gates and metrics against the earlier run of the code.
     fn changes(&self, was: Option<&Self>) -> Vec<VerdictChange> {
-        let name = self.name();
+        let name = self.of.name();
         let gates = |of: &Self| by_name(of.of.judged.iter());
         let old = was.map(gates).unwrap_or_default();
         let mut changes = paired(&old, &gates(self), |_, was, is| of_gate(was, is));
@@ -142,15 +201,15 @@ impl Submitted {
 fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<VerdictChange> {
     let is_same = |a: &Submitted, b: &Submitted| a.of.key == b.of.key;
     let was = |is: &Submitted| {
-        let alike = || old.iter().find(|was| was.name() == is.name());
+        let alike = || old.iter().find(|was| was.of.name() == is.of.name());
         old.iter().find(|was| is_same(was, is)).or_else(alike)
     };
     let mut changes: Vec<VerdictChange> = new.iter().flat_map(|is| is.changes(was(is))).collect();
     let is_there =
-        |was: &Submitted| new.iter().any(|is| is_same(was, is) || was.name() == is.name());
+        |was: &Submitted| new.iter().any(|is| is_same(was, is) || was.of.name() == is.of.name());
     let gone = |was: &Submitted| VerdictChange {
         kind: ChangeKind::Gone,
-        name: was.name(),
+        name: was.of.name(),
         words: was.who(),
     };
     changes.extend(old.iter().filter(|was| !is_there(was)).map(gone));
@@ -192,10 +251,6 @@ struct VerdictChange {
     words: String,
 }
 
-/// A value moved if it did by more than this share of the scale of its gate's bound, or of itself if no gate
-/// judges it.
-const RESOLUTION: f64 = 0.01;
-
 /// Changes of seconds by more than this factor are reported.
 const NOTABLE: f64 = 1.1;
 
@@ -203,6 +258,17 @@ const NOTABLE: f64 = 1.1;
 const TOLD: usize = 3;
 
 pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
+    let (before, after) =
+        (submission(&arguments.before, session)?, submission(&arguments.after, session)?);
+    match (before, after) {
+        (Some(before), Some(after)) => return of_two([&before, &after], arguments, session),
+        (None, None) => {}
+        _ => {
+            let words = "one is a submission and the other is not; expected two submissions, or two reports or \
+                         stores";
+            return Err(Failure::usage(words));
+        }
+    }
     let (before, after) =
         (Side::read(&arguments.before, session)?, Side::read(&arguments.after, session)?);
     let mut changes = Vec::new();
@@ -261,12 +327,19 @@ fn in_words(changes: &[VerdictChange], before: &Side, after: &Side) -> String {
     if old + new > 0 {
         text += &format!("runs of other codes: {old} before, {new} after\n");
     }
+    text += &of_kinds(changes);
+    if changes.is_empty() { text + "nothing changed\n" } else { text }
+}
+
+/// Sorted changes, below a line for each kind.
+fn of_kinds(changes: &[VerdictChange]) -> String {
+    let mut text = String::new();
     for of_kind in changes.chunk_by(|a, b| a.kind == b.kind) {
         let kind = format!("{:?}", of_kind[0].kind).to_lowercase();
         text += &format!("\n{kind}: {}\n", of_kind.len());
         of_kind.iter().for_each(|change| text += &format!("  {}: {}\n", change.name, change.words));
     }
-    if changes.is_empty() { text + "nothing changed\n" } else { text }
+    text
 }
 
 /// The changes of items with a name in either or both.
@@ -321,7 +394,7 @@ fn has_moved(scale: f64, from: Option<f64>, to: Option<f64>) -> bool {
     match (from, to) {
         (Some(from), Some(to)) if from == to || (from.is_nan() && to.is_nan()) => false,
         (Some(from), Some(to)) => {
-            let is_within = (from - to).abs() <= RESOLUTION * scale;
+            let is_within = (from - to).abs() <= SHARE * scale;
             !is_within // so is a difference that is not a number
         }
         _ => from.is_some() != to.is_some(),

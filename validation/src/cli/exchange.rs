@@ -28,8 +28,11 @@ use touchstone_harness::{
 };
 
 use super::{
-    Exit, Failure, Outcome, Session, arguments, judged,
+    Exit, Failure, Outcome, Session, arguments,
+    baseline::Baseline,
+    judged,
     judged::SubmissionVerdicts,
+    metrics::Scales,
     output,
     solve::{self, How},
     submitted,
@@ -168,20 +171,40 @@ pub fn sealed(
     Ok(())
 }
 
-pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
-    let case = touchstone_cases::find_in(session.cases, &arguments.case)?;
+/// The record of the submission in a folder, of the named case or of that of its problem.json.
+///
+/// # Errors
+/// Everything that is missing or wrong.
+pub fn measured(
+    case: Option<&str>,
+    folder: &Path,
+    how: &arguments::Submission,
+    session: &Session,
+) -> Result<(&'static dyn Case, Record), Failure> {
+    let mut entry = read(folder, &how.map)?;
+    let asked = entry.asked.as_ref().map(|asked| asked.spec.case.as_str());
+    let none =
+        || Failure::usage(format!("{} has no {PROBLEM}, which names the case", folder.display()));
+    let case = touchstone_cases::find_in(session.cases, case.or(asked).ok_or_else(none)?)?;
     session.check_references(&[case])?;
-    let mut entry = read(&arguments.folder, &arguments.map)?;
-    let problem = problem(case, &entry, arguments)?;
+    let problem = problem(case, &entry, how)?;
     let coarse = entry.scene(case, &problem)?;
     let scene = coarse.as_ref().unwrap_or(&problem);
     entry.stand_for(case, scene).map_err(refused)?;
     entry.results.notes().iter().for_each(|note| output::say(note));
     entry.check(scene).map_err(refused)?;
     let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
-        refused(vec![Flaw::of(arguments.folder.display().to_string(), error.to_string())])
+        refused(vec![Flaw::of(folder.display().to_string(), error.to_string())])
     })?;
     record.manifest.sources = (session.sources)(case.name());
+    Ok((case, record))
+}
+
+pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
+    let baseline = Baseline::of(arguments)?;
+    let name = Some(arguments.case.as_str());
+    let (case, record) = measured(name, &arguments.folder, &arguments.how, session)?;
+    let before = baseline.as_ref().map(|of| of.before(&record)).transpose()?.flatten();
     // To look whether it is complete is no verdict, but one that diverged is not complete.
     if arguments.check && record.status == Status::Completed {
         output::say("complete: the submission has all required entries; nothing was recorded");
@@ -193,15 +216,26 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
     };
     let index = GateIndex::of(case);
     let run = suite::submitted(&index, record);
-    let (text, exit) = submitted::verdict(&index, &run, arguments.all);
+    let (mut text, mut exit) = submitted::verdict(&index, &run, arguments.all);
     let verdicts = SubmissionVerdicts::of(case, &run, false);
-    let verdicts = verdicts.ok_or_else(|| Failure::bug("a submission without its code"))?;
+    let mut verdicts = verdicts.ok_or_else(|| Failure::bug("a submission without its code"))?;
+    let changes = before.map(|before| {
+        let scales = Scales::new(&index, &verdicts.judged);
+        scales.changes(&before.metrics, &verdicts.metrics)
+    });
+    if let Some(baseline) = &baseline {
+        exit = baseline.exit(changes.as_deref().unwrap_or_default(), exit);
+        text += &changes.as_deref().map_or(String::new(), |changes| baseline.in_words(changes));
+    }
+    verdicts.baseline = changes;
     judged::write_junit_of_submission(&verdicts, arguments.junit.as_deref())?;
+    let kept = baseline.as_ref().map(|of| of.update(&run.record)).transpose()?.flatten();
     match arguments.json {
         true => output::print_whole(&judged::json_of_submission(&verdicts)?)?,
         false => output::print(&text)?,
     }
     output::say(&said);
+    kept.iter().for_each(|kept| output::say(kept));
     Ok(exit)
 }
 
@@ -361,9 +395,9 @@ pub fn relate(
 fn problem(
     case: &dyn Case,
     entry: &Entry,
-    arguments: &arguments::Submit,
+    how: &arguments::Submission,
 ) -> Result<ExportedProblem, Failure> {
-    let is_given = arguments.variant.is_some() || !arguments.set.is_empty();
+    let is_given = how.variant.is_some() || !how.set.is_empty();
     let spec: RunSpec = match &entry.asked {
         Some(_) if is_given => {
             let words = "the folder has a problem.json, which states variant and settings; leave out \
@@ -377,14 +411,14 @@ fn problem(
         }
         Some(asked) => spec_of(case, asked)?,
         None => {
-            let variant = arguments.variant.as_deref().unwrap_or(case.recommended().variant);
-            case::spec(case, variant, &arguments.set)?
+            let variant = how.variant.as_deref().unwrap_or(case.recommended().variant);
+            case::spec(case, variant, &how.set)?
         }
     };
     let sealed = entry.asked.as_ref().and_then(|asked| asked.sealed.as_ref());
     let check = |sealed| challenge::check(case, sealed, &entry.method, &spec);
     sealed.map_or(Ok(()), check).map_err(Failure::usage)?;
-    let mut problem = ExportedProblem::seen(case, spec, None, arguments.allow_long)?;
+    let mut problem = ExportedProblem::seen(case, spec, None, how.allow_long)?;
     if let Some(sealed) = sealed {
         problem = problem.sealed(case, sealed.clone());
     }

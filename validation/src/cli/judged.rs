@@ -18,8 +18,9 @@ use touchstone_report::Counts;
 
 use super::comparisons::{self, ComparisonVerdict};
 use super::{
-    Failure,
+    Failure, baseline,
     junit::{self, Tested},
+    metrics::{MetricChange, Metrics},
     output,
 };
 
@@ -126,6 +127,12 @@ pub struct SubmissionVerdicts {
     pub judged: Vec<Judged>,
     /// gates that do not apply, and why
     pub not_applicable: BTreeMap<String, String>,
+    /// all metrics; empty of a record that the program contains
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub metrics: Metrics,
+    /// comparison with the baseline of the code, if there is one
+    #[serde(default, skip_serializing_if = "Option::is_none", skip_deserializing)]
+    pub baseline: Option<Vec<MetricChange>>,
 }
 
 impl SubmissionVerdicts {
@@ -142,7 +149,16 @@ impl SubmissionVerdicts {
             status: run.record.status.clone(),
             judged: apply.into_iter().cloned().collect(),
             not_applicable: others.into_iter().map(|(id, why)| (id.into(), why)).collect(),
+            metrics: if embedded { Metrics::new() } else { run.record.metrics.clone() },
+            baseline: None,
         })
+    }
+
+    /// The parts that a new version of a code keeps: code, scheme, division and problem.
+    pub fn name(&self) -> String {
+        let by = &self.submission;
+        let sealed = by.seed.map_or(String::new(), |seed| format!(", sealed by seed {seed}"));
+        format!("{}, {} ({}) of {}{sealed}", by.code, by.scheme, by.division, self.problem())
     }
 
     /// The problem in words.
@@ -326,9 +342,10 @@ const MOST_SHOWN: usize = 20;
 /// A test case a gate, by case, and a suite for each run of another code in the store. Failing gates are
 /// failures; a limitation, an expected failure and a gate that does not apply are skipped, with the reason.
 fn junit(suite: &Suite) -> String {
+    let none = BTreeMap::new();
     junit::document(suite.cases.iter().flat_map(|results| {
         let judged = results.judged().map(|of| of.judged);
-        let own = testsuite(results.case.name(), judged, &BTreeMap::new());
+        let own = junit::suite(results.case.name(), &tests(judged, &none));
         let others = results.runs.submissions.iter();
         let others = others.filter_map(|run| SubmissionVerdicts::of(results.case, run, false));
         [own].into_iter().chain(others.map(|of| submission_testsuite(&of)))
@@ -338,15 +355,16 @@ fn junit(suite: &Suite) -> String {
 /// The suite of a run of another code.
 fn submission_testsuite(of: &SubmissionVerdicts) -> String {
     let name = format!("{} by {}", of.problem(), of.submission);
-    testsuite(&name, of.judged.iter(), &of.not_applicable)
+    let mut tests = tests(of.judged.iter(), &of.not_applicable);
+    tests.extend(of.baseline.as_deref().map(|changes| ("baseline", baseline::tested(changes))));
+    junit::suite(&name, &tests)
 }
 
 /// Judgements as test cases, and gates that are skipped, each with the reason.
-fn testsuite<'a>(
-    name: &str,
+fn tests<'a>(
     judged: impl Iterator<Item = &'a Judged>,
-    skipped: &BTreeMap<String, String>,
-) -> String {
+    skipped: &'a BTreeMap<String, String>,
+) -> Vec<(&'a str, Tested)> {
     let of_gate = |Judged { gate, judgement, .. }: &Judged, words: &str| {
         let message = format!("{} {}; {words}", value(judgement), gate.bounds());
         match judgement.verdict {
@@ -359,5 +377,5 @@ fn testsuite<'a>(
         judged.map(|judged| (&*judged.gate.id, of_gate(judged, &judged.words()))).collect();
     let skip = |why: &String| Tested::Skipped(format!("not applicable: {why}"));
     tests.extend(skipped.iter().map(|(id, why)| (&**id, skip(why))));
-    junit::suite(name, &tests)
+    tests
 }

@@ -13,6 +13,7 @@
 //! Results go to standard output; progress, estimates and messages go to standard error.
 
 mod arguments;
+mod baseline;
 mod checkpoint;
 mod compare;
 mod comparisons;
@@ -24,6 +25,7 @@ mod judged;
 mod junit;
 mod list;
 mod man;
+mod metrics;
 mod output;
 mod partial;
 mod plan;

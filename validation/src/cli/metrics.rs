@@ -1,0 +1,224 @@
+//! Metrics of two runs of one problem, and which of them became worse.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::mem::discriminant;
+
+use serde::Serialize;
+use touchstone_base::{gate::Bound, record::Metric};
+use touchstone_harness::{gates::GateIndex, runs::Judged};
+
+use super::output;
+
+/// Metrics of a run by name.
+pub type Metrics = BTreeMap<String, Metric>;
+
+/// Share of the scale of a metric by which two values may differ and count as equal. The scale is that of the
+/// bound of the gate that judges the metric, see [`Bound::scale`], or else the larger of the two values. One
+/// percent is less than any bound allows, and more than rounding changes.
+pub const SHARE: f64 = 0.01;
+
+/// Dimensionless metrics are divided by a scale of the problem: differences below this come from rounding.
+const ROUND_OFF: f64 = 1e-12;
+
+/// How a metric changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Change {
+    /// by no more than its resolution
+    Same,
+    /// further inside the bounds of its gates
+    Better,
+    /// it was not there
+    New,
+    /// no gate states which direction is better
+    Changed,
+    /// further outside the bounds of its gates, or not finite any more
+    Worse,
+    /// it is not there any more, or has another unit or formula
+    Gone,
+}
+
+impl Change {
+    /// Does it break the promise that nothing became worse?
+    pub fn is_failure(self) -> bool {
+        matches!(self, Self::Changed | Self::Worse | Self::Gone)
+    }
+
+    fn in_words(self, is_there: bool) -> &'static str {
+        match self {
+            Self::Same => "is equal",
+            Self::Better => "is better",
+            Self::New => "is new",
+            Self::Changed => "changed",
+            Self::Worse => "is worse",
+            Self::Gone if is_there => "has another unit or formula",
+            Self::Gone => "is gone",
+        }
+    }
+}
+
+/// A metric of two runs.
+#[derive(Clone, Debug, Serialize)]
+pub struct MetricChange {
+    /// its name
+    pub metric: String,
+    /// its unit
+    pub unit: String,
+    /// the value of the first run, if it has one
+    #[serde(with = "touchstone_base::number::option")]
+    pub before: Option<f64>,
+    /// the value of the second run, if it has one
+    #[serde(with = "touchstone_base::number::option")]
+    pub now: Option<f64>,
+    /// the largest difference that counts as none
+    #[serde(with = "touchstone_base::number")]
+    pub resolution: f64,
+    /// does a gate of these settings read the metric? Then the resolution is a share of its bound
+    pub has_gate: bool,
+    /// how it changed
+    pub change: Change,
+}
+
+impl MetricChange {
+    /// The line of a message: metric, value before, value now, resolution.
+    pub fn in_words(&self) -> String {
+        let Self { metric, unit, before, now, resolution, .. } = self;
+        let unit = if unit == "-" { String::new() } else { format!(" {unit}") };
+        let value =
+            |of: &Option<f64>| of.map_or("not measured".into(), |of| format!("{of:?}{unit}"));
+        let (before, now) = (value(before), value(now));
+        let resolution = touchstone_report::sig(*resolution, 3);
+        let (change, of) = (self.change.in_words(self.now.is_some()), self.scale());
+        format!(
+            "{metric} {change}: {before} before, {now} now, resolution {resolution}{unit} (1 % of the {of})"
+        )
+    }
+
+    /// The number of which the resolution is a share.
+    fn scale(&self) -> &'static str {
+        if self.has_gate { "bound" } else { "value" }
+    }
+
+    fn row(&self) -> Vec<String> {
+        let number = |of: Option<f64>| of.map_or("-".into(), |of| touchstone_report::sig(of, 5));
+        let difference = self.before.zip(self.now).map(|(before, now)| now - before);
+        let change = self.change.in_words(self.now.is_some()).to_string();
+        vec![
+            self.metric.clone(),
+            self.unit.clone(),
+            number(self.before),
+            number(self.now),
+            number(difference),
+            number(Some(self.resolution)),
+            self.scale().into(),
+            change,
+        ]
+    }
+}
+
+/// Metrics as a table.
+pub fn table(all: &[MetricChange]) -> String {
+    let heads = ["metric", "unit", "before", "now", "difference", "resolution", "1 % of", "change"];
+    output::table(&heads, all.iter().map(MetricChange::row))
+}
+
+/// Scale and direction of the metrics of a case.
+pub struct Scales {
+    /// The bound of the gate that judges a metric of this run.
+    bounds: BTreeMap<String, Bound>,
+    /// Bounds of gates of the case, by the name of their metric without its mark (`l2` of `l2@0.1`).
+    of_case: BTreeMap<String, Vec<Bound>>,
+}
+
+impl Scales {
+    /// Of a run that these gates judge.
+    pub fn new(index: &GateIndex, judged: &[Judged]) -> Self {
+        let mut of_case = BTreeMap::<String, Vec<Bound>>::new();
+        let gates = index.judged().iter().flat_map(|planned| &planned.gates);
+        for gate in gates.filter(|gate| !gate.control) {
+            of_case.entry(unmarked(&gate.metric).into()).or_default().push(gate.bound);
+        }
+        let bounds = judged.iter().map(|of| (of.gate.metric.clone(), of.gate.bound)).collect();
+        Self { bounds, of_case }
+    }
+
+    /// How far a value is on the worse side; none if no gate states which side this is. A metric that no gate
+    /// of these settings reads has the direction of one-sided gates of the case, if all have the same.
+    fn badness(&self, metric: &str, value: f64) -> Option<f64> {
+        let of_case = || {
+            let is_one_sided = |of: &&Bound| matches!(of, Bound::Below(_) | Bound::Above(_));
+            let mut all = self.of_case.get(unmarked(metric))?.iter().filter(is_one_sided);
+            let first = *all.next()?;
+            all.all(|of| discriminant(of) == discriminant(&first)).then_some(first)
+        };
+        match self.bounds.get(metric).copied().or_else(of_case)? {
+            Bound::Below(_) => Some(value),
+            Bound::Above(_) => Some(-value),
+            Bound::Within(low, high) => Some((value - 0.5 * (low + high)).abs()),
+            Bound::Equals(expected) => Some((value - expected).abs()),
+        }
+    }
+
+    fn change(&self, metric: &str, before: f64, now: f64, resolution: f64) -> Change {
+        match (before.is_finite(), now.is_finite()) {
+            (false, false) => return Change::Same,
+            (false, true) => return Change::Better,
+            (true, false) => return Change::Worse,
+            (true, true) if (now - before).abs() <= resolution => return Change::Same,
+            (true, true) => {}
+        }
+        let badness = |value: f64| self.badness(metric, value);
+        match badness(before).zip(badness(now)) {
+            None => Change::Changed,
+            Some((before, now)) if now - before > resolution => Change::Worse,
+            Some((before, now)) if before - now > resolution => Change::Better,
+            Some(_) => Change::Same,
+        }
+    }
+
+    /// All metrics of two runs, by name.
+    pub fn changes(&self, before: &Metrics, now: &Metrics) -> Vec<MetricChange> {
+        let names = before.keys().chain(now.keys()).collect::<BTreeSet<_>>();
+        let one = |metric: &String| {
+            let (was, is) = (before.get(metric), now.get(metric));
+            let of = was.or(is)?;
+            let [from, to] = [was, is].map(|of| of.map(|of| of.value));
+            let bound = self.bounds.get(metric);
+            let resolution = resolution(bound, &of.unit, [from, to]);
+            let change = match (was, is) {
+                (Some(was), Some(is)) if (&was.unit, &was.formula) == (&is.unit, &is.formula) => {
+                    self.change(metric, was.value, is.value, resolution)
+                }
+                (None, _) => Change::New,
+                _ => Change::Gone,
+            };
+            let (metric, unit) = (metric.clone(), of.unit.clone());
+            Some(MetricChange {
+                metric,
+                unit,
+                before: from,
+                now: to,
+                resolution,
+                has_gate: bound.is_some(),
+                change,
+            })
+        };
+        names.into_iter().filter_map(one).collect()
+    }
+}
+
+/// The name of a metric without the time or place that marks it.
+fn unmarked(metric: &str) -> &str {
+    metric.split_once('@').map_or(metric, |(name, _)| name)
+}
+
+/// The largest difference of two values that counts as none.
+fn resolution(bound: Option<&Bound>, unit: &str, values: [Option<f64>; 2]) -> f64 {
+    let largest = values
+        .into_iter()
+        .flatten()
+        .filter(|of| of.is_finite())
+        .fold(0.0, |most: f64, of| most.max(of.abs()));
+    let share = SHARE * bound.map_or(largest, |bound| bound.scale());
+    if unit == "-" { share.max(ROUND_OFF) } else { share }
+}
