@@ -251,6 +251,10 @@ fn documents() -> Vec<(&'static str, Value)> {
     assert!(verdicts["counts"]["fail"].as_u64() > Some(0));
     // The smaller document is as good, and is validated often.
     verdicts["runs"].as_array_mut().unwrap().dedup_by_key(|run| run["variant"].clone());
+    of("export couette --set rows=8 --set end=0.05 --out own --solve");
+    of("submit couette own --baseline baseline.json --update-baseline");
+    let submission = parsed(&of("submit couette own --baseline baseline.json --json"));
+    verdicts["submissions"].as_array_mut().unwrap().push(submission);
     let records = records.into_iter().map(|record| ("record", record));
     let problems = problems.into_iter().map(|problem| ("problem", problem));
     records.chain(problems).chain([("verdicts", verdicts)]).collect()
