@@ -351,6 +351,7 @@ fn bounds_of_rings() -> Vec<(&'static str, Bound, &'static str)> {
         ("height_max", Bound::Within(8.0, 12.0), round),
         ("width_min", Bound::Within(2.0, 8.0), round),
         ("v_c_rms", Bound::Below(0.059), "less than the speed itself"),
+        ("volume_least", Bound::Within(0.5, 1.0), "a body of twice its density has diverged"),
     ]);
     bounds
 }

@@ -20,7 +20,7 @@ use super::{
     metrics::{
         ContactPhase, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM,
         PHASES, PIECES_MOST, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT,
-        WIDTH_MIN, phase,
+        VOLUME_LEAST, WIDTH_MIN, phase,
     },
     reference,
 };
@@ -87,6 +87,12 @@ fn energies_of(
     known.map_or_else(of_points, each)
 }
 
+/// The least volume of a particle over its volume at the start.
+fn least_volume(s: &RingSettings, now: &Snapshot<Symmetric>) -> Result<f64, Absent> {
+    let density = now.density()?;
+    Ok(s.rho / largest(now.stored().map(|p| density.of(&p))))
+}
+
 /// Pieces of both rings, and the fewest holes of one.
 fn count(s: &RingSettings, particles: &[Point]) -> [f64; 2] {
     let least_hole = Topology::least_hole_of_ring(s.inner, s.outer);
@@ -117,12 +123,16 @@ fn put_contact(phases: &[ContactPhase], restitution: f64, record: &mut Record) {
 pub struct RingHistory {
     /// Neighbours of each ring at the start.
     bonds: [Bonds; 2],
+    /// Whether neighbours stay neighbours, as in a total Lagrangian body, which cannot tear.
+    stays: bool,
     next: f64,
     /// t \[L/c0\], place \[L\] and velocity \[c0\] of the centre, width and height \[L\], pieces, holes, and
     /// the longest distance of neighbours \[dx\].
     rows: Vec<[f64; COLUMNS]>,
     /// Kinetic, compression and shear energy of each row \[J/m\].
     energies: Series<3>,
+    /// Least volume of a particle over its volume at the start, of each row.
+    volumes: Series<1>,
 }
 
 const COLUMNS: usize = 8;
@@ -149,15 +159,18 @@ impl RingHistory {
     pub fn new(s: &RingSettings, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> Self {
         let all = along_flight(s, scene.all());
         let bonds = halves(&all).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * s.dx()));
-        let (rows, energies) = (Vec::new(), Series::default());
-        let mut this = Self { bonds, next: s.end() / SAMPLES, rows, energies };
-        this.add(s, (0.0, &all), energies_of(s, ElasticEnergy::known(start), &all, scene));
+        let (known, next) = (ElasticEnergy::known(start), s.end() / SAMPLES);
+        let (rows, energies, volumes) = (Vec::new(), Series::default(), Series::default());
+        let mut this = Self { bonds, stays: known.is_some(), next, rows, energies, volumes };
+        this.volumes.push([least_volume(s, scene)]);
+        this.add(s, (0.0, &all), energies_of(s, known, &all, scene));
         this
     }
 
     /// Takes a sample.
     pub fn sample(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>) {
         let all = along_flight(s, now.all());
+        self.volumes.push([least_volume(s, now)]);
         self.add(s, (now.time(), &all), energies_of(s, ElasticEnergy::known(now), &all, now));
     }
 
@@ -227,11 +240,14 @@ impl RingHistory {
         // A hole narrower than a disc is not detected at the start either.
         if is_whole([first[PIECES], first[HOLES]]) {
             record.put(HOLES_LEAST, least(HOLES));
-            if let Some(torn) = self.rows.iter().find(|row| !is_whole([row[PIECES], row[HOLES]])) {
+            let torn = self.rows.iter().find(|row| !is_whole([row[PIECES], row[HOLES]]));
+            if let Some(torn) = torn.filter(|_| !self.stays) {
                 record.put(TORN_AT, torn[0]);
             }
         }
         record.put(STRETCH_MOST, largest(column(STRETCH)));
+        let smallest = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);
+        record.put_or_absent(VOLUME_LEAST, self.volumes.column(0).map(smallest));
         record.put(WIDTH_MIN, least(3));
         record.put(HEIGHT_MAX, most(4));
         let energy = match s.speed > 0.0 {

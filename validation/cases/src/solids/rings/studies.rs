@@ -198,7 +198,7 @@ fn card(accuracy: &Accuracy) -> Card {
             setting: "speed",
             words: ["", " c0 each"],
             has_broken,
-            sign: "a ring is torn or has no hole left",
+            sign: "a ring is torn",
         },
     }
 }
@@ -324,7 +324,8 @@ fn map(tier: Tier, table: &Table) -> Map {
     };
     let outcomes = [
         ("whole", Colour::GREEN),
-        ("torn, or pressed flat without a hole", Colour::YELLOW),
+        ("pressed flat", Colour::SKY),
+        ("torn", Colour::YELLOW),
         ("in pieces", Colour::ORANGE),
         ("diverged", Colour::VERMILLION),
     ];
@@ -334,8 +335,10 @@ fn map(tier: Tier, table: &Table) -> Map {
         caption: "Do rings stay whole? Outcome of a collision over the speed of each ring, for the \
                   recommended variant and the paper's, without artificial stress (ξ = 0) and with it, which \
                   is to prevent fracture (claim M2); an empty cell was not run. Whole rings show the \
-                  coefficient of restitution e, or that they still touch at the end; torn rings (cut \
-                  through once) the time of the tear in L/c0, others the largest number of pieces."
+                  coefficient of restitution e, or that they still touch at the end, as do rings whose hole closes \
+                  while their neighbours stay (pressed flat: a total Lagrangian body cannot tear); torn \
+                  rings (cut through once) the time of the tear in L/c0, others the largest number of \
+                  pieces."
             .into(),
         x: "speed of each ring [c0]".into(),
         y: "variant".into(),
@@ -351,6 +354,8 @@ fn map(tier: Tier, table: &Table) -> Map {
 enum Fate {
     /// Each is one piece with a hole, at every count.
     Whole,
+    /// A ring has no hole for a while, or gaps between neighbours that stay.
+    Flat,
     /// A ring is cut once, like a C, or pressed flat, and so has no hole; it is still one piece.
     Torn,
     /// There are more pieces than rings.
@@ -360,11 +365,15 @@ enum Fate {
 }
 
 fn fate(record: &Record) -> Fate {
-    match (record.value(PIECES_MOST), record.value(HOLES_LEAST)) {
-        (None, _) => Fate::Diverged,
-        (Some(pieces), _) if pieces > 2.0 => Fate::InPieces,
-        (_, Some(holes)) if holes < 1.0 => Fate::Torn,
-        _ => Fate::Whole,
+    let [pieces, holes, torn] =
+        [PIECES_MOST, HOLES_LEAST, TORN_AT].map(|metric| record.value(metric));
+    let is_apart = pieces.is_some_and(|pieces| pieces > 2.0);
+    match (pieces, holes, torn) {
+        (None, ..) => Fate::Diverged,
+        (_, Some(holes), None) if holes < 1.0 || is_apart => Fate::Flat,
+        _ if is_apart => Fate::InPieces,
+        (.., None) => Fate::Whole,
+        _ => Fate::Torn,
     }
 }
 
@@ -374,7 +383,7 @@ fn has_broken(record: &Record) -> Option<bool> {
         record.run.settings["xi"].as_f64() == Some(0.0) && record.run.variant == "seed";
     // A run that measures the headline alone does not count pieces.
     let is_counted = record.value(PIECES_MOST).is_some() || record.status != Status::Completed;
-    (is_counted && !is_control).then(|| fate(record) != Fate::Whole)
+    (is_counted && !is_control).then(|| fate(record) > Fate::Flat)
 }
 
 /// The worst outcome of some runs, and a number for it.
@@ -387,8 +396,8 @@ fn outcome(records: &[&Record]) -> (usize, String) {
     let number = |metric| record.value(metric).unwrap_or(f64::NAN);
     let text = match worst {
         _ if records.len() > 1 => format!("{alike} of {}", records.len()),
-        Fate::Whole if record.value(RESTITUTION).is_none() => "in touch".into(),
-        Fate::Whole => format!("e = {}", sig(number(RESTITUTION), 2)),
+        Fate::Whole | Fate::Flat if record.value(RESTITUTION).is_none() => "in touch".into(),
+        Fate::Whole | Fate::Flat => format!("e = {}", sig(number(RESTITUTION), 2)),
         Fate::Torn => format!("at {}", sig(number(TORN_AT), 2)),
         Fate::InPieces => format!("{} pieces", number(PIECES_MOST)),
         Fate::Diverged => "diverged".into(),
