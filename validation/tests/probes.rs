@@ -198,9 +198,9 @@ fn an_approximate_restart_fails() {
     assert_eq!((ids(&all, "fail"), exit), (vec!["restart"], 1), "{all:#?}");
     let deaf = r#"sed -i 's/"stop_after"/"x"/' "$1/problem.json"; $TOUCHSTONE solve "$1""#;
     assert_eq!(only(deaf).1, 2, "it does not stop, so nothing can be said");
-    let deaf_in_another_format = r#"rm -f "$1"/*.npz
+    let deaf_in_another_format = r#"rm -f "$1"/*.vtu
         sed -i 's/"stop_after"/"deaf"/; s/"resume": true/"y": 1/' "$1/problem.json"; $TOUCHSTONE solve "$1"
-        if grep -q '"deaf"' "$1/problem.json"; then mv "$1/results.csv" "$1/results.npz"; fi"#;
+        if grep -q '"deaf"' "$1/problem.json"; then mv "$1/results.csv" "$1/results.vtu"; fi"#;
     assert_eq!(only(deaf_in_another_format).1, 2, "results of any name are looked at");
 }
 

@@ -203,3 +203,16 @@ fn another_version_or_truth_value_draws_another_sealed_problem() {
         assert!(drawn.windows(2).any(|two| two[0] != two[1]), "{drawn:?}");
     }
 }
+
+/// Other formats are converted by the module of Python, and the message says so.
+#[test]
+fn a_format_that_the_module_converts_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    own(folder.path());
+    for name in ["a.npz", "a.hdf5", "a.pvd", "a.vtk", "a.vtu.gz"] {
+        let error =
+            submitted(folder.path(), &[(name.into(), "x".into())]).err().unwrap_or_default();
+        let words = format!("but {name}: convert it with touchstone_sph.convert");
+        assert!(error.contains(&words), "{name}: {error}");
+    }
+}

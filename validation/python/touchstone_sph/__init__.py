@@ -14,6 +14,7 @@ All numbers are in SI units and in two dimensions; masses are per unit depth. Th
 comes with this package, measures and judges: verdicts are those of its commands.
 """
 
+from ._convert import convert
 from ._program import Refused
 from ._questions import Answer, Criterion, NotApplicable, main, probe, questions, summary
 from ._problem import Problem, Quantity, Wall, load, problem, problems
@@ -30,6 +31,7 @@ __all__ = [
     "Refused",
     "Verdict",
     "Wall",
+    "convert",
     "judge",
     "load",
     "main",

@@ -391,7 +391,7 @@ pub struct Earlier {
 pub struct Submit {
     /// Name of the case
     pub case: String,
-    /// The folder of the submission: method.json, system.json, results.csv (or *.dump, *.npz, *.vtu, *.vtp),
+    /// The folder of the submission: method.json, system.json, results.csv (or *.dump, *.vtu, *.vtp),
     /// and the problem.json that `export` wrote
     pub folder: PathBuf,
     /// Folder for the record, as in `verify` and `report`

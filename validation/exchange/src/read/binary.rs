@@ -38,23 +38,6 @@ impl NumberFormat {
         bits.filter(is_known).map(|bits| Self { of, width: bits / 8, is_big })
     }
 
-    /// By the name of NumPy, as in `<f8`.
-    pub fn of_numpy(name: &str) -> Result<Self, String> {
-        let known = || {
-            let (order, kind) = name.split_at_checked(1)?;
-            let (kind, bytes) = kind.split_at_checked(1)?;
-            let of = match kind {
-                "f" => Of::Float,
-                "i" => Of::Signed,
-                "u" => Of::Unsigned,
-                _ => return None,
-            };
-            let bits = bytes.parse().ok().and_then(|bytes: usize| bytes.checked_mul(8));
-            ["<", ">", "|", "="].contains(&order).then(|| Self::new(of, bits, order == ">"))?
-        };
-        known().ok_or_else(|| unknown(name))
-    }
-
     /// By the name of ParaView, as in `Float64`.
     pub fn of_vtk(name: &str, is_big: bool) -> Result<Self, String> {
         let kinds = [("Float", Of::Float), ("Int", Of::Signed), ("UInt", Of::Unsigned)];

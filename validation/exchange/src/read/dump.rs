@@ -87,7 +87,10 @@ impl Head {
             "UNITS" => {
                 let stated = lines.next().unwrap_or_default().trim();
                 if !UNITS.contains(&stated) {
-                    let what = format!("units are {:?}; expected si, or lj", short(stated));
+                    let what = format!(
+                        "units are {:?}; expected si, or lj; touchstone_sph.convert reads others",
+                        short(stated)
+                    );
                     return Err((1, what));
                 }
             }

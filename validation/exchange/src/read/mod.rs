@@ -1,15 +1,11 @@
 //! Reads particles at times from the formats of other codes. Each reader returns tables with the same
 //! columns, from which frames are made; a flaw states its place.
 
-#[cfg(any(feature = "npz", feature = "vtk"))]
+#[cfg(feature = "vtk")]
 mod binary;
 mod columns;
 pub mod curve;
 mod dump;
-#[cfg(feature = "hdf5")]
-mod hdf5;
-#[cfg(feature = "npz")]
-mod npz;
 mod table;
 #[cfg(feature = "vtk")]
 mod vtk;
@@ -148,7 +144,9 @@ impl Results {
 }
 
 /// Extensions of result files other than tables.
-const ENDINGS: [&str; 6] = ["dump", "npz", "vtu", "vtp", "h5", "hdf5"];
+const ENDINGS: [&str; 3] = ["dump", "vtu", "vtp"];
+/// Extensions of files that the module of Python converts.
+const CONVERTED: [&str; 6] = ["pvd", "vtk", "npz", "h5", "hdf5", "gz"];
 
 /// Reads all results of a folder: `results.csv`, or files with one of the other endings in the order of
 /// their names.
@@ -162,7 +160,10 @@ pub fn read(folder: &Path, renamed: &Renamed) -> Result<Results, Vec<Flaw>> {
     names.sort_by_key(|name| (number_in(name), name.clone()));
     if names.is_empty() {
         let endings = ENDINGS.join(", *.");
-        return Err(refused(format!("there are no results; expected {RESULTS} or *.{endings}")));
+        return Err(refused(format!(
+            "there are no results{}; expected {RESULTS} or *.{endings}",
+            convertible(folder)
+        )));
     }
     let mut kinds: Vec<&str> = names.iter().map(|name| ending(name)).collect();
     kinds.dedup();
@@ -209,6 +210,19 @@ pub fn names(folder: &Path) -> std::io::Result<Vec<String>> {
     Ok(names.filter(|name| is_of_results(name)).collect())
 }
 
+/// Words on a file of another format, if there is one.
+fn convertible(folder: &Path) -> String {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    let found = names.filter(|name| CONVERTED.contains(&ending(name))).min();
+    found.map_or(String::new(), |name| {
+        format!(
+            " of a format that this program reads, but {}: convert it with touchstone_sph.convert",
+            short(&name)
+        )
+    })
+}
+
 fn is_of_results(name: &str) -> bool {
     name == RESULTS || ENDINGS.contains(&ending(name))
 }
@@ -229,10 +243,6 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
         "dump" => dump::rows(name, &text()?, renamed),
         #[cfg(feature = "vtk")]
         "vtu" | "vtp" => Ok(vec![vtk::rows(name, bytes()?, renamed)?]),
-        #[cfg(feature = "npz")]
-        "npz" => Ok(vec![npz::rows(name, &bytes()?, renamed)?]),
-        #[cfg(feature = "hdf5")]
-        "h5" | "hdf5" => hdf5::rows(name, &path, renamed),
         other => {
             let what = format!("this build does not read .{other}; its feature was left out");
             Err(vec![Flaw::of(name, what)])
@@ -242,7 +252,7 @@ fn rows(folder: &Path, name: &str, renamed: &Renamed) -> Result<Vec<Rows>, Vec<F
 
 /// Rows of a file that holds one array a column, read where it has this place among the heads. `t` may be one
 /// number for all.
-#[cfg(any(feature = "hdf5", feature = "npz", feature = "vtk"))]
+#[cfg(feature = "vtk")]
 fn of_arrays(
     file: &str,
     heads: &columns::Heads,
