@@ -4,7 +4,8 @@ use super::{Common, In, Kernel, Lane, Pair, PairSum, Rate, Term, Vector2};
 use crate::particles::SweptParticle;
 
 /// dvᵢ/dt += ζ Σⱼ mⱼ (Dᵢ/ρᵢ² + Dⱼ/ρⱼ²) ∇ᵢWᵢⱼ \[m/s²\] with the divergence Dᵢ = −Σⱼ mⱼ vᵢⱼ·∇ᵢWᵢⱼ/ρᵢ \[1/s\] of
-/// the continuity equation (3): a bulk viscosity ζ = α₂ ρ₀ c₀ h (Sun, Pilloton, Antuono & Colagrossi 2023; the
+/// the continuity equation (3): a bulk viscosity ζ = α₂ ρ₀ c₀ h (Sun, Pilloton, Antuono & Colagrossi
+/// 2023; the
 /// weights of pairs *inferred*).
 ///
 /// A wave of sound with wave number k decays as exp(−½ α₂ c₀ h k² t). A motion without divergence is left

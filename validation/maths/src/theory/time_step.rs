@@ -5,7 +5,8 @@
 //!
 //! p' = -ω ĝ·v - γ_ρ p,  v' = ω ĝ p - Γ v,
 //!
-//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k) + α₂ c₀ h g gᵀ, γ_ρ = δ h c₀ λ₀(k), symbols from [`super::lattice`].
+//! ω = c₀|g(k)|, ĝ = g/|g|, Γ = ν λ(k) + α c₀ h P(k) + α₂ c₀ h g gᵀ, γ_ρ = δ h c₀ λ₀(k), symbols from
+//! [`super::lattice`].
 //! The limit is the largest dt for which no k of the box grows. A periodic box of n × n particles has only
 //! the wave vectors 2π(i, j)/(n dx), so its limit is exact; an infinite lattice is the limit of large n.
 //! Moving, disordered or strongly compressed particles become unstable at smaller steps: see the notes of
@@ -531,7 +532,8 @@ mod tests {
         assert_rounds_to("excess", &["0.00", "0.28", "0.13", "0.04", "0.01"], &excess);
     }
 
-    /// With γ = α₂ ω² h/c₀ the limit (2 - γ dt) 2 ≥ (ω dt)² of the fastest wave is (c₀/h) dt = (α₂² + 4/ω²)^(1/2)
+    /// With γ = α₂ ω² h/c₀ the limit (2 - γ dt) 2 ≥ (ω dt)² of the fastest wave is (c₀/h) dt = (α₂² +
+    /// 4/ω²)^(1/2)
     /// - α₂ with ω in c₀/h. A shear wave is not damped.
     #[test]
     fn the_acoustic_damper_limits_the_step_by_the_square_of_the_symbol_of_the_gradient() {

@@ -8,10 +8,12 @@ touchstone_base::metrics! {
         "velocity of the centre of mass at the end/V, of rings that have touched and parted";
     PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";
     HOLES_LEAST = "holes_least" ["1"]
-        "least number of holes of a ring at any time, discs of 0.75 dx; 1 is whole, 0 is cut through or pressed \
+        "least number of holes of a ring at any time, discs of 0.75 dx; 1 is whole, 0 is cut through or \
+        pressed \
          flat";
     TORN_AT = "torn_at" ["L/c0"]
-        "first sample at which a ring has no hole or more than one piece; absent if none, and of bodies whose \
+        "first sample at which a ring has no hole or more than one piece; absent if none, and of bodies \
+        whose \
          neighbours stay, which are only pressed flat or stretched";
     VOLUME_LEAST = "volume_least" ["-"]
         "least volume of a particle at any time/at the start, the determinant of the deformation gradient; \

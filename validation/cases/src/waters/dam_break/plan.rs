@@ -271,7 +271,8 @@ fn tank_model(gates: &RunGates) -> Vec<Gate> {
 
 /// Gates on the ringing of the pressure.
 fn tank_rings(gates: &RunGates) -> Vec<Gate> {
-    let because = "Once the jet has struck, the pressure changes within 0.5 √(H/g) by 0.018 to 0.036 ρ g H in \
+    let because = "Once the jet has struck, the pressure changes within 0.5 √(H/g) by 0.018 to 0.036 ρ g \
+        H in \
                    the experiment and by 0.011 to 0.020 by volume of fluid, rms.";
     RINGING.map(|ringing| gates.reference(ringing, Bound::Below(0.04), because)).into()
 }

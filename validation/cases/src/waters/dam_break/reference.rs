@@ -158,10 +158,12 @@ const ARRIVED: f64 = 0.1;
 /// wave that it falls back into has not yet closed over air.
 pub const WINDOWS: [f64; 2] = [1.0, 2.5];
 
-/// Histories of pressure are compared during this time after the arrival \[(H/g)^(1/2)\]: by volume of fluid the
+/// Histories of pressure are compared during this time after the arrival \[(H/g)^(1/2)\]: by volume of
+/// fluid the
 /// arrival is known to 0.021.
 const HISTORY: [f64; 2] = [0.1, 2.5];
-/// The ringing is that of this time \[(H/g)^(1/2)\], after the first impact and before the jet closes over air,
+/// The ringing is that of this time \[(H/g)^(1/2)\], after the first impact and before the jet closes
+/// over air,
 /// about a mean over [`SMOOTH`].
 const RINGS: [f64; 2] = [3.2, 5.8];
 /// Four periods of the slowest oscillation of 30 spacings \[(H/g)^(1/2)\].
@@ -456,7 +458,8 @@ mod tests {
         is(metric(FRONT.rms.into()), 0.0, 1e-3);
     }
 
-    /// A sine on a parabola: the mean over 0.5 of t² is t² + 0.5²/12, and an oscillation at 12 fits it six times.
+    /// A sine on a parabola: the mean over 0.5 of t² is t² + 0.5²/12, and an oscillation at 12 fits it
+    /// six times.
     #[test]
     fn the_ringing_is_the_oscillation_about_the_slow_change_of_a_pressure() {
         let amplitude = 0.3;
