@@ -272,9 +272,9 @@ const PROBLEMS: [(&str, &str, &str); 25] = [
     ),
     (
         "dam_break --set n=8 --set width=0.6 --set height=0.3 --set tank=1.61 --set rim=2 --set end=1",
-        "H1_away H2_away H3_away H4_away arrival impulse_P1 impulse_P1_away impulse_P2 impulse_P2_away \
-         impulse_P3 impulse_P3_away impulse_P4 impulse_P4_away levels_rms levels_rms_shifted levels_shift \
-         peak_P1",
+        "H1_away H2_away H3_away H4_away P1_away P1_ringing P2_away P2_ringing P3_away P3_ringing P4_away \
+         P4_ringing arrival impulse_P1 impulse_P1_away impulse_P2 impulse_P2_away impulse_P3 impulse_P3_away \
+         impulse_P4 impulse_P4_away levels_rms levels_rms_shifted levels_shift peak_P1",
         "",
     ),
     ("rubber_rings --variant leapfrog --set spacing=0.5", "energy_lost", "energy_lost"),
