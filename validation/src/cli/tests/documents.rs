@@ -151,7 +151,7 @@ fn commands_in_documents_are_valid() {
 }
 
 /// Processor time of a run that a test of documents can make \[s\].
-const SHORT: f64 = 1.0;
+const SHORT: f64 = 2.0;
 
 /// The run of a case that a command makes, if it makes one.
 fn run_of(line: &str) -> Option<RunSpec> {
