@@ -83,7 +83,8 @@ const HAND_IN: &str = "A folder with these files:\n\n\
     - `system.json`: `{\"machine\": \"...\", \"threads\": 1, \"seconds\": 1.5, \"steps\": 1000, \
     \"interactions\": \"unknown\"}`. Each may be \"unknown\"; seconds are those of the time loop.\n\
     - `results.csv` with the columns `t[s],id,x[m],y[m],u[m/s],v[m/s],density[kg/m^3]`, sorted by t, every \
-    moving particle at each of the times below. Other formats: LAMMPS dump, `.vtu`, `.vtp`, and what `touchstone_sph.convert` reads.\n";
+    moving particle at each of the times below. Other formats: LAMMPS dump, `.vtu`, `.vtp`; \
+    `touchstone_sph.convert` reads more.\n";
 
 /// The requested run, as read from the document.
 #[derive(Debug, Clone, Deserialize)]

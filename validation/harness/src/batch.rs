@@ -36,8 +36,8 @@ fn timed_again_below(tier: Tier) -> f64 {
     }
 }
 
-/// The part of a run in the wall time of the batch \[s\], from its time on all its threads together: the whole
-/// time with repetitions if it is timed, otherwise its part of the time of all threads.
+/// The part of a run in the wall time of the batch \[s\], from its time on all its threads together: the
+/// whole time with repetitions if it is timed, otherwise its part of the time of all threads.
 fn of_batch(job: &Job, making: &BatchOptions, seconds: f64) -> f64 {
     match job.planned.timed {
         true if seconds < timed_again_below(making.tier) => REPETITIONS as f64 * seconds,
@@ -46,8 +46,9 @@ fn of_batch(job: &Job, making: &BatchOptions, seconds: f64) -> f64 {
     }
 }
 
-/// The runs that are made on all threads, one at a time, and the others, each the longest first. On one thread
-/// a run of the first kind would take longer than all runs together on all threads, which would wait for it.
+/// The runs that are made on all threads, one at a time, and the others, each the longest first. On one
+/// thread a run of the first kind would take longer than all runs together on all threads, which would wait
+/// for it.
 fn on_all_threads(mut jobs: Vec<&Job>, threads: usize) -> [Vec<&Job>; 2] {
     jobs.sort_by(|a, b| b.planned.seconds.total_cmp(&a.planned.seconds));
     let all: f64 = jobs.iter().map(|job| job.planned.seconds).sum();

@@ -16,8 +16,8 @@ use crate::{
 /// most of its ten or so runs diverge early or cover a short time.
 const SIMULATIONS: f64 = 3.0;
 
-/// Gives each job the time and the size that its run states before its first step. A run that is refused takes
-/// no time.
+/// Gives each job the time and the size that its run states before its first step. A run that is refused
+/// takes no time.
 pub fn estimate(jobs: &mut [Job], making: &BatchOptions) {
     jobs.par_iter_mut().filter(|_| !making.is_interrupted()).for_each(|job| {
         if let Some(size) = size(job, making.allow_long) {

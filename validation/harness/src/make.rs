@@ -1,7 +1,8 @@
 //! Makes the runs of a plan without stored records: first the runs that are not timed, in parallel and the
-//! longest first, each on all threads that would keep the others waiting; then the timed runs, one at a time while this program does nothing else, in rounds over all
-//! of them, so that a change of the machine's speed affects every variant alike. If a caller waits for the
-//! first complete case, one case is made in this way before all others.
+//! longest first, on all threads if the others would wait for it; then the timed runs, one at a time
+//! while this program does nothing else, in rounds over all of them, so that a change of the machine's speed
+//! affects every variant alike. If a caller waits for the first complete case, one case is made in this way
+//! before all others.
 
 use touchstone_base::{
     manifest::UNKNOWN,

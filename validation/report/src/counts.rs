@@ -131,8 +131,8 @@ mod tests {
         );
         assert_eq!(all.headline(), headline);
         let line = all.line().into_string();
-        let words = "2 gates pass · 1 gate fails · 2 known limitations, 1 of them unexplained · 3 runs diverged, 1 of them \
-                     unexpected";
+        let words = "2 gates pass · 1 gate fails · 2 known limitations, 1 of them unexplained · 3 runs \
+                     diverged, 1 of them unexpected";
         assert!(line.contains(words) && line.contains("class=\"verdict fail\""), "{line}");
         let good = Counts { gates: [2, 0, 0, 0], diverged: 1, ..Counts::default() };
         assert!(

@@ -397,8 +397,8 @@ pub struct Submit {
     /// Folder for the record, as in `verify` and `report`
     #[arg(long, value_name = "DIR", required_unless_present_any = ["check", "baseline"])]
     pub store: Option<PathBuf>,
-    /// Fail if a metric is worse than in this file, which --update-baseline wrote for an earlier version of the
-    /// code: by more than 1 % of the bound of its gate or, without a gate, of the larger value
+    /// Fail if a metric is worse than in this file, which --update-baseline wrote for an earlier version of
+    /// the code: by more than 1 % of the bound of its gate or, without a gate, of the larger value
     #[arg(long, value_name = "FILE", conflicts_with = "check")]
     pub baseline: Option<PathBuf>,
     /// Write the metrics of this submission into the file of --baseline, which may have earlier ones; changes
@@ -527,7 +527,8 @@ pub struct Report {
 
 #[derive(Debug, Args)]
 pub struct Compare {
-    /// The earlier report or store; or one submission: its folder, its record, or the output of `submit --json`
+    /// The earlier report or store; or one submission: its folder, its record, or the output of
+    /// `submit --json`
     pub before: PathBuf,
     /// The later one
     pub after: PathBuf,

@@ -98,8 +98,8 @@ fn verdicts(record: &Record, session: &Session) -> Option<SubmissionVerdicts> {
     SubmissionVerdicts::of(*case, &run, false)
 }
 
-/// The verdicts on one submission: in its folder, its record or the output of `submit --json`. None of a folder
-/// of something else.
+/// The verdicts on one submission: in its folder, its record or the output of `submit --json`. None of a
+/// folder of something else.
 ///
 /// # Errors
 /// If the submission is refused, or a file has none.
@@ -264,8 +264,8 @@ pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
         (Some(before), Some(after)) => return of_two([&before, &after], arguments, session),
         (None, None) => {}
         _ => {
-            let words = "one is a submission and the other is not; expected two submissions, or two reports or \
-                         stores";
+            let words = "one is a submission and the other is not; expected two submissions, or two reports \
+                         or stores";
             return Err(Failure::usage(words));
         }
     }

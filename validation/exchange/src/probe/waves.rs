@@ -22,8 +22,8 @@ pub fn shear() -> Question {
     Question {
         id: "shear-wave",
         text: "Does a shear wave decay as exp(-νk²t)?",
-        // The density is no power of ten, so that a dynamic viscosity in place of ν is a factor. An artificial
-        // viscosity α = 0.1 of approaching pairs adds α h c0/16 = 0.23 ν.
+        // The density is no power of ten, so that a dynamic viscosity in place of ν is a factor. An
+        // artificial viscosity α = 0.1 of approaching pairs adds α h c0/16 = 0.23 ν.
         poses: || {
             let set = ["n=32", "rho=1.5", "nu=0.001", "amplitude=1e-4", "span=0.2"];
             vec![Pose::of("shear_wave", "cubic-leapfrog", &set)]
