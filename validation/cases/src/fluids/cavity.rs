@@ -301,8 +301,8 @@ static RAMP: Cause = Cause::new(
 
 /// Why the return flow at Re 100 is too weak.
 static CORNERS: Cause = Cause::new(
-    "By the velocity of wall particles in the continuity equation 0.3 to 0.5 U dx flow through the corners \
-     of the lid, and shifting carries them back.",
+    "The continuity equation uses the velocity of wall particles: 0.3 to 0.5 U dx flow through the corners \
+     of the lid, which shifting carries back.",
     "A continuity equation for which the fluid slips along walls.",
 );
 
