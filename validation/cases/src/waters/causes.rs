@@ -47,11 +47,8 @@ pub static FREE_SLIP: Cause = Cause::new(
 
 /// Sound of an impact.
 pub static RINGS: Cause = Cause::new(
-    "The impact leaves sound between wall and surface: a quarter wave across a layer of 0.28 H, at 12.5 \
-    √(g/H) \
-     for c0 = 14 √(g H) with 30 and 60 spacings and not with twice this sound speed. Slower oscillations \
-     of 30 \
-     spacings do not depend on the sound speed and vanish with 60.",
+    "The impact leaves sound: a quarter wave across a layer of 0.28 H, at 12.5 √(g/H), which a doubled sound \
+     speed removes.",
     "An acoustic damper with h/dx 2 and more sound speed, as in `damped`.",
 );
 
@@ -62,10 +59,9 @@ pub static WIDE_KERNEL: Cause = Cause::new(
 );
 
 /// An acoustic damper where few particles touch a wall.
-pub static DAMPED_SPLASH: Cause = Cause::new(
-    "Unexplained. The acoustic damper acts on drops at a wall by a force that changes faster than its \
-    impulse is \
-     sampled, and a drop may be half a spacing inside the wall.",
+pub static DAMPED_SPLASH: Cause = Cause::unexplained(
+    "Perhaps the acoustic damper acts on drops inside a wall by a force that changes faster than its \
+     impulse is sampled.",
     "A wall that continues the divergence of the water.",
 );
 
