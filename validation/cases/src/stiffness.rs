@@ -59,8 +59,8 @@ pub const READING: &str = "Limits of the time step at default settings, each ove
     the stiffest mechanism; super-time-stepping removes the limit of viscosity. The slowest mechanism is \
     the slowest of the problem (waves, viscosity, motion, force, contact) that acts within the run, else \
     the run itself. *Slowest/stiffest* is the ratio of their limits, *steps/slowest* the number of steps \
-    over that which the slowest alone would need. *Sweeps* are the pair sweeps of the run, which count the \
-    stages of super-time-stepping.";
+    over that which the slowest alone would need. *Sweeps* are the pair sweeps for forces and rates, with \
+    the stages of super-time-stepping; sweeps of a damper or a corrected kernel before them are not counted.";
 
 /// The table of these rows.
 pub fn table(rows: &[StiffnessRow]) -> Table {
