@@ -165,7 +165,7 @@ def test_pytest_asks_one_question_a_test(pytester):
     )
     code.with_name("all_pairs.py").write_text(CODE.read_text("utf-8"), "utf-8")
     ended = pytester.runpytest_subprocess("--touchstone", "run.py", "-rs", "-k", "viscous-force or spin or mirrored")
-    ended.assert_outcomes(passed=1, failed=1, skipped=1, deselected=20)
+    ended.assert_outcomes(passed=1, failed=1, skipped=1, deselected=22)
     ended.stdout.fnmatch_lines(["*the viscous force is 0.500* times the stated one*", "*SKIPPED*no solids*"])
     ended = pytester.runpytest_subprocess("--touchstone", "nothing.py")
     ended.stderr.fnmatch_lines(["*there is no such file*"])
