@@ -119,9 +119,8 @@ fn recommended(suite: &Suite) -> Vec<String> {
                            twice that. *Order*: power of the spacing with which the error falls. *1/10 \
                            error*: factor in cost for a tenth of the error. *Pairs*: pair interactions. a: \
                            column width; c0: sound speed.";
-    const VERDICTS: &str = "A number links to its gate, a bound with a reason. A *known limitation* is \
-                            outside its bound and inside a wider one. *No break up to* states the largest \
-                            value that was run.";
+    const VERDICTS: &str = "A *known limitation* is outside its bound and inside a wider one. *None up to* \
+                            states the largest value that was run.";
     [best, WORDS.into(), NUMBERS.into(), VERDICTS.into()].into()
 }
 

@@ -34,7 +34,7 @@
   // All verdicts: search, filters and order, which the address keeps.
   var table = document.getElementById("gates");
   var rows = table ? Array.from(table.tBodies[0].rows) : [];
-  var most = 5;
+  var most = 3;
   var form = make("form", { class: "filters", "aria-label": "Filter the verdicts" });
   var found = make("p", { class: "found", role: "status" });
   var more = make("button", { type: "button", class: "more" });

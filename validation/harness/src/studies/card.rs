@@ -389,7 +389,7 @@ impl Answer<'_> {
             Some(Broken::NotFrom(low, high)) if low == high => {
                 Cell::text("–").because(format!("only {before}{}{after} was run", exact(low)))
             }
-            Some(Broken::NotFrom(_, high)) => link("no break up to ", high),
+            Some(Broken::NotFrom(_, high)) => link("none up to ", high),
             None => Cell::text("–").because("not tried"),
         }
     }
