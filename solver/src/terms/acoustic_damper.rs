@@ -63,6 +63,7 @@ impl<S> PairSum<S, f64> for Divergence {
 }
 
 #[cfg(test)]
+#[expect(clippy::disallowed_methods, reason = "tests compare within a tolerance, not bits")]
 mod tests {
     use super::*;
     use crate::{
