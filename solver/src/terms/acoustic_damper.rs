@@ -62,8 +62,8 @@ impl<S> PairSum<S, f64> for Divergence {
     }
 }
 
-#[cfg(test)]
 #[expect(clippy::disallowed_methods, reason = "tests compare within a tolerance, not bits")]
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::{
