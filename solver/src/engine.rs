@@ -519,10 +519,9 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     for lists in [lists, wall_lists] {
         sweep::fill(&sweep, lists, &mut inverses[lists.of.clone()]);
     }
-    parallel::for_each_pair(columns, inverses, neighbours.parallel, &|column, inverse| {
+    give::<P, _, _>(neighbours, columns, inverses, &|column, inverse| {
         T::set_inverse(&mut column.derived, *inverse);
     });
-    neighbours.fill_images(0, P::Walls::SLIPS, 1.0, columns);
 }
 
 /// Sums the divergence of the velocity at each fluid particle, and gives it to the columns and their images.
@@ -535,9 +534,19 @@ fn diverge<P: Physics, T: Term<P::Extra>>(
     let sweep = Sweep { kernel, columns, sum: Divergence };
     divergences.resize(neighbours.lists.of.end, 0.0);
     sweep::fill(&sweep, &neighbours.lists, divergences);
-    for (column, divergence) in columns.iter_mut().zip(divergences) {
+    give::<P, _, _>(neighbours, columns, divergences, &|column, divergence| {
         T::set_divergence(&mut column.derived, &column.common, *divergence);
-    }
+    });
+}
+
+/// Gives the first columns their sums, and refills all images.
+fn give<P: Physics, D: Numbers, S: Sync>(
+    neighbours: &Neighbours,
+    columns: &mut [SweptParticle<D>],
+    sums: &[S],
+    set: &(impl Fn(&mut SweptParticle<D>, &S) + Sync),
+) {
+    parallel::for_each_pair(columns, sums, neighbours.parallel, set);
     neighbours.fill_images(0, P::Walls::SLIPS, 1.0, columns);
 }
 

@@ -46,12 +46,13 @@ pub fn section() -> Section {
 /// A question, and the answer of each code that was asked.
 type Asked<'a> = (&'a Answered, Vec<(&'a str, Option<&'a Answered>)>);
 
-fn questions(all: &[(String, Vec<Answered>)]) -> impl Iterator<Item = Asked<'_>> {
+fn questions<'a>(all: &'a [(String, Vec<Answered>)]) -> impl Iterator<Item = Asked<'a>> {
     let first = all.first().map_or(&[][..], |(_, answers)| answers);
     first.iter().map(move |question| {
-        let of = |answers: &'_ [Answered]| answers.iter().position(|of| of.id == question.id);
-        let answers = all.iter().map(|(code, all)| (&**code, of(all).map(|k| &all[k])));
-        (question, answers.collect())
+        let of = |(code, answers): &'a (String, Vec<Answered>)| {
+            (&**code, answers.iter().find(|of| of.id == question.id))
+        };
+        (question, all.iter().map(of).collect())
     })
 }
 

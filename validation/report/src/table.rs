@@ -99,11 +99,6 @@ impl Cell {
         Self { remark: remark.into(), ..self }
     }
 
-    /// Makes it the target of links.
-    pub fn anchored(self, anchor: impl Into<String>) -> Self {
-        Self { anchor: anchor.into(), ..self }
-    }
-
     /// Adds a verdict.
     pub fn with(self, status: Verdict) -> Self {
         Self { status: Some(status), ..self }

@@ -532,9 +532,8 @@ mod tests {
         assert_rounds_to("excess", &["0.00", "0.28", "0.13", "0.04", "0.01"], &excess);
     }
 
-    /// With γ = α₂ ω² h/c₀ the limit (2 - γ dt) 2 ≥ (ω dt)² of the fastest wave is (c₀/h) dt = (α₂² +
-    /// 4/ω²)^(1/2)
-    /// - α₂ with ω in c₀/h. A shear wave is not damped.
+    /// A damping γ = α₂ ω² h/c₀ makes the limit (2 − γ dt) 2 ≥ (ω dt)² of the fastest wave, ω in c₀/h, a step
+    /// of (α₂² + 4/ω²)^(1/2) − α₂ in h/c₀. A shear wave is not damped.
     #[test]
     fn the_acoustic_damper_limits_the_step_by_the_square_of_the_symbol_of_the_gradient() {
         let lattice = SquareLattice::of::<WendlandC2>(1.5, 0.01);
