@@ -1,6 +1,6 @@
 //! Equations of state: Tait (7), (8) with its background pressure, and the solid's linear one (12).
 
-use touchstone_lanes::Lane;
+use crate::lane::Lane;
 
 use crate::numbers::{In, Numbers};
 

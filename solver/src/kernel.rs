@@ -8,7 +8,7 @@
 
 use std::marker::PhantomData;
 
-use touchstone_lanes::Lane;
+use crate::lane::Lane;
 
 /// The dimensionless shape of a kernel.
 pub trait Kernel: Copy + Default + Send + Sync + 'static {
@@ -154,8 +154,8 @@ impl<K: Kernel> Smoothing<K> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::{PerParticle, Portable, total};
     use approx::assert_relative_eq;
-    use touchstone_lanes::{PerParticle, Portable, total};
 
     fn radii(support: f64) -> impl Iterator<Item = f64> {
         (0..200).map(move |k| (k as f64 + 0.5) / 200.0 * support)

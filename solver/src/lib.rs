@@ -15,11 +15,12 @@
 //! Reading order: [`kernel`] and [`lane`] (number types of the pair sweep), [`terms`] (the equations),
 //! [`physics`] (terms, kernel and walls as one type), [`scene`] (the initial state),
 //! [`integrator`], then [`simulation`]. `sweep.rs` contains the pair sweep, `engine.rs` the right-hand side
-//! that integrators evaluate. Imports between modules go in one direction:
+//! that integrators evaluate. [`lagrangian`] contains total Lagrangian solids; no other module imports it.
+//! Imports between modules go in one direction:
 //!
 //! ```text
 //! lane, numbers, inverse, kernel, eos, domain <- particles <- terms <- walls <- neighbours
-//!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene
+//!     <- physics, sweep, particle_data <- engine <- integrator <- simulation <- scene <- lagrangian
 //! ```
 //!
 //! The crate does no I/O and contains no reference data. After [`Scene::build`] it returns no error; a
@@ -31,6 +32,8 @@ pub mod eos;
 pub mod integrator;
 pub mod inverse;
 pub mod kernel;
+pub mod lagrangian;
+pub mod lane;
 mod neighbours;
 pub mod numbers;
 pub mod parallel;
@@ -64,5 +67,4 @@ pub use physics::{Compose, Physics};
 pub use scene::{Scene, SceneError, lattice};
 pub use simulation::{Divergence, Observer, Outcome, Potential, Simulation, Stepper};
 pub use terms::*;
-pub use touchstone_lanes as lane;
 pub use walls::*;

@@ -16,8 +16,8 @@
 
 use std::{mem::take, ops::Range};
 
+use crate::lane::{Lane, MOST, OnLanes, gather_vector, on_widest};
 use nalgebra::Vector2;
-use touchstone_lanes::{Lane, MOST, OnLanes, gather_vector, on_widest};
 
 use crate::{
     domain::Domain,
@@ -554,7 +554,7 @@ impl OnLanes for FillLists<'_> {
 
 #[cfg(test)]
 mod tests {
-    use touchstone_lanes::Portable;
+    use crate::lane::Portable;
 
     use super::*;
     use crate::random::random;

@@ -6,7 +6,7 @@
 
 use nalgebra::Vector2;
 
-use touchstone_lanes::{Lane, PerParticle};
+use crate::lane::{Lane, PerParticle};
 
 /// Particles whose numbers and rates are buffered: few enough to stay in the nearest cache.
 pub const MANY: usize = 64;

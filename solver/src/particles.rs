@@ -3,8 +3,8 @@
 //! The integrator advances [`State`] only. A [`SweptParticle`] is derived from it before each sweep,
 //! laid out for the pair sweep.
 
+use crate::lane::Lane;
 use nalgebra::Vector2;
-use touchstone_lanes::Lane;
 
 use crate::numbers::Numbers;
 

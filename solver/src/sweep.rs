@@ -9,8 +9,8 @@
 
 use std::ops::Range;
 
+use crate::lane::{Lane, OnLanes, on_widest};
 use nalgebra::Vector2;
-use touchstone_lanes::{Lane, OnLanes, on_widest};
 
 use crate::{
     kernel::{Kernel, Smoothing},
@@ -188,7 +188,7 @@ impl<K: Kernel, T: PairSum<S, O>, S: Numbers, O> OnLanes for Particles<'_, K, T,
 
 #[cfg(test)]
 mod tests {
-    use touchstone_lanes::Portable;
+    use crate::lane::Portable;
 
     use super::*;
     use crate::{

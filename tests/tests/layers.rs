@@ -11,23 +11,19 @@ use serde_json::Value;
 use crate::tidy::{assert_none, root};
 
 /// A crate below the harness, and what it may know of the crates of this project.
-const MAY_KNOW: [(&str, &[&str]); 7] = [
-    ("touchstone-lanes", &[]),
-    ("touchstone-solver", &["touchstone-lanes"]),
-    ("touchstone-lagrangian", &["touchstone-lanes", "touchstone-solver"]),
+const MAY_KNOW: [(&str, &[&str]); 5] = [
+    ("touchstone-solver", &[]),
     ("touchstone-base", &[]),
     ("touchstone-report", &["touchstone-base"]),
-    ("touchstone-maths", &["touchstone-solver", "touchstone-lagrangian", "touchstone-base"]),
+    ("touchstone-maths", &["touchstone-solver", "touchstone-base"]),
     (
         "touchstone-harness",
         &["touchstone-solver", "touchstone-base", "touchstone-report", "touchstone-maths"],
     ),
 ];
 /// Folders of all crates but the tests.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 9] = [
     "solver",
-    "solver/lanes",
-    "solver/lagrangian",
     "validation/base",
     "validation/report",
     "validation/maths",

@@ -46,8 +46,8 @@ pub use tensile_stress::{
 pub use viscosity::Viscosity;
 pub use xsph::Xsph;
 
+use crate::lane::Lane;
 use nalgebra::Vector2;
-use touchstone_lanes::Lane;
 
 // Each file takes the types with which terms are written from here.
 use crate::{
@@ -262,8 +262,8 @@ tuple_of_terms!(Split<A, B>: A 0, B 1);
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lane::{OnLanes, Portable, on_widest};
     use crate::{CubicSpline, QuinticSpline, Tait, WendlandC2, numbers::Buffer};
-    use touchstone_lanes::{OnLanes, Portable, on_widest};
 
     /// Field number `field` of neighbour k of up to eight; neighbour 3 is at the place of the particle.
     fn number(field: usize, k: usize) -> f64 {

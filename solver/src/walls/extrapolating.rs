@@ -1,8 +1,8 @@
 //! Boundary particles to which pressure, and with [`NoSlip`] or [`CurvedNoSlip`] velocity, are extrapolated
 //! from the fluid (Adami, Hu & Adams 2012).
 
+use crate::lane::Lane;
 use nalgebra::{Matrix3, Vector2};
-use touchstone_lanes::Lane;
 
 use super::{Extrapolation, WallState, Walls};
 use crate::{

@@ -11,8 +11,8 @@ pub use ghosts::{Ghosts, Mirrors, PlaneWall, SlipGhosts};
 pub(crate) use ghosts::{RIGHT_ANGLE, corners};
 pub use image::Map;
 
+use crate::lane::Lane;
 use nalgebra::Vector2;
-use touchstone_lanes::Lane;
 
 use crate::{
     kernel::Kernel,

@@ -6,11 +6,11 @@ use std::sync::Mutex;
 use nalgebra::Vector2;
 use touchstone_base::lock;
 use touchstone_harness::method::{Medium, Parts, Properties, mutate};
-use touchstone_lagrangian::{
-    BetweenFaces, Hencky, Law, Moduli, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
-};
 use touchstone_maths::theory::bending;
 use touchstone_maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
+use touchstone_solver::lagrangian::{
+    BetweenFaces, Hencky, Law, Moduli, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
+};
 use touchstone_solver::{
     Compose, DivergenceBounds, Ghosts, Leapfrog, Particle, Role, SceneError, Stepper, Symmetric,
     WendlandC2, scene::PARALLEL_FROM,

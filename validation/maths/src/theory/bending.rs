@@ -1,16 +1,16 @@
 //! Bending of a total Lagrangian plate of few layers.
 //!
-//! A plate of n layers of a square lattice of spacing 1, infinite along x, is bent to the curvature 1: its
-//! displacements are u = (x y, w(y) − x²/2) with the displacement w across the plate of least energy. In the
-//! notation of the crate `lagrangian`, the displacement gradient of a particle is exact for linear fields but
-//! not for x y: at a face, where neighbours are on one side, it is the gradient a little inside. H and the
-//! residuals E are linear in w, so the energy of a column of particles is a sum of squares,
-//! λ (tr H)²/2 + μ H:H + ¼ c Σ_b g |E|² a particle, with the minimum of half the bending stiffness.
-//! Frequencies are proportional to its root, deflections under a load to its inverse.
+//! A plate of n layers of a square lattice of spacing 1, infinite along x, is bent to the curvature 1:
+//! its displacements are u = (x y, w(y) − x²/2) with the displacement w across the plate of least energy.
+//! In the notation of `touchstone_solver::lagrangian`, the displacement gradient of a particle is exact
+//! for linear fields but not for x y: at a face, where neighbours are on one side, it is the gradient a
+//! little inside. H and the residuals E are linear in w, so the energy of a column of particles is a sum
+//! of squares, λ (tr H)²/2 + μ H:H + ¼ c Σ_b g |E|² a particle, with the minimum of half the bending
+//! stiffness. Frequencies are proportional to its root, deflections under a load to its inverse.
 
 use nalgebra::{DMatrix, DVector, Vector2};
-use touchstone_lagrangian::body::hourglass;
 use touchstone_solver::kernel::Kernel;
+use touchstone_solver::lagrangian::body::hourglass;
 
 use super::{
     lagrangian::HOURGLASS,

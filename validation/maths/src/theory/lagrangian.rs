@@ -2,8 +2,8 @@
 //!
 //! With the symbol q = g/G₁ of the corrected gradient and the symbol s = λ₀/2 of the sum Σ V F (1 − cos k·X),
 //! the displacement u satisfies ρ ω² u = (K + μ/3) q (q·u) + μ q² u + c (s − G₁ q²/2) u, where c = 8/3 χ μ/G₁
-//! is the hourglass modulus (documentation of the crate `lagrangian`). Longitudinal waves are the fastest of
-//! a lattice without faces; the leapfrog is stable up to dt = 2/ω.
+//! is the hourglass modulus (documentation of `touchstone_solver::lagrangian`). Longitudinal waves are the
+//! fastest of a lattice without faces; the leapfrog is stable up to dt = 2/ω.
 //!
 //! At faces and corners particles have fewer neighbours, and M⁻¹ is larger: a body has faster modes there
 //! than any wave inside, at a corner by a factor of 1.4 with Poisson's ratio 0.4 and of 1.8 with 0.4999.
@@ -11,7 +11,7 @@
 
 use nalgebra::{Matrix2, Vector2};
 use touchstone_base::functions::sin;
-use touchstone_lagrangian::{Moduli, body::hourglass};
+use touchstone_solver::lagrangian::{Moduli, body::hourglass};
 use touchstone_solver::{
     inverse::{Inverse, of_two},
     kernel::{Kernel, Smoothing},

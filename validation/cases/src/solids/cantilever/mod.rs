@@ -10,9 +10,9 @@ use nalgebra::Vector2;
 use touchstone_base::record::MetricKey;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{series::Series, snapshot::Snapshot};
-use touchstone_lagrangian::{Hencky, Law, SaintVenantKirchhoff};
 use touchstone_maths::exact::thin_plate;
 use touchstone_schemes::total;
+use touchstone_solver::lagrangian::{Hencky, Law, SaintVenantKirchhoff};
 use touchstone_solver::{Role, Symmetric};
 
 use crate::solids::solid::{

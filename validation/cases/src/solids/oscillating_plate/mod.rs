@@ -8,8 +8,8 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_harness::prelude::*;
 use touchstone_harness::snapshot::Snapshot;
-use touchstone_lagrangian::{Hencky, Law as _};
 use touchstone_maths::{exact::thin_plate, metrics::history::passes};
+use touchstone_solver::lagrangian::{Hencky, Law as _};
 use touchstone_solver::{Role, Symmetric};
 
 use super::solid::{

@@ -4,8 +4,8 @@ use touchstone_base::{
     record::{MetricKey, Record},
     reference::Reference,
 };
-use touchstone_lagrangian::{Hencky, Law as _};
 use touchstone_maths::metrics::{history, norms::rms};
+use touchstone_solver::lagrangian::{Hencky, Law as _};
 
 use super::{
     RingSettings,

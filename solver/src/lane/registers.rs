@@ -22,7 +22,7 @@ use std::arch::x86_64::{
 use std::mem::transmute;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use crate::{LANES, MOST, OnLanes, PerParticle};
+use super::{LANES, MOST, OnLanes, PerParticle};
 
 /// Whether the processor has AVX2, and AVX-512 too. The standard library keeps the processor's answer.
 fn has() -> [bool; 2] {
@@ -265,8 +265,8 @@ const PACKED: [i32; 16] = [
 
 #[cfg(test)]
 mod tests {
+    use super::super::Lane;
     use super::*;
-    use crate::Lane;
 
     /// Numbers with signs, zeros of either sign, and extremes.
     const A: [f64; 8] = [-0.0, 1.0 / 3.0, -1e-300, 2e200, 0.7, -3.3e7, 0.0, 5e-324];

@@ -1,8 +1,8 @@
 //! Stored-energy laws of isotropic solids in plane strain, from the displacement gradient H = F − 1, so that
 //! small strains keep their digits.
 
+use crate::Symmetric;
 use nalgebra::Matrix2;
-use touchstone_solver::Symmetric;
 
 /// The moduli of small strains.
 #[derive(Clone, Copy, Debug, PartialEq)]

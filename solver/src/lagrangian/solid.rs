@@ -1,8 +1,7 @@
 //! A scene of elastic solids and its simulation: the leapfrog (velocity Verlet), one evaluation of the
 //! forces a step, after which every quantity has the same time.
 
-use nalgebra::Vector2;
-use touchstone_solver::{
+use crate::{
     Checkpoint, DivergenceBounds, Domain, Kernel, Leapfrog, Particle, ParticleData, Phase,
     Potential, Rate, Role, Scene, SceneError, Smoothing, Stepper, Symmetric,
     integrator::Stepped,
@@ -11,8 +10,9 @@ use touchstone_solver::{
     scene::{Component, require},
     walls::Walls,
 };
+use nalgebra::Vector2;
 
-use crate::{
+use super::{
     body::Body,
     law::{Law, Moduli},
     load::{Load, Loaded},
@@ -20,7 +20,7 @@ use crate::{
 };
 
 /// The scheme for the neighbour search in the reference: without terms, so that nothing else is compiled.
-type Frame<K, W> = touchstone_solver::Compose<K, (), (), W, Leapfrog, Symmetric>;
+type Frame<K, W> = crate::Compose<K, (), (), W, Leapfrog, Symmetric>;
 
 /// A scene of elastic solids.
 pub struct SolidScene<W, C> {
@@ -32,12 +32,12 @@ pub struct SolidScene<W, C> {
     pub particles: Vec<Particle<Symmetric>>,
     /// The number of the body of each particle, from 0; empty if there is one body.
     pub bodies: Vec<u32>,
-    /// Planes: [`touchstone_solver::Ghosts`] hold the body; along [`touchstone_solver::SlipGhosts`] it
+    /// Planes: [`crate::Ghosts`] hold the body; along [`crate::SlipGhosts`] it
     /// slides.
     pub walls: W,
     /// The moduli.
     pub moduli: Moduli,
-    /// χ, the strength of the resistance to hourglass modes, see the crate's documentation.
+    /// χ, the strength of the resistance to hourglass modes, see the documentation of the module.
     pub hourglass: f64,
     /// Weight and contact.
     pub loads: C,

@@ -1,14 +1,14 @@
 //! The reference configuration: neighbours of each particle, their weights, and the inverse of the moments.
 //! Computed once, then constant.
 
-use nalgebra::{Matrix2, Vector2};
-use touchstone_lanes::LANES;
-use touchstone_solver::{
+use crate::lane::LANES;
+use crate::{
     Domain, Kernel, ParticleData, SceneError, Smoothing, Symmetric,
     inverse::{Inverse, LEAST_DETERMINANT, of_two},
     scene::{Component, require},
     walls::Map,
 };
+use nalgebra::{Matrix2, Vector2};
 
 /// An image of a particle or of an earlier image: mirrored at a wall, or a period away.
 #[derive(Clone, Copy, Debug)]

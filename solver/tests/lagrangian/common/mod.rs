@@ -2,7 +2,7 @@
 #![allow(dead_code)] // each test uses some of it
 
 use nalgebra::Vector2;
-use touchstone_lagrangian::{Hencky, Law, Load, Moduli, Solid, SolidScene};
+use touchstone_solver::lagrangian::{Hencky, Law, Load, Moduli, Solid, SolidScene};
 use touchstone_solver::{
     DivergenceBounds, Domain, Open, Particle, Stepper, Symmetric, WendlandC2, walls::Walls,
 };

@@ -118,14 +118,14 @@ pub fn on_four(work: impl OnLanes) {
 macro_rules! lane {
     (for $Type:ty, $lanes:literal: fn all($x:ident: f64) -> Self = $all:expr;
      $(fn $name:ident($($takes:tt)*) $(-> $Gives:ty)? = $is:expr;)+) => {
-        impl $crate::PerParticle for $Type {
+        impl $crate::lane::PerParticle for $Type {
             #[inline(always)]
             fn all($x: f64) -> Self {
                 $all
             }
         }
 
-        impl $crate::Lane for $Type {
+        impl $crate::lane::Lane for $Type {
             const LANES: usize = $lanes;
             $(
             #[inline(always)]

@@ -1,11 +1,11 @@
 //! Waves on a lattice against their theory, the limit of the time step, and long runs.
 
-use crate::common::{
+use super::common::{
     Block, DENSITY, MODULI, block, build, energy, forces, free, number, put, scene,
 };
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
-use touchstone_lagrangian::{
+use touchstone_solver::lagrangian::{
     BetweenFaces, Hencky, Law, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
 };
 use touchstone_solver::{

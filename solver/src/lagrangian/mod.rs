@@ -26,7 +26,7 @@
 //! errors of fourth order cancel along the axes, whatever the kernel.
 //!
 //! Reading order: [`law`] (stored energies), [`mod@reference`], [`body`] (deformations and forces), [`load`]
-//! (weight and contact), [`solid`] (the scene and its steps). The crate does no I/O.
+//! (weight and contact), [`solid`] (the scene and its steps).
 
 pub mod body;
 pub mod law;

@@ -1,10 +1,10 @@
 //! Loads of a solid in its present configuration: weight, and contact between bodies. Each
 //! derives from an energy.
 
+use crate::{Smoothing, State, Symmetric, WendlandC2, parallel};
 use nalgebra::Vector2;
-use touchstone_solver::{Smoothing, State, Symmetric, WendlandC2, parallel};
 
-use crate::{law::Moduli, reference::ReferenceConfiguration};
+use super::{law::Moduli, reference::ReferenceConfiguration};
 
 /// Particles as input of loads.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,10 @@
 //! Exact at every state: gradients of linear fields, forces as derivatives of the energy, momentum.
 
-use crate::common::{
+use super::common::{
     DENSITY, MODULI, block, build, energy, forces, free, number, put, scene, stored,
 };
 use nalgebra::{Matrix2, Vector2};
-use touchstone_lagrangian::{
+use touchstone_solver::lagrangian::{
     BetweenFaces, Hencky, Law, Load, SaintVenantKirchhoff, SolidScene, Weight, contact_stiffness,
 };
 use touchstone_solver::{
@@ -86,7 +86,7 @@ fn forces_are_derivatives_of_the_stored_energy() {
     check_forces::<Hencky, _, _>(scene(block(), Open, ()), 0.1);
     check_forces::<SaintVenantKirchhoff, _, _>(scene(block(), Open, ()), 0.1);
     // The force against modes that deform no particle alone, and stress without it.
-    let soft = touchstone_lagrangian::Moduli { bulk: 0.0, ..MODULI };
+    let soft = touchstone_solver::lagrangian::Moduli { bulk: 0.0, ..MODULI };
     check_forces::<Hencky, _, _>(
         SolidScene { moduli: soft, hourglass: 50.0, ..scene(block(), Open, ()) },
         0.1,

@@ -3,11 +3,11 @@
 
 use std::marker::PhantomData;
 
+use crate::lane::{LANES, Lane, OnLanes, gather_vector, on_four, total};
+use crate::{Potential, State, Symmetric, parallel};
 use nalgebra::{Matrix2, Vector2};
-use touchstone_lanes::{LANES, Lane, OnLanes, gather_vector, on_four, total};
-use touchstone_solver::{Potential, State, Symmetric, parallel};
 
-use crate::{
+use super::{
     law::{Energies, Law, Moduli, Strain},
     reference::{Four, ReferenceConfiguration},
 };

@@ -1,0 +1,5 @@
+//! Properties of the total Lagrangian solid.
+
+mod common;
+mod exactness;
+mod lattice;
