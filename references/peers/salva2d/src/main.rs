@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use salva2d::{
     LiquidWorld,
     object::{Boundary, Fluid, interaction_groups::InteractionGroups},
-    touchstone_solver::{ArtificialViscosity, DFSPHSolver},
+    solver::{ArtificialViscosity, DFSPHSolver},
 };
 use serde_json::{Value, json};
 
