@@ -223,6 +223,7 @@ impl BlockExtrema {
 }
 
 /// Buffers with which pair sweeps are prepared.
+#[derive(Default)]
 pub(crate) struct SweepBuffers<X> {
     /// Extremes of each block of particles whose columns were filled, then of the particles whose columns
     /// were kept.
@@ -230,6 +231,8 @@ pub(crate) struct SweepBuffers<X> {
     /// Extremes of wall particles that extrapolate and do not move: their columns are filled once after each
     /// build of lists.
     pub still: Option<BlockExtrema>,
+    /// Order into which particles are sorted: the former place of each fluid particle.
+    pub order: Vec<u32>,
     /// Copies of particles: while these are sorted, and wall particles while their velocities and densities
     /// are extrapolated.
     pub states: Vec<State<X>>,
@@ -239,21 +242,12 @@ pub(crate) struct SweepBuffers<X> {
     pub past: Vec<PreviousStep<X>>,
 }
 
-impl<X> Default for SweepBuffers<X> {
-    fn default() -> Self {
-        let (states, fixed, past) = (Vec::new(), Vec::new(), Vec::new());
-        Self { extents: Vec::new(), still: None, states, fixed, past }
-    }
-}
-
 /// The particles of a simulation, their neighbour lists, the time, and the work done.
 #[derive(Default)]
 pub struct ParticleData<X = ()> {
     /// Empty during a step, which owns the state.
     pub(crate) state: Vec<State<X>>,
     pub(crate) fixed: Vec<Constants>,
-    /// The place of storage of each particle of the scene.
-    pub(crate) places: Vec<u32>,
     pub(crate) counts: RoleCounts,
     /// [`crate::Walls::SLIPS`].
     pub(crate) slips: bool,
@@ -267,7 +261,6 @@ pub struct ParticleData<X = ()> {
     /// since images are one period away, on either side.
     pub(crate) reach2: f64,
     pub(crate) progress: Progress,
-    pub(crate) order: Vec<u32>,
     pub(crate) buffers: SweepBuffers<X>,
     /// Memory of the columns that a pair sweep reads \[bytes\].
     pub column_bytes: usize,
@@ -288,15 +281,6 @@ impl<X: Numbers> ParticleData<X> {
         self.state = particles.iter().map(evolved).collect();
         self.fixed = particles.iter().map(fixed).collect();
         self.counts = RoleCounts { fluid: count(Role::Fluid), walls: count(Role::Wall) };
-        self.places.resize(self.fixed.len(), 0);
-        self.find_places();
-    }
-
-    /// Finds out where particles are stored.
-    fn find_places(&mut self) {
-        for (place, fixed) in (0..).zip(&self.fixed) {
-            self.places[fixed.id as usize] = place;
-        }
     }
 
     /// Whether the work on particles is distributed over threads.
@@ -324,8 +308,12 @@ impl<X: Numbers> ParticleData<X> {
 
     /// The place of storage of each particle, in the order of the scene; places of fluid particles are the
     /// first ones.
-    pub fn places(&self) -> &[u32] {
-        &self.places
+    pub fn places(&self) -> Vec<u32> {
+        let mut places = vec![0; self.fixed.len()];
+        for (place, fixed) in (0..).zip(&self.fixed) {
+            places[fixed.id as usize] = place;
+        }
+        places
     }
 
     /// Mass \[kg/m\] and state of the wall particles with an evolving density, in the order of storage.
@@ -346,7 +334,7 @@ impl<X: Numbers> ParticleData<X> {
 
     /// All particles in the order of the scene.
     pub fn particles(&self) -> Vec<Particle<X>> {
-        self.places.iter().map(|place| self.at(*place as usize)).collect()
+        self.places().into_iter().map(|place| self.at(place as usize)).collect()
     }
 
     /// All particles in the order of storage, with their numbers in the scene.
@@ -434,7 +422,7 @@ impl<X: Numbers> ParticleData<X> {
     pub fn bytes(&self) -> usize {
         self.state.capacity() * size_of::<State<X>>()
             + self.fixed.capacity() * size_of::<Constants>()
-            + (self.places.capacity() + self.order.capacity()) * size_of::<u32>()
+            + self.buffers.order.capacity() * size_of::<u32>()
             + self.buffers.extents.capacity() * size_of::<BlockExtrema>()
             + self.buffers.states.capacity() * size_of::<State<X>>()
             + self.buffers.fixed.capacity() * size_of::<Constants>()
@@ -446,7 +434,7 @@ impl<X: Numbers> ParticleData<X> {
     /// the particles, if there are any.
     pub(crate) fn sort(&mut self, state: &mut [State<X>], past: &mut [PreviousStep<X>]) {
         self.enter(Phase::Sorting);
-        let Self { neighbours, order, fixed, buffers, .. } = self;
+        let Self { neighbours, fixed, buffers, .. } = self;
         let (parallel, domain) = (neighbours.parallel, neighbours.domain);
         parallel::for_each_part(state, parallel, &|_, part| {
             for evolved in part {
@@ -454,11 +442,11 @@ impl<X: Numbers> ParticleData<X> {
             }
         });
         neighbours.place(self.counts.fluid, &|k| state[k].position);
+        let SweepBuffers { order, states, fixed: former, past: earlier, .. } = buffers;
         neighbours.order(order);
-        gather(state, order, &mut buffers.states, parallel);
-        gather(fixed, order, &mut buffers.fixed, parallel);
-        gather(past, order, &mut buffers.past, parallel);
-        self.find_places();
+        gather(state, order, states, parallel);
+        gather(fixed, order, former, parallel);
+        gather(past, order, earlier, parallel);
     }
 
     /// Begins a phase.

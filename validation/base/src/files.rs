@@ -10,7 +10,8 @@
 //! # fn main() -> Result<(), touchstone_base::files::FileError> {
 //! use touchstone_base::{files::OutputFolder, record::Profile};
 //! let folder = OutputFolder::create("out".as_ref())?;
-//! let profile = Profile::of_rows(&[("y", "m"), ("u", "m/s")], &[[2.5e-5, 1.2e-4]]);
+//! let rows = [(2.5e-5, 1.2e-4)];
+//! let profile = Profile::of(&rows, &[("y", "m", &|(y, _)| *y), ("u", "m/s", &|(_, u)| *u)]);
 //! folder.write("profile.csv", profile.to_csv().as_bytes())?;
 //! # Ok(())
 //! # }

@@ -403,19 +403,28 @@ pub struct ProfileColumn {
     pub values: Vec<f64>,
 }
 
+/// Name, unit and value in a row of a column.
+pub type ColumnOf<'a, R> = (&'a str, &'a str, &'a dyn Fn(&R) -> f64);
+
+/// Name, unit and value in a row of a column that a row may lack.
+pub type KnownColumnOf<'a, R> = (&'a str, &'a str, &'a dyn Fn(&R) -> Result<f64, Absent>);
+
 impl Profile {
-    /// Columns of these names and units from rows.
-    pub fn of_rows<const N: usize>(columns: &[(&str, &str); N], rows: &[[f64; N]]) -> Self {
-        Self::of_numbers(columns, rows.as_flattened())
+    /// A column for each entry, from rows.
+    pub fn of<R>(rows: &[R], columns: &[ColumnOf<R>]) -> Self {
+        columns.iter().fold(Self::default(), |profile, (name, unit, value)| {
+            profile.with(name, unit, rows.iter().map(value).collect())
+        })
     }
 
-    /// The profile from the numbers of all rows, one after another.
-    fn of_numbers(columns: &[(&str, &str)], numbers: &[f64]) -> Self {
-        let column = |k: usize| numbers.iter().skip(k).step_by(columns.len()).copied().collect();
-        let add = |profile: Self, (k, (name, unit)): (usize, &(&str, &str))| {
-            profile.with(name, unit, column(k))
-        };
-        columns.iter().enumerate().fold(Self::default(), add)
+    /// A column for each entry whose values are known in all rows.
+    pub fn of_known<R>(rows: &[R], columns: &[KnownColumnOf<R>]) -> Self {
+        columns.iter().fold(Self::default(), |profile, (name, unit, value)| {
+            match rows.iter().map(value).collect() {
+                Ok(values) => profile.with(name, unit, values),
+                Err(_) => profile,
+            }
+        })
     }
 
     /// Adds a column.

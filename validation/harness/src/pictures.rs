@@ -74,8 +74,15 @@ pub fn keep(
     value: (&str, &str),
     particles: impl Iterator<Item = (Vector2<f64>, f64)>,
 ) {
-    let rows: Vec<[f64; 3]> = particles.map(|(x, value)| [x.x, x.y, value]).collect();
-    let kept = Profile::of_rows(&[("x", unit), ("y", unit), value], &rows);
+    let (rows, (name, value_unit)): (Vec<_>, _) = (particles.collect(), value);
+    let kept = Profile::of(
+        &rows,
+        &[
+            ("x", unit, &|(x, _)| x.x),
+            ("y", unit, &|(x, _)| x.y),
+            (name, value_unit, &|(_, value)| *value),
+        ],
+    );
     record.profiles.insert(profile.into(), kept);
 }
 

@@ -172,7 +172,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
                 let data = simulation.data();
                 let (places, parallel) = (data.places(), data.is_parallel());
                 let mut all = vec![point(data, 0); places.len()];
-                parallel::for_each_pair(&mut all, places, parallel, &|this, place| {
+                parallel::for_each_pair(&mut all, &places, parallel, &|this, place| {
                     *this = point(data, *place as usize);
                 });
                 all

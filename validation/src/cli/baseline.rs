@@ -61,7 +61,7 @@ impl<'a> Baseline<'a> {
     /// The exit code of a submission with these changes, whose gates gave another. Where no gate applies, the
     /// baseline alone decides.
     pub fn exit(&self, changes: &[MetricChange], of_gates: Exit) -> Exit {
-        let is_worse = changes.iter().any(|of| of.change.is_failure());
+        let is_worse = changes.iter().any(|of| of.change.is_worse());
         match (is_worse && !self.is_updated, of_gates) {
             (true, _) => Exit::GateFailed,
             (false, Exit::Usage) => Exit::Pass,
@@ -73,7 +73,7 @@ impl<'a> Baseline<'a> {
     pub fn in_words(&self, changes: &[MetricChange]) -> String {
         let moved = changes.iter().filter(|of| of.change != Change::Same).cloned();
         let moved: Vec<MetricChange> = moved.collect();
-        let worse = changes.iter().filter(|of| of.change.is_failure()).count();
+        let worse = changes.iter().filter(|of| of.change.is_worse()).count();
         let all = changes.len();
         let told = match (worse, self.is_updated) {
             (0, _) => format!("none of {all} metrics is worse than before"),
@@ -165,7 +165,7 @@ fn parts(record: &Record) -> Vec<(String, String)> {
 
 /// The baseline as a test case.
 pub fn tested(changes: &[MetricChange]) -> Tested {
-    let worse = changes.iter().filter(|of| of.change.is_failure());
+    let worse = changes.iter().filter(|of| of.change.is_worse());
     let lines: Vec<String> = worse.map(MetricChange::in_words).collect();
     match lines.len() {
         0 => Tested::Pass,

@@ -8,23 +8,17 @@ use serde_json::json;
 use touchstone_base::{
     files,
     functions::ln,
-    gate::{Bound, Verdict},
+    gate::Verdict,
     record::{Record, Status},
     submission::MACHINE,
 };
 use touchstone_exchange::submission::METHOD;
-use touchstone_harness::{
-    case::{Case, Planned},
-    gates::GateIndex,
-    runs::Judged,
-    store::Store,
-    suite,
-};
+use touchstone_harness::{gates::GateIndex, runs::Judged, store::Store, suite};
 
 use super::{
     Exit, Failure, Outcome, Session, arguments, baseline, exchange,
     judged::{self, SubmissionVerdicts, VERDICTS, Verdicts},
-    metrics::{self, SHARE, Scales},
+    metrics::{self, Change, MetricChange, SHARE},
     output,
 };
 
@@ -134,13 +128,13 @@ fn of_two(
         return Err(Failure::usage(words));
     }
     let case = touchstone_cases::find_in(session.cases, &is.case)?;
-    let scales = Scales::new(&GateIndex::of(case), &is.judged);
-    let metrics = scales.changes(&was.metrics, &is.metrics);
+    let gates = is.judged.iter().map(|of| &of.gate);
+    let metrics = metrics::changes(Some(&GateIndex::of(case)), gates, [&was.metrics, &is.metrics]);
     let [old, new] = [was, is].map(|of| by_name(of.judged.iter()));
     let mut changes = paired(&old, &new, |_, was, is| of_gate(was, is));
-    changes.retain(|change| change.kind != ChangeKind::Value); // the table has the values
+    changes.retain(|change| !change.kind.is_of_value()); // the table has the values
     changes.sort_by_key(|change| change.kind);
-    let gone = metrics.iter().filter(|of| of.change == metrics::Change::Gone).count();
+    let gone = metrics.iter().filter(|of| of.change == Change::Gone).count();
     let losses = gone + changes.iter().filter(|change| change.kind.is_loss()).count();
     let failures = changes.iter().filter(|change| change.kind == ChangeKind::Failing).count();
     let json = || {
@@ -168,7 +162,7 @@ impl Submitted {
     }
 
     /// Changes of gates and metrics against the earlier run of the code.
-    fn changes(&self, was: Option<&Self>) -> Vec<VerdictChange> {
+    fn changes(&self, was: Option<&Self>, cases: &Cases) -> Vec<VerdictChange> {
         let name = self.of.name();
         let gates = |of: &Self| by_name(of.of.judged.iter());
         let old = was.map(gates).unwrap_or_default();
@@ -183,14 +177,10 @@ impl Submitted {
             Some(_) => {}
         }
         if let Some((was, is)) = was.and_then(|was| was.record.as_ref().zip(self.record.as_ref())) {
-            let bound = |of: &Judged| ((name.clone(), of.gate.metric.clone()), of.gate.bound);
-            let bounds = self.of.judged.iter().map(bound).collect();
-            let found = of_run(&name, Some(was), Some(is), &bounds).into_iter();
-            changes.extend(found.map(|(kind, words)| VerdictChange {
-                kind,
-                name: name.clone(),
-                words,
-            }));
+            let gates = self.of.judged.iter().map(|of| &of.gate);
+            let case = cases.get(&*is.run.case);
+            let metrics = metrics::changes(case, gates, [&was.metrics, &is.metrics]);
+            of_both(was, is, &metrics).into_iter().for_each(|(kind, words)| add(kind, words));
         }
         changes
     }
@@ -198,13 +188,14 @@ impl Submitted {
 
 /// The changes of runs of other codes. A run is compared with the run of equal results or, without one, with
 /// a run of the same code, scheme and problem, in any version.
-fn of_submissions(old: &[Submitted], new: &[Submitted]) -> Vec<VerdictChange> {
+fn of_submissions(old: &[Submitted], new: &[Submitted], cases: &Cases) -> Vec<VerdictChange> {
     let is_same = |a: &Submitted, b: &Submitted| a.of.key == b.of.key;
     let was = |is: &Submitted| {
         let alike = || old.iter().find(|was| was.of.name() == is.of.name());
         old.iter().find(|was| is_same(was, is)).or_else(alike)
     };
-    let mut changes: Vec<VerdictChange> = new.iter().flat_map(|is| is.changes(was(is))).collect();
+    let mut changes: Vec<VerdictChange> =
+        new.iter().flat_map(|is| is.changes(was(is), cases)).collect();
     let is_there =
         |was: &Submitted| new.iter().any(|is| is_same(was, is) || was.of.name() == is.of.name());
     let gone = |was: &Submitted| VerdictChange {
@@ -226,10 +217,15 @@ enum ChangeKind {
     Stopped,
     /// A gate, a run or metrics of one.
     Gone,
+    /// Metrics or numbers of gates, further outside their bounds.
+    Worse,
+    /// Metrics or numbers of gates, if no gate states which direction is better.
+    Changed,
     Verdict,
     Status,
     New,
-    Value,
+    /// Metrics or numbers of gates, further inside their bounds.
+    Better,
     State,
     Work,
     Seconds,
@@ -239,6 +235,22 @@ impl ChangeKind {
     /// Does something fail that did not, or is something not known any more that was?
     fn is_loss(self) -> bool {
         self <= Self::Gone
+    }
+
+    fn is_of_value(self) -> bool {
+        matches!(self, Self::Worse | Self::Changed | Self::Better)
+    }
+
+    /// Of a metric; none of a metric that did not change.
+    fn of(change: Change) -> Option<Self> {
+        Some(match change {
+            Change::Same => return None,
+            Change::Better => Self::Better,
+            Change::New => Self::New,
+            Change::Changed => Self::Changed,
+            Change::Worse => Self::Worse,
+            Change::Gone => Self::Gone,
+        })
     }
 }
 
@@ -281,15 +293,16 @@ pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
             output::say(&format!("note: no gates are compared: {words}"));
         }
     }
+    let cases: Cases =
+        session.cases.iter().map(|case| (case.name(), GateIndex::of(*case))).collect();
     match (&before.records, &after.records) {
         (Some(old), Some(new)) => {
-            let bounds = bounds(session, new);
-            changes.extend(paired(old, new, |name, was, is| of_run(name, was, is, &bounds)));
+            changes.extend(paired(old, new, |_, was, is| of_run(was, is, &cases)));
         }
         (None, None) => {}
         _ => output::say("note: no runs are compared: only one of the reports holds its records"),
     }
-    changes.extend(of_submissions(&before.submissions, &after.submissions));
+    changes.extend(of_submissions(&before.submissions, &after.submissions, &cases));
     changes.sort_by_key(|change| change.kind);
     let count =
         |of: fn(ChangeKind) -> bool| changes.iter().filter(|change| of(change.kind)).count();
@@ -300,21 +313,8 @@ pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
     Ok(if losses > 0 { Exit::GateFailed } else { Exit::Pass })
 }
 
-/// The bounds of the gates of these runs, by run and metric.
-type Bounds = BTreeMap<(String, String), Bound>;
-
-fn bounds(session: &Session, records: &BTreeMap<String, Record>) -> Bounds {
-    let is_asked = |case: &&&'static dyn Case| records.values().any(|r| r.run.case == case.name());
-    let mut bounds = Bounds::new();
-    for case in session.cases.iter().filter(is_asked) {
-        for Planned { spec, gates, .. } in GateIndex::of(*case).judged() {
-            let run = format!("{} {} {}", spec.case, spec.variant, spec.key());
-            bounds
-                .extend(gates.iter().map(|gate| ((run.clone(), gate.metric.clone()), gate.bound)));
-        }
-    }
-    bounds
-}
+/// The gates of cases, by name.
+type Cases = BTreeMap<&'static str, GateIndex<'static>>;
 
 fn in_words(changes: &[VerdictChange], before: &Side, after: &Side) -> String {
     let mut text = String::new();
@@ -381,48 +381,37 @@ fn of_gate(was: Option<&Judged>, is: Option<&Judged>) -> Vec<(ChangeKind, String
         )]
     } else if from.verdict != to.verdict {
         vec![(ChangeKind::Verdict, format!("{} to {}; {values}", was.words(), is.words()))]
-    } else if has_moved(is.gate.bound.scale(), from.value, to.value) {
-        vec![(ChangeKind::Value, values)]
     } else {
-        Vec::new()
+        let [before, now] = [from, to].map(|of| of.value.unwrap_or(f64::NAN));
+        let bound = is.gate.bound;
+        let change = Change::of(Some(bound), before, now, SHARE * bound.scale());
+        ChangeKind::of(change).map(|kind| (kind, values)).into_iter().collect()
     }
 }
 
-/// Whether the difference exceeds the resolution of a value of this scale. NaN differs from everything but
-/// NaN.
-fn has_moved(scale: f64, from: Option<f64>, to: Option<f64>) -> bool {
-    match (from, to) {
-        (Some(from), Some(to)) if from == to || (from.is_nan() && to.is_nan()) => false,
-        (Some(from), Some(to)) => {
-            let is_within = (from - to).abs() <= SHARE * scale;
-            !is_within // so is a difference that is not a number
-        }
-        _ => from.is_some() != to.is_some(),
-    }
-}
-
-fn of_run(
-    name: &str,
-    was: Option<&Record>,
-    is: Option<&Record>,
-    bounds: &Bounds,
-) -> Vec<(ChangeKind, String)> {
+fn of_run(was: Option<&Record>, is: Option<&Record>, cases: &Cases) -> Vec<(ChangeKind, String)> {
     let status = |kind, record: &Record| vec![(kind, format!("the run, {}", record.status))];
-    let (was, is) = match (was, is) {
-        (Some(was), Some(is)) => (was, is),
-        (was, None) => return was.map_or(Vec::new(), |was| status(ChangeKind::Gone, was)),
-        (None, Some(is)) => return status(ChangeKind::New, is),
-    };
+    match (was, is) {
+        (Some(was), Some(is)) => {
+            let case = cases.get(&*is.run.case);
+            let gates = case.map(|case| case.gates(&is.spec())).unwrap_or_default();
+            of_both(was, is, &metrics::changes(case, &gates, [&was.metrics, &is.metrics]))
+        }
+        (was, None) => was.map_or(Vec::new(), |was| status(ChangeKind::Gone, was)),
+        (None, Some(is)) => status(ChangeKind::New, is),
+    }
+}
+
+/// The changes of a run with these changes of its metrics.
+fn of_both(was: &Record, is: &Record, metrics: &[MetricChange]) -> Vec<(ChangeKind, String)> {
     let mut changes = Vec::new();
     let statuses = format!("{} to {}", was.status, is.status);
     if was.status != is.status {
         let is_worse = was.status == Status::Completed;
-        changes.push((
-            if is_worse { ChangeKind::Stopped } else { ChangeKind::Status },
-            statuses.clone(),
-        ));
+        let kind = if is_worse { ChangeKind::Stopped } else { ChangeKind::Status };
+        changes.push((kind, statuses.clone()));
     }
-    changes.extend(of_metrics(name, was, is, bounds));
+    changes.extend(of_metrics(was, is, metrics));
     if was.state != is.state {
         changes.push((ChangeKind::State, format!("other bits at the end ({statuses})")));
     }
@@ -445,51 +434,47 @@ fn of_run(
     changes
 }
 
-/// Metrics of one run that disappeared, appeared or moved, in one change each.
-fn of_metrics(name: &str, was: &Record, is: &Record, bounds: &Bounds) -> Vec<(ChangeKind, String)> {
-    let value = |record: &Record, metric: &str| record.metrics.get(metric).map(|m| m.value);
-    let lacking = |of: &Record, other: &Record| -> Vec<String> {
-        let reason = |metric: &String| match other.absent.get(metric) {
-            Some(why) => format!("{metric} ({why})"),
-            None => metric.clone(),
-        };
-        let gone = of.metrics.keys().filter(|metric| value(other, metric).is_none());
-        gone.map(reason).collect()
-    };
-    let moved = was.metrics.iter().filter_map(|(metric, from)| {
-        let (from, to) = (from.value, value(is, metric)?);
-        let bound = bounds.get(&(name.to_string(), metric.clone()));
-        let scale = bound.map_or(from.abs().max(to.abs()), |bound| bound.scale());
-        has_moved(scale, Some(from), Some(to)).then(|| format!("{metric} {from:?} to {to:?}"))
-    });
-    let all = [
-        (ChangeKind::Gone, lacking(was, is)),
-        (ChangeKind::New, lacking(is, was)),
-        (ChangeKind::Value, moved.collect()),
-    ];
-    let told = |(kind, metrics): (ChangeKind, Vec<String>)| {
-        let told = metrics.iter().take(TOLD).cloned().collect::<Vec<_>>().join(", ");
-        match metrics.len() {
-            0 => None,
-            1..=TOLD => Some((kind, told)),
-            count => Some((kind, format!("{told} and {} more", count - TOLD))),
+/// One change for each kind of change of metrics, with the first [`TOLD`] metrics.
+fn of_metrics(
+    was: &Record,
+    is: &Record,
+    metrics: &[MetricChange],
+) -> impl Iterator<Item = (ChangeKind, String)> {
+    let words = |MetricChange { metric, before, now, change, .. }: &MetricChange| {
+        let lacking = if now.is_none() { is } else { was };
+        match (before, now, lacking.absent.get(metric)) {
+            (Some(_), Some(_), _) if *change == Change::Gone => {
+                format!("{metric} {}", change.in_words(true))
+            }
+            (Some(before), Some(now), _) => format!("{metric} {before:?} to {now:?}"),
+            (.., Some(why)) => format!("{metric} ({why})"),
+            (.., None) => metric.clone(),
         }
     };
-    all.into_iter().filter_map(told).collect()
+    let mut told = BTreeMap::<ChangeKind, Vec<String>>::new();
+    for of in metrics {
+        let kind = ChangeKind::of(of.change).map(|kind| told.entry(kind).or_default());
+        kind.into_iter().for_each(|all| all.push(words(of)));
+    }
+    told.into_iter().map(|(kind, all)| {
+        let told = all[..all.len().min(TOLD)].join(", ");
+        let more = all.len().saturating_sub(TOLD);
+        (kind, if more == 0 { told } else { format!("{told} and {more} more") })
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use touchstone_base::gate::{Evidence, Gate};
-    use touchstone_base::record::MetricKey;
+    use touchstone_base::gate::{Bound, Evidence, Gate};
+    use touchstone_base::record::{Metric, MetricKey};
 
     use super::*;
 
     const L2: MetricKey = MetricKey::new("l2", "-", "staged");
     const DRIFT: MetricKey = MetricKey::new("drift", "-", "staged");
 
-    /// Runs 0 to 2, whose metric `l2` has a gate of at most 0.5 and `drift` none.
-    fn records() -> (BTreeMap<String, Record>, Bounds) {
+    /// Runs 0 to 2 with the metrics `l2` and `drift`.
+    fn records() -> BTreeMap<String, Record> {
         let record = |k: usize| {
             let mut record = Record::new("c", "v", json!({ "k": k }), 1);
             record.put(L2, 0.1);
@@ -499,17 +484,25 @@ mod tests {
             record.manifest.cpu = "staged".into();
             (k.to_string(), record)
         };
-        let bound = |k: usize| ((k.to_string(), "l2".to_string()), Bound::Below(0.5));
-        ((0..3).map(record).collect(), (0..3).map(bound).collect())
+        (0..3).map(record).collect()
+    }
+
+    /// The changes of a run, whose `l2` has a gate of at most 0.5 and whose `drift` has none.
+    fn of_run(was: Option<&Record>, is: Option<&Record>) -> Vec<(ChangeKind, String)> {
+        let (Some(was), Some(is)) = (was, is) else {
+            return super::of_run(was, is, &Cases::new());
+        };
+        let gate = Gate::new("c.l2", "l2", Bound::Below(0.5), Evidence::Theory, "staged");
+        let metrics = metrics::changes(None, [&gate], [&was.metrics, &is.metrics]);
+        of_both(was, is, &metrics)
     }
 
     /// The changes after something was done to the record of run 1.
     fn changes(change: impl Fn(&mut Record)) -> Vec<(ChangeKind, String)> {
-        let (old, bounds) = records();
+        let old = records();
         let mut new = old.clone();
         change(new.get_mut("1").expect("run 1"));
-        let changes =
-            paired(&old, &new, |name, was, is| of_run(name, was, is, &bounds)).into_iter();
+        let changes = paired(&old, &new, |_, was, is| of_run(was, is)).into_iter();
         changes.map(|change| (change.kind, format!("{}: {}", change.name, change.words))).collect()
     }
 
@@ -523,15 +516,18 @@ mod tests {
     fn a_metric_that_moved_by_more_than_the_resolution_of_its_gate_is_told() {
         assert_eq!(changes(|_| ()), []);
         assert_eq!(changes(|record| record.put(L2, 0.1049)), [], "0.98 % of the bound 0.5");
-        one(|record| record.put(L2, 0.1051), ChangeKind::Value, "l2 0.1 to 0.1051");
-        one(|record| record.put(L2, 123.0), ChangeKind::Value, "l2 0.1 to 123.0");
-        one(|record| record.put(L2, f64::NAN), ChangeKind::Value, "l2 0.1 to NaN");
+        one(|record| record.put(L2, 0.1051), ChangeKind::Worse, "l2 0.1 to 0.1051");
+        one(|record| record.put(L2, 123.0), ChangeKind::Worse, "l2 0.1 to 123.0");
+        one(|record| record.put(L2, f64::NAN), ChangeKind::Worse, "l2 0.1 to NaN");
         assert_eq!(changes(|record| record.put(DRIFT, 1.009e-9)), [], "0.9 % of itself");
-        one(|record| record.put(DRIFT, 1.02e-9), ChangeKind::Value, "drift 1e-9 to 1.02e-9");
+        one(|record| record.put(DRIFT, 1.02e-9), ChangeKind::Changed, "drift 1e-9 to 1.02e-9");
         let all = |record: &mut Record| {
             record.metrics.values_mut().for_each(|metric| metric.value = 123.0);
         };
-        one(all, ChangeKind::Value, "drift 1e-9 to 123.0, l2 0.1 to 123.0");
+        let told = ["1: l2 0.1 to 123.0", "1: drift 1e-9 to 123.0"].map(String::from);
+        let kinds = [ChangeKind::Worse, ChangeKind::Changed];
+        assert!(changes(all).into_iter().eq(kinds.into_iter().zip(told)));
+        one(|record| record.put(L2, 0.01), ChangeKind::Better, "l2 0.1 to 0.01");
     }
 
     #[test]
@@ -544,16 +540,20 @@ mod tests {
         one(|record| record.metrics.clear(), ChangeKind::Gone, "drift, l2");
         let new = |record: &mut Record| record.put(MetricKey::new("new", "-", "staged"), 1.0);
         one(new, ChangeKind::New, "new");
+        let other = |record: &mut Record| {
+            record.metrics.insert("l2".into(), Metric::new(0.1, "-", "of another norm"));
+        };
+        one(other, ChangeKind::Gone, "l2 has another unit or formula");
         assert!(ChangeKind::Gone.is_loss() && !ChangeKind::New.is_loss());
     }
 
     #[test]
     fn a_run_that_vanished_or_ended_otherwise_is_told() {
-        let (old, bounds) = records();
+        let old = records();
         let mut new = old.clone();
         new.remove("1");
         for (from, to, kind) in [(&old, &new, ChangeKind::Gone), (&new, &old, ChangeKind::New)] {
-            let found = paired(from, to, |name, was, is| of_run(name, was, is, &bounds));
+            let found = paired(from, to, |_, was, is| of_run(was, is));
             let found: Vec<_> = found.iter().map(|c| (c.kind, c.name.as_str())).collect();
             assert_eq!(found, [(kind, "1")]);
         }
@@ -602,11 +602,11 @@ mod tests {
         assert_eq!(kinds(&judged(0.1), &judged(0.6)), [ChangeKind::Failing]);
         assert_eq!(kinds(&judged(0.6), &judged(0.1)), [ChangeKind::Verdict]);
         assert_eq!(kinds(&judged(0.1), &judged(0.1049)), [], "0.98 % of the bound");
-        assert_eq!(kinds(&judged(0.1), &judged(0.1051)), [ChangeKind::Value]);
+        assert_eq!(kinds(&judged(0.1), &judged(0.1051)), [ChangeKind::Worse]);
         assert!(
             ChangeKind::Gone.is_loss()
                 && ChangeKind::Failing.is_loss()
-                && !ChangeKind::Value.is_loss()
+                && !ChangeKind::Worse.is_loss()
         );
     }
 }

@@ -32,8 +32,7 @@ use super::{
     baseline::Baseline,
     judged,
     judged::SubmissionVerdicts,
-    metrics::Scales,
-    output,
+    metrics, output,
     solve::{self, How},
     submitted,
 };
@@ -220,8 +219,8 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
     let verdicts = SubmissionVerdicts::of(case, &run, false);
     let mut verdicts = verdicts.ok_or_else(|| Failure::bug("a submission without its code"))?;
     let changes = before.map(|before| {
-        let scales = Scales::new(&index, &verdicts.judged);
-        scales.changes(&before.metrics, &verdicts.metrics)
+        let gates = verdicts.judged.iter().map(|of| &of.gate);
+        metrics::changes(Some(&index), gates, [&before.metrics, &verdicts.metrics])
     });
     if let Some(baseline) = &baseline {
         exit = baseline.exit(changes.as_deref().unwrap_or_default(), exit);

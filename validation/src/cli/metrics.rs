@@ -4,8 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::mem::discriminant;
 
 use serde::Serialize;
-use touchstone_base::{gate::Bound, record::Metric};
-use touchstone_harness::{gates::GateIndex, runs::Judged};
+use touchstone_base::{
+    gate::{Bound, Gate},
+    record::Metric,
+};
+use touchstone_harness::gates::GateIndex;
 
 use super::output;
 
@@ -39,12 +42,29 @@ pub enum Change {
 }
 
 impl Change {
+    /// The change of a value; `side` states which direction is better.
+    pub fn of(side: Option<Bound>, before: f64, now: f64, resolution: f64) -> Self {
+        match (before.is_finite(), now.is_finite()) {
+            (false, false) if before == now || before.is_nan() && now.is_nan() => Self::Same,
+            (false, false) => Self::Changed,
+            (false, true) => Self::Better,
+            (true, false) => Self::Worse,
+            (true, true) if (now - before).abs() <= resolution => Self::Same,
+            (true, true) => match side.map(|side| badness(side, now) - badness(side, before)) {
+                None => Self::Changed,
+                Some(more) if more > resolution => Self::Worse,
+                Some(more) if -more > resolution => Self::Better,
+                Some(_) => Self::Same,
+            },
+        }
+    }
+
     /// Does it break the promise that nothing became worse?
-    pub fn is_failure(self) -> bool {
+    pub fn is_worse(self) -> bool {
         matches!(self, Self::Changed | Self::Worse | Self::Gone)
     }
 
-    fn in_words(self, is_there: bool) -> &'static str {
+    pub fn in_words(self, is_there: bool) -> &'static str {
         match self {
             Self::Same => "is equal",
             Self::Better => "is better",
@@ -122,88 +142,61 @@ pub fn table(all: &[MetricChange]) -> String {
     output::table(&heads, all.iter().map(MetricChange::row))
 }
 
-/// Scale and direction of the metrics of a case.
-pub struct Scales {
-    /// The bound of the gate that judges a metric of this run.
-    bounds: BTreeMap<String, Bound>,
-    /// Bounds of gates of the case, by the name of their metric without its mark (`l2` of `l2@0.1`).
-    of_case: BTreeMap<String, Vec<Bound>>,
+/// All metrics of two runs of a case, by name; `gates` judge the later run.
+pub fn changes<'a>(
+    case: Option<&GateIndex>,
+    gates: impl IntoIterator<Item = &'a Gate>,
+    [before, now]: [&Metrics; 2],
+) -> Vec<MetricChange> {
+    let bounds: BTreeMap<&str, Bound> =
+        gates.into_iter().map(|gate| (&*gate.metric, gate.bound)).collect();
+    let names = before.keys().chain(now.keys()).collect::<BTreeSet<_>>();
+    let one = |metric: &String| {
+        let (was, is) = (before.get(metric), now.get(metric));
+        let of = was.or(is)?;
+        let [from, to] = [was, is].map(|of| of.map(|of| of.value));
+        let bound = bounds.get(&**metric).copied();
+        let resolution = resolution(bound, &of.unit, [from, to]);
+        let change = match (was, is) {
+            (Some(was), Some(is)) if (&was.unit, &was.formula) == (&is.unit, &is.formula) => {
+                let side = bound.or_else(|| side(case?, metric));
+                Change::of(side, was.value, is.value, resolution)
+            }
+            (None, _) => Change::New,
+            _ => Change::Gone,
+        };
+        Some(MetricChange {
+            metric: metric.clone(),
+            unit: of.unit.clone(),
+            before: from,
+            now: to,
+            resolution,
+            has_gate: bound.is_some(),
+            change,
+        })
+    };
+    names.into_iter().filter_map(one).collect()
 }
 
-impl Scales {
-    /// Of a run that these gates judge.
-    pub fn new(index: &GateIndex, judged: &[Judged]) -> Self {
-        let mut of_case = BTreeMap::<String, Vec<Bound>>::new();
-        let gates = index.judged().iter().flat_map(|planned| &planned.gates);
-        for gate in gates.filter(|gate| !gate.control) {
-            of_case.entry(unmarked(&gate.metric).into()).or_default().push(gate.bound);
-        }
-        let bounds = judged.iter().map(|of| (of.gate.metric.clone(), of.gate.bound)).collect();
-        Self { bounds, of_case }
-    }
+/// The bound that states the better side of a metric that no gate of the run reads: a one-sided bound of gates
+/// of the case on this metric with any mark (`l2` of `l2@0.1`), if all of them have the same side.
+fn side(case: &GateIndex, metric: &str) -> Option<Bound> {
+    let gates = case.judged().iter().flat_map(|planned| &planned.gates);
+    let of_metric =
+        gates.filter(|gate| !gate.control && unmarked(&gate.metric) == unmarked(metric));
+    let is_one_sided = |of: &Bound| matches!(of, Bound::Below(_) | Bound::Above(_));
+    let mut bounds = of_metric.map(|gate| gate.bound).filter(is_one_sided);
+    let first = bounds.next()?;
+    bounds.all(|of| discriminant(&of) == discriminant(&first)).then_some(first)
+}
 
-    /// How far a value is on the worse side; none if no gate states which side this is. A metric that no gate
-    /// of these settings reads has the direction of one-sided gates of the case, if all have the same.
-    fn badness(&self, metric: &str, value: f64) -> Option<f64> {
-        let of_case = || {
-            let is_one_sided = |of: &&Bound| matches!(of, Bound::Below(_) | Bound::Above(_));
-            let mut all = self.of_case.get(unmarked(metric))?.iter().filter(is_one_sided);
-            let first = *all.next()?;
-            all.all(|of| discriminant(of) == discriminant(&first)).then_some(first)
-        };
-        match self.bounds.get(metric).copied().or_else(of_case)? {
-            Bound::Below(_) => Some(value),
-            Bound::Above(_) => Some(-value),
-            Bound::Within(low, high) => Some((value - 0.5 * (low + high)).abs()),
-            Bound::Equals(expected) => Some((value - expected).abs()),
-        }
-    }
-
-    fn change(&self, metric: &str, before: f64, now: f64, resolution: f64) -> Change {
-        match (before.is_finite(), now.is_finite()) {
-            (false, false) => return Change::Same,
-            (false, true) => return Change::Better,
-            (true, false) => return Change::Worse,
-            (true, true) if (now - before).abs() <= resolution => return Change::Same,
-            (true, true) => {}
-        }
-        let badness = |value: f64| self.badness(metric, value);
-        match badness(before).zip(badness(now)) {
-            None => Change::Changed,
-            Some((before, now)) if now - before > resolution => Change::Worse,
-            Some((before, now)) if before - now > resolution => Change::Better,
-            Some(_) => Change::Same,
-        }
-    }
-
-    /// All metrics of two runs, by name.
-    pub fn changes(&self, before: &Metrics, now: &Metrics) -> Vec<MetricChange> {
-        let names = before.keys().chain(now.keys()).collect::<BTreeSet<_>>();
-        let one = |metric: &String| {
-            let (was, is) = (before.get(metric), now.get(metric));
-            let of = was.or(is)?;
-            let [from, to] = [was, is].map(|of| of.map(|of| of.value));
-            let bound = self.bounds.get(metric);
-            let resolution = resolution(bound, &of.unit, [from, to]);
-            let change = match (was, is) {
-                (Some(was), Some(is)) if (&was.unit, &was.formula) == (&is.unit, &is.formula) => {
-                    self.change(metric, was.value, is.value, resolution)
-                }
-                (None, _) => Change::New,
-                _ => Change::Gone,
-            };
-            let (metric, unit) = (metric.clone(), of.unit.clone());
-            Some(MetricChange {
-                metric,
-                unit,
-                before: from,
-                now: to,
-                resolution,
-                has_gate: bound.is_some(),
-                change,
-            })
-        };
-        names.into_iter().filter_map(one).collect()
+/// How far a value is on the worse side of a bound.
+fn badness(bound: Bound, value: f64) -> f64 {
+    match bound {
+        Bound::Below(_) => value,
+        Bound::Above(_) => -value,
+        Bound::Within(low, high) => (value - 0.5 * (low + high)).abs(),
+        Bound::Equals(expected) => (value - expected).abs(),
     }
 }
 
@@ -213,7 +206,7 @@ fn unmarked(metric: &str) -> &str {
 }
 
 /// The largest difference of two values that counts as none.
-fn resolution(bound: Option<&Bound>, unit: &str, values: [Option<f64>; 2]) -> f64 {
+fn resolution(bound: Option<Bound>, unit: &str, values: [Option<f64>; 2]) -> f64 {
     let largest = values
         .into_iter()
         .flatten()

@@ -100,12 +100,17 @@ fn sweep(
 /// The cost of each run, one row for each line of the plan with its number for `run --index`; gaps for a
 /// refused run.
 fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
-    let of_run = |(index, (job, size)): (usize, (&Job, &Option<Size>))| match size {
-        Some(size) => [index as f64, time(&job.planned.spec, size), 1e-6 * size.bytes()],
-        None => [index as f64, f64::NAN, f64::NAN],
-    };
-    let rows: Vec<[f64; 3]> = jobs.iter().zip(sizes).enumerate().map(of_run).collect();
-    Profile::of_rows(&[("index", "-"), ("time", "s"), ("memory", "MB")], &rows)
+    type Row<'a> = (usize, (&'a Job, &'a Option<Size>));
+    let rows: Vec<Row> = jobs.iter().zip(sizes).enumerate().collect();
+    let known = |size: &Option<Size>, of: &dyn Fn(&Size) -> f64| size.as_ref().map_or(f64::NAN, of);
+    Profile::of(
+        &rows,
+        &[
+            ("index", "-", &|(index, _)| *index as f64),
+            ("time", "s", &|(_, (job, size))| known(size, &|size| time(&job.planned.spec, size))),
+            ("memory", "MB", &|(_, (_, size))| known(size, &|size| 1e-6 * size.bytes())),
+        ],
+    )
 }
 
 /// Total cost of all runs, the longest and the largest run, and the number of refused runs.

@@ -17,6 +17,7 @@ use touchstone_base::{
     lock,
     record::{Profile, Record, Status},
 };
+use touchstone_cases::fluids::channel;
 use touchstone_harness::{
     case::{self, Case, RunError},
     checkpoint::Checkpoints,
@@ -341,7 +342,7 @@ fn write(
     let earlier = left_by_earlier(output.path(), frames);
     output.write(RECORD, record.to_json().map_err(Failure::bug)?.as_bytes())?;
     let mut names = vec![RECORD.to_string()];
-    if let Some(shown) = velocities(record).or(last) {
+    if let Some(shown) = channel::velocities(record).or(last) {
         output.write("profile.csv", shown.to_csv().as_bytes())?;
         names.push("profile.csv".into());
     }
@@ -361,25 +362,6 @@ fn write(
     }
     let _ = fs::remove_dir(folder.vtk()); // refused by the system unless empty
     Ok(names)
-}
-
-/// The velocity across a channel at all times of the record: profiles `u@TAU` with TAU = νt/L².
-fn velocities(record: &Record) -> Option<Profile> {
-    let setting = |name: &str| record.run.settings[name].as_f64();
-    let (width, nu) = (setting("width")?, setting("nu")?);
-    let mut profiles: Vec<(f64, &Profile)> = Vec::new();
-    for (name, profile) in &record.profiles {
-        profiles.extend(name.strip_prefix("u@").and_then(|tau| Some((tau.parse().ok()?, profile))));
-    }
-    profiles.sort_by(|(tau, _), (other, _)| tau.total_cmp(other));
-    let mut rows = Vec::new();
-    for (tau, profile) in profiles {
-        let time = tau * (width * width / nu);
-        let [y, u, exact] = ["y", "u", "u_exact"].map(|name| profile.column(name));
-        rows.extend(y.iter().zip(u).zip(exact).map(|((y, u), exact)| [time, *y, *u, *exact]));
-    }
-    let columns = [("t", "s"), ("y", "m"), ("u", "m/s"), ("u_exact", "m/s")];
-    (!rows.is_empty()).then(|| Profile::of_rows(&columns, &rows))
 }
 
 /// The metrics of a record, what is absent, the parameters that follow from the settings, and the work.
@@ -444,7 +426,7 @@ fn metrics(record: &Record) -> String {
         metric.map(|metric| touchstone_report::sig(metric.value, 4)).unwrap_or_default()
     };
     // Times of channels are νt/L²; times of other cases are in the units of their formulas.
-    let at = if velocities(record).is_some() { "at νt/L²" } else { "at" };
+    let at = if channel::velocities(record).is_some() { "at νt/L²" } else { "at" };
     let heads: Vec<&str> = std::iter::once(at).chain(of_times.keys().copied()).collect();
     let row = |time: &&str| {
         let values = of_times.keys().map(|name| value(name, time));

@@ -129,25 +129,42 @@ fn pose(method: &Method, s: &CylinderSettings) -> Result<Simple, RunError> {
     Ok(Simple::new(method, (medium, rules), size, &numbers, scene, at_end))
 }
 
+/// A particle in polar coordinates.
+struct Polar {
+    /// \[m\].
+    radius: f64,
+    /// Velocity around the axis \[m/s\].
+    around: f64,
+    /// Velocity away from the axis \[m/s\].
+    outwards: f64,
+}
+
+impl Polar {
+    fn of(p: &Point) -> Self {
+        let (x, v, radius) = (p.position, p.velocity, p.position.norm());
+        Self { radius, around: x.perp(&v) / radius, outwards: x.dot(&v) / radius }
+    }
+}
+
 fn measure(flow: &TaylorCouette, fluid: &[Point], record: &mut Record) {
-    let polar = |p: &Point| {
-        let (x, v, r) = (p.position, p.velocity, p.position.norm());
-        [r, x.perp(&v) / r, x.dot(&v) / r]
-    };
-    let mut fluid: Vec<[f64; 3]> = fluid.iter().map(polar).collect();
-    fluid.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let around: Vec<f64> = fluid.iter().map(|f| f[1]).collect();
-    let exact: Vec<f64> = fluid.iter().map(|f| flow.velocity(f[0])).collect();
-    let square = fluid.iter().map(|f| f[2] * f[2]).sum::<f64>() / fluid.len() as f64;
-    let outside = fluid.iter().filter(|f| !(flow.inner..=flow.outer).contains(&f[0])).count();
+    let mut fluid: Vec<Polar> = fluid.iter().map(Polar::of).collect();
+    fluid.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+    let around: Vec<f64> = fluid.iter().map(|f| f.around).collect();
+    let exact: Vec<f64> = fluid.iter().map(|f| flow.velocity(f.radius)).collect();
+    let square = fluid.iter().map(|f| f.outwards * f.outwards).sum::<f64>() / fluid.len() as f64;
+    let outside = fluid.iter().filter(|f| !(flow.inner..=flow.outer).contains(&f.radius)).count();
     record.put(L2, l2(&around, &exact));
     record.put(RADIAL_RMS, square.sqrt() / flow.speed);
     record.put(OUTSIDE, outside as f64);
-    let row =
-        |f: &[f64; 3]| [f[0] / flow.inner, f[1] / flow.speed, flow.velocity(f[0]) / flow.speed];
-    let columns = [("r", "inner radius"), ("u", "V"), ("u_exact", "V")];
-    let rows: Vec<[f64; 3]> = fluid.iter().map(row).collect();
-    record.profiles.insert("velocity".into(), Profile::of_rows(&columns, &rows));
+    let velocity = Profile::of(
+        &fluid,
+        &[
+            ("r", "inner radius", &|f| f.radius / flow.inner),
+            ("u", "V", &|f| f.around / flow.speed),
+            ("u_exact", "V", &|f| flow.velocity(f.radius) / flow.speed),
+        ],
+    );
+    record.profiles.insert("velocity".into(), velocity);
 }
 
 fn variants() -> Compositions<CylinderSettings> {

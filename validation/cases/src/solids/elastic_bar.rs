@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::{erfc, exp},
-    record::MetricKey,
+    record::{ColumnOf, MetricKey},
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
@@ -197,29 +197,38 @@ pub struct Motion {
     total: f64,
     /// Energy at the start \[J/m\].
     energy: Result<f64, Absent>,
-    /// t \[s\], centre of the velocity \[m\], mean velocities left and right of x = 0 \[m/s\].
-    series: Vec<[f64; 4]>,
+    series: Vec<MotionSample>,
     /// Mean −σˣˣ within L/2 of the contact when the bars are at rest \[Pa\].
     stress: Option<f64>,
 }
 
-/// Mass, place and velocity along x of a particle.
-fn along(p: Point) -> (f64, f64, f64) {
-    (p.mass, p.position.x, p.velocity.x)
+/// The motion along x at a time.
+#[derive(Clone, Serialize, Deserialize)]
+struct MotionSample {
+    /// \[s\].
+    time: f64,
+    /// Centre of the momentum \[m\].
+    centre: f64,
+    /// Mean velocity of the mass at x < 0 \[m/s\].
+    left: f64,
+    /// Mean velocity of the mass at x ≥ 0 \[m/s\].
+    right: f64,
 }
 
-/// A row of the series from masses, places and velocities along x.
-fn row(time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> [f64; 4] {
-    let (mut momentum, mut first) = ([0.0; 2], 0.0);
-    let mut mass = [0.0; 2];
-    for (m, x, v) in particles {
-        let side = usize::from(x >= 0.0);
-        mass[side] += m;
-        momentum[side] += m * v;
-        first += m * v * x;
+impl MotionSample {
+    fn of(time: f64, particles: impl Iterator<Item = Point>) -> Self {
+        let (mut momentum, mut first) = ([0.0; 2], 0.0);
+        let mut mass = [0.0; 2];
+        for Point { mass: m, position, velocity, .. } in particles {
+            let (x, v) = (position.x, velocity.x);
+            let side = usize::from(x >= 0.0);
+            mass[side] += m;
+            momentum[side] += m * v;
+            first += m * v * x;
+        }
+        let [left, right] = [0, 1].map(|k| momentum[k] / mass[k]);
+        Self { time, centre: first / (momentum[0] + momentum[1]), left, right }
     }
-    let mean = [0, 1].map(|k| momentum[k] / mass[k]);
-    [time, first / (momentum[0] + momentum[1]), mean[0], mean[1]]
 }
 
 /// Mean −σˣˣ within L/2 of the contact \[Pa\].
@@ -235,14 +244,15 @@ fn contact_stress(s: &BarSettings, now: &Snapshot<Symmetric>) -> Result<f64, Abs
     Ok(sum / count)
 }
 
-/// How far the pulse is from the exact one, from masses, places and velocities along x at a time.
-fn pulse_rms(s: &BarSettings, time: f64, particles: impl Iterator<Item = (f64, f64, f64)>) -> f64 {
+/// How far the pulse is from the exact one at a time \[s\].
+fn pulse_rms(s: &BarSettings, time: f64, particles: impl Iterator<Item = Point>) -> f64 {
     let run = s.wave() * time;
     let exact = |x: f64| s.pulse(x - run) + s.pulse(2.0 * s.length - x - run);
-    let (wrong, all) = particles.fold((0.0, 0.0), |(wrong, all), (m, x, v)| {
-        let exact = exact(x);
-        (wrong + m * (v - exact).powi(2), all + m * exact * exact)
-    });
+    let (wrong, all) =
+        particles.fold((0.0, 0.0), |(wrong, all), Point { mass, position, velocity, .. }| {
+            let exact = exact(position.x);
+            (wrong + mass * (velocity.x - exact).powi(2), all + mass * exact * exact)
+        });
     (wrong / all).sqrt()
 }
 
@@ -252,18 +262,19 @@ impl Motion {
             momentum: start.iter().map(|p| p.velocity * p.mass).sum(),
             total: start.iter().map(|p| p.velocity.norm() * p.mass).sum(),
             energy,
-            series: vec![row(0.0, start.iter().copied().map(along))],
+            series: vec![MotionSample::of(0.0, start.iter().copied())],
             stress: None,
         }
     }
 
-    /// When column `k` of the series first passes a value, between two steps \[s\].
-    fn passes(&self, k: usize, value: f64) -> f64 {
-        passes(&self.series, k, value).next().map_or(f64::NAN, |(time, _)| time)
+    /// When a quantity first passes a value, between two steps \[s\].
+    fn passes(&self, of: fn(&MotionSample) -> f64, value: f64) -> f64 {
+        let history = self.series.iter().map(|at| (at.time, of(at)));
+        passes(history, value).next().map_or(f64::NAN, |(time, _)| time)
     }
 
     fn pulse_metrics(&self, s: &BarSettings, record: &mut Record) {
-        let [from, to] = STATIONS.map(|x| self.passes(1, x * s.length));
+        let [from, to] = STATIONS.map(|x| self.passes(|at| at.centre, x * s.length));
         let span = (STATIONS[1] - STATIONS[0]) * s.length / s.wave();
         let lattice = SquareLattice::of::<CubicSpline>(s.solid.h_over_dx, 0.01);
         let factor = lattice.gradient_factor();
@@ -277,27 +288,28 @@ impl Motion {
         let speed = s.speed();
         let Material { density, bulk, shear } = s.material();
         let exact = Impact::new(bulk, shear, density, speed);
-        let [from, to] = EXCHANGED.map(|share| self.passes(2, (1.0 - 2.0 * share) * speed));
+        let exchanged = |share: f64| self.passes(|at| at.left, (1.0 - 2.0 * share) * speed);
+        let [from, to] = EXCHANGED.map(exchanged);
         let time = Some((to - from) / (EXCHANGED[1] - EXCHANGED[0])).filter(|t| t.is_finite());
-        let last = self.series.last().copied().unwrap_or([f64::NAN; 4]);
-        let least = self.series.iter().map(|row| row[2]).fold(f64::INFINITY, f64::min);
+        let apart = self.series.last().map_or(f64::NAN, |at| at.right - at.left);
+        let least = self.series.iter().map(|at| at.left).fold(f64::INFINITY, f64::min);
         let stress = self.stress.map(|stress| stress / exact.stress - 1.0);
         record.put_or(STRESS_ERROR, stress, "the left bar does not come to rest");
         let error = time.map(|time| time * exact.speed / (2.0 * s.length) - 1.0);
         record.put_or(CONTACT_TIME_ERROR, error, "less than 90 % of the velocity is exchanged");
         record.put(EXCHANGE, -least / speed);
-        let apart = (s.gap > 0.0).then_some((last[3] - last[2]) / (2.0 * speed));
+        let apart = (s.gap > 0.0).then_some(apart / (2.0 * speed));
         record.put_or(RESTITUTION, apart, "bars on one lattice are one bar and do not part");
     }
 }
 
 impl Watch<BarSettings> for Motion {
     fn after_step(&mut self, s: &BarSettings, now: &Snapshot<Symmetric>) {
-        let row = row(now.time(), now.stored().map(along));
-        self.series.push(row);
-        if s.collide && self.stress.is_none() && row[2] <= 0.0 {
+        let sample = MotionSample::of(now.time(), now.stored());
+        if s.collide && self.stress.is_none() && sample.left <= 0.0 {
             self.stress = contact_stress(s, now).ok();
         }
+        self.series.push(sample);
     }
 
     fn measure(self, s: &BarSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
@@ -305,7 +317,7 @@ impl Watch<BarSettings> for Motion {
             true => self.impact_metrics(s, record),
             false => {
                 self.pulse_metrics(s, record);
-                record.put(PULSE_RMS, pulse_rms(s, end.time(), end.stored().map(along)));
+                record.put(PULSE_RMS, pulse_rms(s, end.time(), end.stored()));
             }
         }
         let momentum = momentum(&end.all()) - self.momentum;
@@ -313,16 +325,16 @@ impl Watch<BarSettings> for Motion {
         let after = ElasticEnergy::of(end, &s.material());
         let change = after.and_then(|after| Ok(after.total() / self.energy.clone()? - 1.0));
         record.put_or_absent(ENERGY_CHANGE, change);
-        let column = |k: usize| self.series.iter().map(|row| row[k]).collect();
-        let time = Profile::default().with("t", "s", column(0));
         // Bars that collide have no momentum together, and so no centre of it; a pulse has one side.
-        let profile = if s.collide {
-            let left = time.with("left mean velocity", "m/s", column(2));
-            left.with("right mean velocity", "m/s", column(3))
-        } else {
-            time.with("centre of velocity", "m", column(1))
+        let columns: &[ColumnOf<MotionSample>] = match s.collide {
+            true => &[
+                ("t", "s", &|at| at.time),
+                ("left mean velocity", "m/s", &|at| at.left),
+                ("right mean velocity", "m/s", &|at| at.right),
+            ],
+            false => &[("t", "s", &|at| at.time), ("centre of velocity", "m", &|at| at.centre)],
         };
-        record.profiles.insert("motion".into(), profile);
+        record.profiles.insert("motion".into(), Profile::of(&self.series, columns));
     }
 }
 
@@ -506,10 +518,12 @@ mod tests {
     use touchstone_harness::{
         case::{Case, RunError},
         context::Context,
+        snapshot::ParticleArrays,
     };
+    use touchstone_solver::Role;
 
     /// Motion that was written down, not stepped.
-    fn motion(series: Vec<[f64; 4]>, stress: Option<f64>) -> Motion {
+    fn motion(series: Vec<MotionSample>, stress: Option<f64>) -> Motion {
         Motion { series, stress, ..Motion::new(&[], Ok(0.0)) }
     }
 
@@ -548,7 +562,8 @@ mod tests {
         let s = BarSettings::default();
         let row = |k: i32| {
             let time = 1e-5 * f64::from(k);
-            [time, 0.25 * s.length + 0.97 * s.wave() * time, 0.0, 0.0]
+            let centre = 0.25 * s.length + 0.97 * s.wave() * time;
+            MotionSample { time, centre, left: 0.0, right: 0.0 }
         };
         let mut record = record();
         motion((0..100).map(row).collect(), None).pulse_metrics(&s, &mut record);
@@ -569,11 +584,12 @@ mod tests {
                 let back = (1.25 - x / 0.1) / 0.0625;
                 1e-4 * (exp(-0.5 * z * z) + exp(-0.5 * back * back))
             };
-            (0..100).map(move |k| (2.0, place(k), factor * v(place(k))))
+            (0..100).map(move |k| (place(k), factor * v(place(k))))
         };
         let scaled = |factor: f64| {
-            let all = of(factor).map(|(m, x, v)| (m, x, v * s.wave()));
-            pulse_rms(&s, time, all.collect::<Vec<_>>().into_iter())
+            let along = |x: f64| Vector2::new(x, 0.0);
+            let all = of(factor).map(|(x, v)| (Role::Fluid, 2.0, [x, v * s.wave()].map(along)));
+            pulse_rms(&s, time, ParticleArrays::<Symmetric>::of(all).points.into_iter())
         };
         assert_relative_eq!(scaled(1.03), 0.03, max_relative = 1e-9);
         assert_relative_eq!(scaled(0.0), 1.0, max_relative = 1e-9);
@@ -589,10 +605,10 @@ mod tests {
         let row = |k: i32| {
             let share = 0.01 * f64::from(k);
             let left = speed * (1.0 - 2.0 * share).max(-0.96);
-            [last * share, 0.0, left, 0.9 * speed]
+            MotionSample { time: last * share, centre: 0.0, left, right: 0.9 * speed }
         };
         let mut found = record();
-        let series: Vec<[f64; 4]> = (0..=100).map(row).collect();
+        let series: Vec<MotionSample> = (0..=100).map(row).collect();
         motion(series.clone(), Some(1.02 * exact.stress)).impact_metrics(&s, &mut found);
         close(&found, CONTACT_TIME_ERROR, 0.05);
         close(&found, STRESS_ERROR, 0.02);
@@ -624,7 +640,7 @@ mod tests {
         let bulk = 2e6 / (3.0 * (1.0 - 2.0 * 0.3975));
         let stress = watch.stress.expect("the left bar flies back");
         assert_relative_eq!(stress, bulk * 0.002 + 1000.0, max_relative = 1e-9);
-        let [_, _, left, right] = watch.series[1];
+        let MotionSample { left, right, .. } = watch.series[1];
         assert_relative_eq!(left, -0.2, max_relative = 1e-9);
         assert_relative_eq!(right, 0.5, max_relative = 1e-9);
     }

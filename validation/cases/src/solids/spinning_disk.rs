@@ -8,7 +8,6 @@ use touchstone_base::absent::Absent;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::Statement,
-    series::Series,
     snapshot::{Snapshot, momentum},
     studies::{Accuracy, Budgets, Change, Spacing},
     table::{Row, Table},
@@ -118,11 +117,22 @@ pub struct DiskHistory {
     /// \[kg/m\].
     mass: f64,
     until: f64,
-    /// t \[s\], angular momentum, energy, mean square of the deviator.
-    series: Series<4>,
-    /// Shear squared after the first step: the largest inside, the mean in the rim \[Pa²\]; and the
-    /// step \[s\].
-    first: Option<([f64; 2], f64)>,
+    series: Vec<SpinSample>,
+    /// The shear after the first step, and the step \[s\].
+    first: Option<(MistakenShear, f64)>,
+}
+
+/// The disk at a time.
+#[derive(Clone, Serialize, Deserialize)]
+struct SpinSample {
+    /// \[s\].
+    time: f64,
+    /// Angular momentum \[kg m/s\].
+    spin: f64,
+    /// Total energy \[J/m\].
+    energy: Result<f64, Absent>,
+    /// Mean square of the deviatoric stress \[Pa²\].
+    stress: Result<f64, Absent>,
 }
 
 impl DiskHistory {
@@ -131,9 +141,9 @@ impl DiskHistory {
         let spin = start.iter().map(|p| p.mass * p.position.perp(&p.velocity)).sum();
         let (mass, until) = (start.iter().map(|p| p.mass).sum(), s.end() / SAMPLES);
         let energy = ElasticEnergy::of_points(start.into_iter(), scene, &s.material());
-        let mut series = Series::default();
-        series.push([Ok(0.0), Ok(spin), energy.map(|energy| energy.total()), Ok(0.0)]);
-        Self { mass, until, series, first: None }
+        let energy = energy.map(|energy| energy.total());
+        let start = SpinSample { time: 0.0, spin, energy, stress: Ok(0.0) };
+        Self { mass, until, series: vec![start], first: None }
     }
 
     fn sample(&mut self, s: &DiskSettings, now: &Snapshot<Symmetric>) {
@@ -149,19 +159,26 @@ impl DiskHistory {
         let spin = angular_momentum(now);
         // A sample after the last step, when the velocities of a leapfrog lag, is replaced by the
         // synchronised one.
-        if self.series.last(0) == Ok(now.time()) {
-            self.series.pop();
-        }
-        self.series.push([Ok(now.time()), Ok(spin), energy, mean]);
+        self.series.pop_if(|last| last.time == now.time());
+        self.series.push(SpinSample { time: now.time(), spin, energy, stress: mean });
     }
 }
 
-/// The square of the shear in the plane, the largest inside of this radius and the mean outside
-/// \[Pa²\]. A step along tangents dilates a rotation by (W dt)²/2, which is no shear.
+/// The square of the shear in the plane of a disk that rotates \[Pa²\].
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct MistakenShear {
+    /// The largest inside.
+    inside: f64,
+    /// The mean in the rim.
+    rim: f64,
+}
+
+/// The shear inside of this radius and outside. A step along tangents dilates a rotation by (W dt)²/2, which
+/// is no shear.
 ///
 /// # Errors
 /// Without stresses.
-fn mistaken(now: &Snapshot<Symmetric>, radius: f64) -> Result<[f64; 2], Absent> {
+fn mistaken(now: &Snapshot<Symmetric>, radius: f64) -> Result<MistakenShear, Absent> {
     let (mut inside, mut rim, mut count) = (0.0_f64, 0.0, 0.0);
     let stress = now.stress()?;
     for p in now.stored() {
@@ -173,7 +190,7 @@ fn mistaken(now: &Snapshot<Symmetric>, radius: f64) -> Result<[f64; 2], Absent> 
             (rim, count) = (rim + square, count + 1.0);
         }
     }
-    Ok([inside, rim / count])
+    Ok(MistakenShear { inside, rim: rim / count })
 }
 
 impl Watch<DiskSettings> for DiskHistory {
@@ -195,12 +212,12 @@ impl Watch<DiskSettings> for DiskHistory {
         let (material, speed) = (s.material(), s.speed());
         let scale = material.density * speed * speed;
         metrics(&self.series, s.end, scale, record);
-        let tenth = match s.end > TENTH {
-            true => momentum_at(&self.series, TENTH / s.end * s.end()),
-            false => Err("the run is not longer than a tenth of a revolution".into()),
-        };
-        record.put_or_absent(ANGULAR_MOMENTUM_TENTH, tenth);
-        let ([inside, rim], dt) = self.first.unwrap_or(([f64::NAN; 2], 1.0));
+        let tenth = s.end > TENTH;
+        let tenth = tenth.then(|| momentum_at(&self.series, TENTH / s.end * s.end()));
+        let short = "the run is not longer than a tenth of a revolution";
+        record.put_or(ANGULAR_MOMENTUM_TENTH, tenth, short);
+        let unknown = MistakenShear { inside: f64::NAN, rim: f64::NAN };
+        let (MistakenShear { inside, rim }, dt) = self.first.unwrap_or((unknown, 1.0));
         let scale = 2.0 * material.shear * speed / s.radius;
         record.put(INTERIOR_STRAIN, inside.sqrt() / (scale * dt));
         record.put(RIM_STRAIN, rim.sqrt() / (scale * dt));
@@ -211,34 +228,32 @@ impl Watch<DiskSettings> for DiskHistory {
 
 /// Angular momentum at a time \[s\], between two samples of the series, over that at the start, minus 1; NaN
 /// outside of the series.
-fn momentum_at(series: &Series<4>, time: f64) -> Result<f64, Absent> {
-    let (times, spins) = (series.column(0)?, series.column(1)?);
-    let both: Vec<(f64, f64)> = times.iter().copied().zip(spins.iter().copied()).collect();
-    let found = history::differences(&both, &[(time, 0.0)]).map_or(f64::NAN, |found| found[0]);
-    Ok(found / spins[0] - 1.0)
+fn momentum_at(series: &[SpinSample], time: f64) -> f64 {
+    let spins: Vec<(f64, f64)> = series.iter().map(|at| (at.time, at.spin)).collect();
+    let found = history::differences(&spins, &[(time, 0.0)]).map_or(f64::NAN, |found| found[0]);
+    found / series[0].spin - 1.0
 }
 
-fn metrics(series: &Series<4>, revolutions: f64, scale: f64, record: &mut Record) {
-    let change = |k: usize| series.column(k).map(|all| all[all.len() - 1] / all[0] - 1.0);
-    let drift = change(1).map(|change| change.abs() / revolutions);
-    record.put_or_absent(ANGULAR_MOMENTUM_DRIFT, drift);
-    let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max).sqrt() / scale;
-    record.put_or_absent(LARGEST_STRESS, series.column(3).map(largest));
-    record.put_or_absent(ENERGY_DRIFT, change(2).map(|change| change / revolutions));
-    let columns = [
-        ("t", "s"),
-        ("angular momentum", "of the start"),
-        ("energy", "of the start"),
-        ("stress", "rho U^2"),
-    ];
-    let over_start = |k| {
-        let of_start = |all: &[f64]| all.iter().map(|value| value / all[0]).collect();
-        series.column(k).map(of_start)
-    };
-    let stress = series.column(3).map(|all| all.iter().map(|s| s.sqrt() / scale).collect());
-    let times = series.column(0).map(<[f64]>::to_vec);
-    let shown = Series::of([times, over_start(1), over_start(2), stress]);
-    record.profiles.insert("spin".into(), shown.profile(&columns));
+fn metrics(series: &[SpinSample], revolutions: f64, scale: f64, record: &mut Record) {
+    let (first, last) = (&series[0], &series[series.len() - 1]);
+    let drift = (last.spin / first.spin - 1.0).abs() / revolutions;
+    record.put(ANGULAR_MOMENTUM_DRIFT, drift);
+    let squares = series.iter().map(|at| at.stress.clone()).collect::<Result<Vec<f64>, Absent>>();
+    let largest = squares.map(|all| all.into_iter().fold(0.0, f64::max).sqrt() / scale);
+    record.put_or_absent(LARGEST_STRESS, largest);
+    let energies = series.iter().map(|at| at.energy.clone()).collect::<Result<Vec<f64>, Absent>>();
+    let change = energies.map(|all| all[all.len() - 1] / all[0] - 1.0);
+    record.put_or_absent(ENERGY_DRIFT, change.map(|change| change / revolutions));
+    let shown = Profile::of_known(
+        series,
+        &[
+            ("t", "s", &|at| Ok(at.time)),
+            ("angular momentum", "of the start", &|at| Ok(at.spin / first.spin)),
+            ("energy", "of the start", &|at| Ok(at.energy.clone()? / first.energy.clone()?)),
+            ("stress", "rho U^2", &|at| Ok(at.stress.clone()?.sqrt() / scale)),
+        ],
+    );
+    record.profiles.insert("spin".into(), shown);
 }
 
 /// Purpose of a run.
@@ -376,11 +391,12 @@ mod tests {
         let [x, y] = [rim.velocity.x, rim.velocity.y];
         assert!(x == 0.0 && (y / 2.851 - 1.0).abs() < 1e-3, "{x} {y} m/s");
         let DiskHistory { mass, series, .. } = DiskHistory::new(&s, &Snapshot::of(0.0, &particles));
-        let row = [0, 1, 2].map(|k| series.column(k).expect("a column")[0]);
+        let SpinSample { spin: found, ref energy, .. } = series[0];
+        let energy = energy.clone().expect("densities and stresses");
         let spin = 2.851 / 0.04;
         let inertia = mass * 0.5 * 0.04 * 0.04;
-        assert!((row[1] / (inertia * spin) - 1.0).abs() < 0.05, "R^2/2 in the mean");
-        assert!((row[2] / (0.5 * row[1] * spin) - 1.0).abs() < 2e-3);
+        assert!((found / (inertia * spin) - 1.0).abs() < 0.05, "R^2/2 in the mean");
+        assert!((energy / (0.5 * found * spin) - 1.0).abs() < 2e-3);
         assert!((s.end() / (TAU * 0.04 / 2.851) - 1.0).abs() < 1e-3);
     }
 
@@ -397,29 +413,36 @@ mod tests {
             .iter_mut()
             .min_by(|a, b| a.position.norm_squared().total_cmp(&b.position.norm_squared()));
         centre.expect("particles").extra = Symmetric { xx: 5.0, yy: -5.0, xy: 0.0 };
-        let [inside, rim] = mistaken(&Snapshot::of(0.0, &particles), 0.03).expect("stresses");
+        let found = mistaken(&Snapshot::of(0.0, &particles), 0.03).expect("stresses");
+        let MistakenShear { inside, rim } = found;
         assert!((inside - 50.0).abs() < 1e-12 && (rim - 9.0).abs() < 1e-12, "{inside} {rim}");
     }
 
     /// A disk that stopped passed: its angular momentum changed by less than 2.2 a revolution.
     #[test]
     fn a_disk_that_stops_fails() {
-        let rows = |left: f64| -> Series<4> {
+        let sample = |time: f64, spin: f64, stress: f64| SpinSample {
+            time,
+            spin,
+            energy: Ok(5.0),
+            stress: Ok(stress),
+        };
+        let rows = |left: f64| -> Vec<SpinSample> {
             let row = |k: i32| {
                 let share = 0.01 * f64::from(k);
-                [2.0 * share, 3.0 * (1.0 - (1.0 - left) * share), 5.0, 4.0 * share]
+                sample(2.0 * share, 3.0 * (1.0 - (1.0 - left) * share), 4.0 * share)
             };
-            (0..=100).map(row).collect::<Vec<_>>().into()
+            (0..=100).map(row).collect()
         };
         let mut record = Record::new("spinning_disk", "made-up", serde_json::Value::Null, 1);
         metrics(&rows(0.2), 0.5, 10.0, &mut record);
         let metric = |name| record.value(name).expect("measured");
         assert!((metric(ANGULAR_MOMENTUM_DRIFT) - 1.6).abs() < 1e-12, "0.8 in half a revolution");
         assert!((metric(LARGEST_STRESS) - 0.2).abs() < 1e-12);
-        let found = momentum_at(&rows(0.2), 0.405).expect("a column");
+        let found = momentum_at(&rows(0.2), 0.405);
         assert!((found + 0.8 * 0.2025).abs() < 1e-12);
-        let stopped = vec![[0.0, 3.0, 0.0, 0.0], [0.01, 0.0, 0.0, 0.0], [2.0, 0.0, 0.0, 0.0]];
-        let change = momentum_at(&stopped.into(), 0.2).expect("a column");
+        let stopped = [sample(0.0, 3.0, 0.0), sample(0.01, 0.0, 0.0), sample(2.0, 0.0, 0.0)];
+        let change = momentum_at(&stopped, 0.2);
         let fails = |gate: &Gate| gate.judge(Some(change)).verdict.is_failure();
         for planned in table(Tier::Full).plan().iter().filter(|planned| !planned.gates.is_empty()) {
             let name = String::from(ANGULAR_MOMENTUM_TENTH);

@@ -159,17 +159,36 @@ fn shape(particles: &[Point]) -> EllipseMoments {
 struct DropHistory {
     /// The exact drop at the start.
     exact: Exact,
-    /// t, semi-axes, the exact ones \[s, m\].
-    rows: Vec<[f64; 5]>,
-    /// Largest errors of momentum and of the place of the centre.
-    free_fall: [f64; 2],
+    samples: Vec<AxesSample>,
+    /// Largest error of the momentum.
+    momentum: f64,
+    /// Largest error of the place of the centre.
+    centre: f64,
     /// Sum over samples of the mean square error of the velocities, over the mean square of the exact ones.
     velocity: f64,
 }
 
+/// The shape of the drop at a time.
+#[derive(Serialize, Deserialize)]
+struct AxesSample {
+    /// \[s\].
+    time: f64,
+    /// Semi-axes along x and y \[m\].
+    axes: [f64; 2],
+    /// Their exact values \[m\].
+    exact: [f64; 2],
+}
+
+impl AxesSample {
+    /// The relative error of a semi-axis.
+    fn error(&self, axis: usize) -> f64 {
+        self.axes[axis] / self.exact[axis] - 1.0
+    }
+}
+
 impl DropHistory {
     fn new(exact: Exact) -> Self {
-        Self { exact, rows: Vec::new(), free_fall: [0.0; 2], velocity: 0.0 }
+        Self { exact, samples: Vec::new(), momentum: 0.0, centre: 0.0, velocity: 0.0 }
     }
 
     fn sample(&mut self, drop: &Drop, now: &Snapshot) {
@@ -184,29 +203,34 @@ impl DropHistory {
             [error + p.mass * away.norm_squared(), scale + p.mass * strain.norm_squared()]
         });
         self.velocity += error / scale;
-        self.rows.push([t, axes[0], axes[1], exact.a, exact.b]);
+        self.samples.push(AxesSample { time: t, axes, exact: [exact.a, exact.b] });
         let scale = self.exact.strain * self.exact.a + g.norm() * t;
         let velocity = (velocity - g * t).norm() / scale;
         let place = (centre - g * (0.5 * t * t)).norm() / (scale * t + self.exact.a);
-        self.free_fall = [self.free_fall[0].max(velocity), self.free_fall[1].max(place)];
+        (self.momentum, self.centre) = (self.momentum.max(velocity), self.centre.max(place));
     }
 
     fn measure(&self, record: &mut Record) {
-        let worst = |k: usize| {
-            let error = |row: &[f64; 5]| (row[k] / row[k + 2] - 1.0).abs();
-            largest(self.rows.iter().map(error))
-        };
-        record.put(A_ERROR, worst(1));
-        record.put(B_ERROR, worst(2));
-        let square = |row: &[f64; 5], k: usize| (row[k] / row[k + 2] - 1.0).powi(2);
-        let squares = self.rows.iter().map(|row| square(row, 1) + square(row, 2));
+        let Self { samples, .. } = self;
+        let worst = |axis: usize| largest(samples.iter().map(|at| at.error(axis).abs()));
+        record.put(A_ERROR, worst(0));
+        record.put(B_ERROR, worst(1));
+        let squares = samples.iter().map(|at| at.error(0).powi(2) + at.error(1).powi(2));
         let sum = squares.fold(0.0, |sum, square| sum + square);
-        record.put(AXES_RMS, (0.5 * sum / self.rows.len() as f64).sqrt());
-        record.put(VELOCITY_RMS, (self.velocity / self.rows.len() as f64).sqrt());
-        record.put(MOMENTUM_ERROR, self.free_fall[0]);
-        record.put(CENTRE_ERROR, self.free_fall[1]);
-        let names = [("t", "s"), ("a", "m"), ("b", "m"), ("a_exact", "m"), ("b_exact", "m")];
-        let series = Profile::of_rows(&names, &self.rows);
+        record.put(AXES_RMS, (0.5 * sum / samples.len() as f64).sqrt());
+        record.put(VELOCITY_RMS, (self.velocity / samples.len() as f64).sqrt());
+        record.put(MOMENTUM_ERROR, self.momentum);
+        record.put(CENTRE_ERROR, self.centre);
+        let series = Profile::of(
+            samples,
+            &[
+                ("t", "s", &|at| at.time),
+                ("a", "m", &|at| at.axes[0]),
+                ("b", "m", &|at| at.axes[1]),
+                ("a_exact", "m", &|at| at.exact[0]),
+                ("b_exact", "m", &|at| at.exact[1]),
+            ],
+        );
         record.profiles.insert("series".into(), series);
     }
 }

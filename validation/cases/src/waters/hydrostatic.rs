@@ -8,7 +8,6 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Drawn, Draws, Statement, Step},
     method::FirstRow,
-    series::Series,
     snapshot::{Point, Snapshot},
     studies::{Accuracy, Sensitivity, Spacing, Watched},
     table,
@@ -256,17 +255,26 @@ impl Problem for WaterColumn {
     }
 }
 
-/// Names and units of the columns of a history: time, error of the pressure, mean height of the highest and
-/// of the lowest particles minus the height at the start, kinetic energy.
-const HISTORY: [(&str, &str); 5] =
-    [("t", "4 H/c0"), ("p_l2", "-"), ("level_drift", "H"), ("gap", "dx"), ("kinetic", "M g H")];
+/// The water at a time.
+#[derive(Serialize, Deserialize)]
+struct WaterSample {
+    /// \[4 H/c0\].
+    time: f64,
+    /// Relative error of the pressure.
+    pressure: Result<f64, Absent>,
+    /// Mean height of the highest particles minus their height at the start \[H\].
+    level: f64,
+    /// Mean height of the lowest particles minus their height at the start \[dx\].
+    gap: f64,
+    /// Kinetic energy \[M g H\].
+    kinetic: f64,
+}
 
 #[derive(Serialize, Deserialize)]
 struct ColumnHistory {
     /// Mean heights of the lowest and of the highest particles at the start \[m\].
     start: [f64; 2],
-    /// The columns of [`HISTORY`].
-    rows: Series<5>,
+    samples: Vec<WaterSample>,
     /// The most particles outside of the tank.
     outside: f64,
     /// How far the water is from being spread over the tank, at the last sample \[dx\].
@@ -277,7 +285,7 @@ impl ColumnHistory {
     /// No sample yet of water that starts like this.
     fn new(column: &WaterColumn, start: &Snapshot) -> Self {
         let start = ends(column, &start.moving());
-        Self { start, rows: Series::default(), outside: 0.0, spread: 0.0 }
+        Self { start, samples: Vec::new(), outside: 0.0, spread: 0.0 }
     }
 
     fn sample(&mut self, column: &WaterColumn, now: &Snapshot) {
@@ -299,34 +307,49 @@ impl ColumnHistory {
         };
         self.outside = self.outside.max(water.iter().filter(is_outside).count() as f64);
         self.spread = spread(&water, tank.width()) * tank.width() / medium.dx;
-        self.rows.push([
-            Ok(now.time() / column.period),
-            error,
-            Ok((high - self.start[1]) / s.depth),
-            Ok((low - self.start[0]) / medium.dx),
-            Ok(kinetic / (mass * s.g * s.depth)),
-        ]);
+        self.samples.push(WaterSample {
+            time: now.time() / column.period,
+            pressure: error,
+            level: (high - self.start[1]) / s.depth,
+            gap: (low - self.start[0]) / medium.dx,
+            kinetic: kinetic / (mass * s.g * s.depth),
+        });
     }
 
     /// The largest kinetic energy over the last quarter of the run \[M g H\].
-    fn kinetic(&self) -> Result<f64, Absent> {
-        let (times, kinetic, end) =
-            (self.rows.column(0)?, self.rows.column(4)?, self.rows.last(0)?);
-        let later = times.iter().zip(kinetic).filter(|(time, _)| **time >= 0.75 * end);
-        Ok(largest(later.map(|(_, kinetic)| *kinetic)))
+    fn kinetic(&self) -> f64 {
+        let end = self.last(|at| at.time);
+        let later = self.samples.iter().filter(|at| at.time >= 0.75 * end);
+        largest(later.map(|at| at.kinetic))
+    }
+
+    fn last(&self, of: impl Fn(&WaterSample) -> f64) -> f64 {
+        self.samples.last().map_or(f64::NAN, of)
     }
 
     /// The history, and the metrics of a run that reached its end.
     fn measure(&self, record: &mut Record) {
         if record.status == Status::Completed {
-            for (k, metric) in [(1, P_L2), (2, LEVEL_DRIFT), (3, GAP)] {
-                record.put_or_absent(metric, self.rows.last(k));
-            }
-            record.put_or_absent(KINETIC, self.kinetic());
+            let pressures = self.samples.iter().map(|at| at.pressure.clone());
+            let pressure = pressures.reduce(|all, next| all.and(next));
+            record.put_or_absent(P_L2, pressure.unwrap_or(Ok(f64::NAN)));
+            record.put(LEVEL_DRIFT, self.last(|at| at.level));
+            record.put(GAP, self.last(|at| at.gap));
+            record.put(KINETIC, self.kinetic());
             record.put(OUTSIDE, self.outside);
             record.put(SPREAD, self.spread);
         }
-        record.profiles.insert("history".into(), self.rows.profile(&HISTORY));
+        let history = Profile::of_known(
+            &self.samples,
+            &[
+                ("t", "4 H/c0", &|at| Ok(at.time)),
+                ("p_l2", "-", &|at| at.pressure.clone()),
+                ("level_drift", "H", &|at| Ok(at.level)),
+                ("gap", "dx", &|at| Ok(at.gap)),
+                ("kinetic", "M g H", &|at| Ok(at.kinetic)),
+            ],
+        );
+        record.profiles.insert("history".into(), history);
     }
 }
 
@@ -520,13 +543,14 @@ mod tests {
         let is = |value: f64, expected: f64| {
             assert!((value - expected).abs() < 1e-9, "{value} instead of {expected}");
         };
-        let at = |row: usize, k: usize| history.rows.column(k).expect("a column")[row];
-        is((1..5).map(|k| at(0, k)).sum(), 0.0);
-        is(at(1, 1), 0.03);
-        is(at(1, 4), 0.5 * 0.2 * 0.2);
-        is(at(2, 2), 0.2 / 20.0);
-        is(at(2, 3), -0.05);
-        let [pressure, gap] = [1, 3].map(|k| at(3, k));
+        let [start, pressed, moved, last] = &history.samples[..] else { panic!("four samples") };
+        let pressure = |at: &WaterSample| at.pressure.clone().expect("densities");
+        is(pressure(start) + start.level + start.gap + start.kinetic, 0.0);
+        is(pressure(pressed), 0.03);
+        is(pressed.kinetic, 0.5 * 0.2 * 0.2);
+        is(moved.level, 0.2 / 20.0);
+        is(moved.gap, -0.05);
+        let (pressure, gap) = (pressure(last), last.gap);
         let mut record = Record::new(NAME, "modern", serde_json::json!({}), 1);
         history.measure(&mut record);
         let value = |metric: MetricKey| record.value(metric).expect("a metric");

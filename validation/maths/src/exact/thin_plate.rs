@@ -7,12 +7,29 @@ use touchstone_base::functions::{cos, cosh, sin, sinh};
 /// k L of the first mode of a cantilever: cos kL cosh kL = −1.
 pub const FIRST_MODE: f64 = 1.875_104_068_711_961;
 
-/// 2π/ω of a thin plate of this length and thickness \[m\], Young's modulus \[Pa\], Poisson's ratio and
-/// density \[kg/m³\], with ω² = E H² k⁴/(12 ρ (1 − ν²)) \[s\].
-pub fn period([length, thickness]: [f64; 2], [young, poisson, density]: [f64; 3]) -> f64 {
-    let k = FIRST_MODE / length;
-    let stiffness = young * thickness * thickness / (12.0 * (1.0 - poisson * poisson));
-    TAU / (k * k * (stiffness / density).sqrt())
+/// A plate that is clamped at one end.
+#[derive(Clone, Copy, Debug)]
+pub struct ThinPlate {
+    /// \[m\].
+    pub length: f64,
+    /// \[m\].
+    pub thickness: f64,
+    /// Young's modulus \[Pa\].
+    pub young: f64,
+    /// Poisson's ratio.
+    pub poisson: f64,
+    /// \[kg/m³\].
+    pub density: f64,
+}
+
+impl ThinPlate {
+    /// 2π/ω \[s\], with ω² = E H² k⁴/(12 ρ (1 − ν²)).
+    pub fn period(&self) -> f64 {
+        let Self { length, thickness, young, poisson, density } = self;
+        let k = FIRST_MODE / length;
+        let stiffness = young * thickness * thickness / (12.0 * (1.0 - poisson * poisson));
+        TAU / (k * k * (stiffness / density).sqrt())
+    }
 }
 
 /// The deflection of the first mode at x/L, 1 at the tip.

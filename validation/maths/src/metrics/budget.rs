@@ -11,6 +11,7 @@
 //! in dρ/dt. An artificial stress and an acoustic damper, which also act in dv/dt, need a sweep each.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_solver::{
     AcousticDamper, ArtificialViscosity, BodyForce, ConsistentContinuity, Continuity,
     DensityDiffusion, EquationOfState, FluidPairs, Numbers, Pressure, Rate, Scheme, Simulation,
@@ -21,9 +22,42 @@ use touchstone_solver::{
 /// ∂E/∂y · ẏ of a particle with this mass \[kg/m\], state and rate \[W/m\]; dx/dt is without v.
 pub type Slope<'a, X> = &'a dyn Fn(f64, &State<X>, &Rate<X>) -> f64;
 
-/// Powers of terms \[W/m\]: artificial viscosity (16), (17), artificial stress (18), (19), acoustic damper,
-/// density diffusion, XSPH (22), and pressure against walls whose particles are outside of the energy budget.
-pub type Powers = [f64; 6];
+/// The items of the energy budget of water: powers of terms \[W/m\], or their works \[J/m\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EnergyItems {
+    /// Artificial viscosity (16), (17).
+    pub viscosity: f64,
+    /// Artificial stress (18), (19).
+    pub stress: f64,
+    /// Acoustic damper.
+    pub damper: f64,
+    /// Density diffusion.
+    pub diffusion: f64,
+    /// XSPH (22).
+    pub xsph: f64,
+    /// Pressure against walls whose particles are outside of the energy budget.
+    pub walls: f64,
+}
+
+impl EnergyItems {
+    /// Combines each item with the same item of another budget.
+    pub fn with(self, other: Self, combine: impl Fn(f64, f64) -> f64) -> Self {
+        Self {
+            viscosity: combine(self.viscosity, other.viscosity),
+            stress: combine(self.stress, other.stress),
+            damper: combine(self.damper, other.damper),
+            diffusion: combine(self.diffusion, other.diffusion),
+            xsph: combine(self.xsph, other.xsph),
+            walls: combine(self.walls, other.walls),
+        }
+    }
+
+    /// The sum of all items.
+    pub fn sum(&self) -> f64 {
+        let Self { viscosity, stress, damper, diffusion, xsph, walls } = self;
+        viscosity + stress + damper + diffusion + xsph + walls
+    }
+}
 
 /// Powers by the rates of one sweep.
 struct PowerSums {
@@ -128,7 +162,7 @@ impl<X, R: Rest> WaterDrift<X> for (Continuity, Xsph, DensityDiffusion<R>) {}
 pub trait Metered<X: Numbers>: Stepper<X> {
     /// The powers of its forces, of its drift and of the terms of its walls, after [`Stepper::advance`]
     /// reached a time; and the force of all pairs on the fluid \[N/m\].
-    fn powers(&mut self, slope: Slope<X>) -> (Powers, Vector2<f64>);
+    fn powers(&mut self, slope: Slope<X>) -> (EnergyItems, Vector2<f64>);
 }
 
 impl<S: Scheme> Metered<S::Extra> for Simulation<S>
@@ -136,7 +170,7 @@ where
     S::Forces: WaterForces<S::Extra>,
     S::Drift: WaterDrift<S::Extra>,
 {
-    fn powers(&mut self, slope: Slope<S::Extra>) -> (Powers, Vector2<f64>) {
+    fn powers(&mut self, slope: Slope<S::Extra>) -> (EnergyItems, Vector2<f64>) {
         let (forces, drift) = self.terms_mut().clone();
         let all = self.rates(&(forces.pairs(), drift));
         let all = sums(&mut self.data().fluid(), &all, slope);
@@ -151,10 +185,15 @@ where
         let damper = forces
             .damper()
             .map_or(0.0, |damper| power(&mut self.data().fluid(), &self.rates(&damper), slope));
-        let viscosity = all.velocity - bare.velocity - stress - damper;
-        let walls = bare.velocity + bare.density + walls;
-        let diffusion = all.density - bare.density;
-        ([viscosity, stress, damper, diffusion, all.position, walls], all.force)
+        let powers = EnergyItems {
+            viscosity: all.velocity - bare.velocity - stress - damper,
+            stress,
+            damper,
+            diffusion: all.density - bare.density,
+            xsph: all.position,
+            walls: bare.velocity + bare.density + walls,
+        };
+        (powers, all.force)
     }
 }
 
@@ -167,7 +206,7 @@ mod tests {
     };
 
     use super::*;
-    use crate::metrics::energy::{FluidEnergy, Water, water_slope};
+    use crate::metrics::energy::{Water, water_slope};
     use touchstone_base::random::Random;
 
     type Forces =
@@ -219,8 +258,7 @@ mod tests {
     fn energy(dt: f64) -> f64 {
         let mut simulation = scene().build().expect("a scene");
         simulation.advance(dt, 1.0, &mut ());
-        let FluidEnergy { kinetic, potential, compression } = WATER.energy(&simulation);
-        kinetic + potential + compression
+        WATER.energy(&simulation).sum()
     }
 
     #[test]
@@ -250,15 +288,16 @@ mod tests {
         let (powers, force) = simulation.powers(&slope);
         let bare = power_of(&simulation, &Pressure::new(forces.0.eos));
         let of_walls = power(&mut simulation.data().walls(), &simulation.wall_rates(), &slope);
+        let EnergyItems { viscosity, stress, damper, diffusion, xsph, walls } = powers;
         let alone = [
-            power_of(&simulation, &forces.1.0),
-            power_of(&simulation, &forces.0) - bare,
-            power_of(&simulation, &forces.1.1),
-            power_of(&simulation, &drift.2),
-            power_of(&simulation, &drift.1),
-            bare + power_of(&simulation, &drift.0) + of_walls,
+            (viscosity, power_of(&simulation, &forces.1.0)),
+            (stress, power_of(&simulation, &forces.0) - bare),
+            (damper, power_of(&simulation, &forces.1.1)),
+            (diffusion, power_of(&simulation, &drift.2)),
+            (xsph, power_of(&simulation, &drift.1)),
+            (walls, bare + power_of(&simulation, &drift.0) + of_walls),
         ];
-        for (k, (found, power)) in powers.into_iter().zip(alone).enumerate() {
+        for (k, (found, power)) in alone.into_iter().enumerate() {
             let error = found - power;
             assert!(error.abs() < 1e-13 * bare.abs(), "{k}: {error:e} of {power:e}");
             assert!(k == 5 || power.abs() > 1e-6 * bare.abs(), "{k} shows something");
@@ -277,8 +316,8 @@ mod tests {
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
         let (powers, _) = simulation.powers(&water_slope(&WATER));
-        assert!(powers[0] < 0.0 && powers[2] < 0.0, "viscosity and damper heat");
-        let total: f64 = powers.iter().sum();
+        assert!(powers.viscosity < 0.0 && powers.damper < 0.0, "viscosity and damper heat");
+        let total = powers.sum();
         let (dt, start) = (1e-6, energy(0.0));
         let (whole, half) = (energy(dt) - start, energy(0.5 * dt) - start);
         let slope = (4.0 * half - whole) / dt;

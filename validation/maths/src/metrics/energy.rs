@@ -1,6 +1,7 @@
 //! The energies of weakly compressible water under gravity, from its particles.
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::functions::{exp_m1, ln};
 use touchstone_solver::{EquationOfState, Numbers, Rate, State, Stepper, Tait};
 
@@ -14,7 +15,7 @@ pub struct Water {
 }
 
 /// Energies \[J/m\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FluidEnergy {
     /// Σ m v²/2.
     pub kinetic: f64,
@@ -22,6 +23,13 @@ pub struct FluidEnergy {
     pub potential: f64,
     /// Σ m e with de = p dρ/ρ², including wall particles, which store the work of the water on them.
     pub compression: f64,
+}
+
+impl FluidEnergy {
+    /// Their sum.
+    pub fn sum(&self) -> f64 {
+        self.kinetic + self.potential + self.compression
+    }
 }
 
 impl Water {

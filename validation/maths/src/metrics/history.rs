@@ -35,21 +35,16 @@ pub fn differences(samples: &[(f64, f64)], reference: &[(f64, f64)]) -> Result<V
     reference.iter().map(at).collect()
 }
 
-/// When column `k` of rows passes a value, and whether it falls; the first column is the time, and rows are
-/// joined by lines.
-pub fn passes<const N: usize>(
-    rows: &[[f64; N]],
-    k: usize,
+/// When a history (t, y) passes a value, and whether it falls; samples are joined by lines.
+pub fn passes(
+    history: impl Iterator<Item = (f64, f64)> + Clone,
     value: f64,
 ) -> impl Iterator<Item = (f64, bool)> {
-    let passes = move |w: &&[[f64; N]]| {
-        let [a, b] = [w[0][k] - value, w[1][k] - value];
-        a != 0.0 && a * b <= 0.0
-    };
-    rows.windows(2).filter(passes).map(move |w| {
-        let [a, b] = [w[0], w[1]];
-        let time = a[0] + (b[0] - a[0]) * (value - a[k]) / (b[k] - a[k]);
-        (time, a[k] > value)
+    let pairs = history.clone().zip(history.skip(1));
+    pairs.filter_map(move |((from, before), (to, after))| {
+        let [a, b] = [before - value, after - value];
+        let time = || from + (to - from) * (value - before) / (after - before);
+        (a != 0.0 && a * b <= 0.0).then(|| (time(), before > value))
     })
 }
 
@@ -66,9 +61,10 @@ mod tests {
     /// Up through 1 at 0.5, down through it at 2, where a row is; a start at the value is no passage.
     #[test]
     fn a_zigzag_passes_a_value_where_its_lines_do() {
-        let rows = [[0.0, 0.0], [1.0, 2.0], [2.0, 1.0], [3.0, 0.0], [4.0, f64::NAN]];
-        assert_eq!(passes(&rows, 1, 1.0).collect::<Vec<_>>(), [(0.5, false), (2.0, true)]);
-        assert_eq!(passes(&rows[2..], 1, 1.0).count(), 0);
+        let history = [(0.0, 0.0), (1.0, 2.0), (2.0, 1.0), (3.0, 0.0), (4.0, f64::NAN)];
+        let passed = |from: usize| passes(history.into_iter().skip(from), 1.0);
+        assert_eq!(passed(0).collect::<Vec<_>>(), [(0.5, false), (2.0, true)]);
+        assert_eq!(passed(2).count(), 0);
     }
 
     fn every(step: f64, end: f64) -> impl Iterator<Item = f64> {

@@ -12,6 +12,7 @@
 //! A transverse velocity v' = -γ v is the scalar case.
 
 use nalgebra::{Complex, Matrix2, Vector2};
+use serde::{Deserialize, Serialize};
 use touchstone_base::functions::complex_sqrt;
 
 use super::time_step::Integrator;
@@ -92,16 +93,35 @@ fn factor_between(values: &[f64]) -> f64 {
     forward / square
 }
 
-/// ω and γ of a sound wave from its amplitudes (p, v along, v across) after each step; NaN for too few.
-pub fn mode_of(series: &[[f64; 3]], integrator: Integrator, dt: f64) -> DampedMode {
-    let states: Vec<Vector2<f64>> = series.iter().map(|a| Vector2::new(a[0], a[1])).collect();
+/// Amplitudes of a wave \[c₀\].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct WaveAmplitudes {
+    /// Of the pressure, p = -c₀ ρ̂/ρ₀.
+    pub pressure: f64,
+    /// Of the velocity along the wave vector.
+    pub along: f64,
+    /// Of the velocity across it.
+    pub across: f64,
+}
+
+impl WaveAmplitudes {
+    /// All amplitudes.
+    pub fn all(&self) -> [f64; 3] {
+        [self.pressure, self.along, self.across]
+    }
+}
+
+/// ω and γ of a sound wave from its amplitudes after each step; NaN for too few.
+pub fn mode_of(series: &[WaveAmplitudes], integrator: Integrator, dt: f64) -> DampedMode {
+    let states: Vec<Vector2<f64>> =
+        series.iter().map(|of| Vector2::new(of.pressure, of.along)).collect();
     let unknown = DampedMode { omega: f64::NAN, gamma: f64::NAN };
     matrix_between(&states).map_or(unknown, |matrix| mode_of_step(&matrix, integrator, dt))
 }
 
 /// γ of a shear wave from its amplitudes after each step; NaN for too few.
-pub fn decay_of(series: &[[f64; 3]], integrator: Integrator, dt: f64) -> f64 {
-    let values: Vec<f64> = series.iter().map(|a| a[2]).collect();
+pub fn decay_of(series: &[WaveAmplitudes], integrator: Integrator, dt: f64) -> f64 {
+    let values: Vec<f64> = series.iter().map(|of| of.across).collect();
     shear_of_step(factor_between(&values), integrator, dt)
 }
 

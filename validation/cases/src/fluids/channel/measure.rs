@@ -4,12 +4,13 @@ use touchstone_base::{
     absent::Absent,
     functions::cos,
     record::{Profile, Record},
+    settings,
 };
 use touchstone_harness::snapshot::{Point, Snapshot};
 use touchstone_maths::metrics::norms::{l2, linf};
 use touchstone_solver::EquationOfState;
 
-use super::ChannelSetup;
+use super::{ChannelSettings, ChannelSetup};
 
 /// Times from which the "worst" norm counts, νt/L²: before, a start-up boundary layer is thinner
 /// than a few spacings.
@@ -62,6 +63,22 @@ pub fn profile_at(tau: f64) -> String {
     format!("u@{tau}")
 }
 
+/// The velocity across a channel at all times of a record; none of a record without channel.
+pub fn velocities(record: &Record) -> Option<Profile> {
+    let settings: ChannelSettings = settings::of_json(&record.run.settings).ok()?;
+    let at =
+        |tau: f64| Some((tau * settings.unit_of_time(), record.profiles.get(&profile_at(tau))?));
+    let profiles: Vec<(f64, &Profile)> = settings.compared().into_iter().filter_map(at).collect();
+    let column = |name: &str| -> Vec<f64> {
+        profiles.iter().flat_map(|(_, of)| of.column(name)).copied().collect()
+    };
+    let times = profiles.iter().flat_map(|(time, of)| of.column("y").iter().map(|_| *time));
+    let all = Profile::default().with("t", "s", times.collect());
+    let units = [("y", "m"), ("u", "m/s"), ("u_exact", "m/s")].into_iter();
+    let all = units.fold(all, |all, (name, unit)| all.with(name, unit, column(name)));
+    (!profiles.is_empty()).then_some(all)
+}
+
 /// Measures that need the end of the run only.
 pub fn at_the_end(setup: &ChannelSetup, end: &Snapshot, record: &mut Record) {
     let fluid = end.moving();
@@ -90,13 +107,18 @@ pub fn at_the_end(setup: &ChannelSetup, end: &Snapshot, record: &mut Record) {
 
 /// Means over the rows of the initial lattice: y, u and the exact u there.
 fn row_profile(setup: &ChannelSetup, fluid: &[Point], t: f64) -> Profile {
-    let row = |row: &[Point]| {
-        let mean = |f: &dyn Fn(&Point) -> f64| row.iter().map(f).sum::<f64>() / row.len() as f64;
-        let exact = mean(&|p| setup.exact(p.position.y, t));
-        [mean(&|p| p.position.y), mean(&|p| p.velocity.x), exact]
+    let mean = |row: &[Point], of: &dyn Fn(&Point) -> f64| {
+        row.iter().map(of).sum::<f64>() / row.len() as f64
     };
-    let rows: Vec<[f64; 3]> = fluid.chunks(setup.columns).map(row).collect();
-    Profile::of_rows(&[("y", "m"), ("u", "m/s"), ("u_exact", "m/s")], &rows)
+    let rows: Vec<&[Point]> = fluid.chunks(setup.columns).collect();
+    Profile::of(
+        &rows,
+        &[
+            ("y", "m", &|row| mean(row, &|p| p.position.y)),
+            ("u", "m/s", &|row| mean(row, &|p| p.velocity.x)),
+            ("u_exact", "m/s", &|row| mean(row, &|p| setup.exact(p.position.y, t))),
+        ],
+    )
 }
 
 /// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within 3 dx of
@@ -154,7 +176,10 @@ pub fn last_of_mode(setup: &ChannelSetup, series: &[[f64; 2]], end: f64) -> Opti
     }
     let all = series.iter().map(|[t, amplitude]| [since_end(*t), *amplitude]);
     let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
-    Some(Profile::of_rows(&[("t", "L/c0"), ("amplitude", "rho V^2")], &rows))
+    Some(Profile::of(
+        &rows,
+        &[("t", "L/c0", &|[t, _]| *t), ("amplitude", "rho V^2", &|[_, amplitude]| *amplitude)],
+    ))
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ use touchstone_harness::{
 
 use studies::{facts, studies};
 
+pub use measure::velocities;
 pub use plan::{CONSISTENT, GHOSTS, ladder};
 pub use setup::{ChannelSettings, ChannelSetup, Flow};
 

@@ -295,12 +295,27 @@ pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Recor
     compare(setup, &sections, record);
     let stations: Vec<_> =
         places(setup).iter().zip(&sections).map(|([x, y], [u, v])| [*x, *y, *u, *v]).collect();
-    let columns = [("x", "H"), ("y", "H"), ("u", "U_b"), ("v", "U_b")];
-    record.profiles.insert("stations".into(), Profile::of_rows(&columns, &stations));
-    let wall: Vec<_> = (0..).zip(&wall).map(|(k, [a, b, c])| [along(k), *a, *b, *c]).collect();
-    let columns = ["hill shear", "lid shear", "pressure"].map(|name| (name, "rho U_b^2"));
-    let columns = [("x", "H"), columns[0], columns[1], columns[2]];
-    record.profiles.insert("wall".into(), Profile::of_rows(&columns, &wall));
+    let stations = Profile::of(
+        &stations,
+        &[
+            ("x", "H", &|[x, ..]| *x),
+            ("y", "H", &|[_, y, ..]| *y),
+            ("u", "U_b", &|[.., u, _]| *u),
+            ("v", "U_b", &|[.., v]| *v),
+        ],
+    );
+    record.profiles.insert("stations".into(), stations);
+    let wall: Vec<_> = (0..).zip(&wall).collect();
+    let wall = Profile::of(
+        &wall,
+        &[
+            ("x", "H", &|(k, _)| along(*k)),
+            ("hill shear", "rho U_b^2", &|(_, [hill, ..])| *hill),
+            ("lid shear", "rho U_b^2", &|(_, [_, lid, _])| *lid),
+            ("pressure", "rho U_b^2", &|(_, [.., pressure])| *pressure),
+        ],
+    );
+    record.profiles.insert("wall".into(), wall);
 }
 
 /// The largest error of the flux through a station, relative to the flux wanted; sections are the means of u

@@ -154,8 +154,11 @@ impl Problem for VortexSetup {
         }
         // The exact flow may have decayed to 0.
         errors.retain(|[_, error]| error.is_finite());
-        let columns = [("t", "L/U"), ("error", "-")];
-        record.profiles.insert("series".into(), Profile::of_rows(&columns, &errors));
+        let series = Profile::of(
+            &errors,
+            &[("t", "L/U", &|[time, _]| *time), ("error", "-", &|[_, error]| *error)],
+        );
+        record.profiles.insert("series".into(), series);
     }
 }
 

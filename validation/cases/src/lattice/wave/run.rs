@@ -18,7 +18,7 @@ use touchstone_harness::{
 use touchstone_maths::{
     metrics::norms::largest,
     theory::{
-        steps::{self, DampedMode},
+        steps::{self, DampedMode, WaveAmplitudes},
         time_step::{self, Mode, modes},
     },
 };
@@ -46,12 +46,12 @@ pub(super) struct Wave {
     pub rules: Rules,
 }
 
-/// Amplitudes (p, v along, v across) after each step, in units of c₀, p = -c₀ ρ̂/ρ₀.
+/// Amplitudes after each step.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Projection {
     /// cos and sin of the phase of each label, over the sum of their squares.
     basis: Vec<[f64; 2]>,
-    series: Vec<[f64; 3]>,
+    series: Vec<WaveAmplitudes>,
     /// Σ m v after the first step and the last \[kg m/s\].
     momentum: Option<[[f64; 2]; 2]>,
 }
@@ -137,7 +137,7 @@ impl Wave {
     }
 
     /// Theoretical amplitudes after each of `steps` steps, exact.
-    fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<[f64; 3]> {
+    fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<WaveAmplitudes> {
         let (a, dt) = (self.settings.amplitude, self.rules.dt());
         let Mode { omega, longitudinal: gamma, transverse, density, .. } = self.mode;
         let m = steps::step(&DampedMode { omega, gamma }, density, integrator, dt);
@@ -154,7 +154,7 @@ impl Wave {
         }
         let advance = |_| {
             (y, shear) = (m * y, factor * shear);
-            [y.x, y.y, shear]
+            WaveAmplitudes { pressure: y.x, along: y.y, across: shear }
         };
         (0..steps).map(advance).collect()
     }
@@ -171,11 +171,11 @@ impl Projection {
     fn after_step(&mut self, wave: &Wave, simulation: &dyn Stepper<()>) {
         let Wave { mode, medium: Medium { density, sound_speed, .. }, .. } = wave;
         let across = wave.across();
-        let mut sums = [0.0; 3];
+        let mut sums = WaveAmplitudes::default();
         for (particle, [cos, sin]) in simulation.particles().iter().zip(&self.basis) {
-            sums[0] -= (particle.density / density - 1.0) * sin;
-            sums[1] += particle.velocity.dot(&mode.along) / sound_speed * cos;
-            sums[2] += particle.velocity.dot(&across) / sound_speed * cos;
+            sums.pressure -= (particle.density / density - 1.0) * sin;
+            sums.along += particle.velocity.dot(&mode.along) / sound_speed * cos;
+            sums.across += particle.velocity.dot(&across) / sound_speed * cos;
         }
         self.series.push(sums);
         let momentum = momentum(&Snapshot::ours(simulation).all()).into();
@@ -241,20 +241,25 @@ impl Problem for Wave {
         let scale = density * s.length * s.length * s.amplitude * sound_speed;
         let [first, last] = momentum.unwrap_or([[f64::NAN; 2]; 2]).map(Vector2::from);
         record.put(MOMENTUM_ERROR, (last - first).norm() / scale);
+        let none = WaveAmplitudes::default();
         let start = match self.polarisation {
-            Polarisation::Sound => [0.0, s.amplitude, 0.0],
-            Polarisation::Shear => [0.0, 0.0, s.amplitude],
+            Polarisation::Sound => WaveAmplitudes { along: s.amplitude, ..none },
+            Polarisation::Shear => WaveAmplitudes { across: s.amplitude, ..none },
         };
-        let column = |k: usize| once(&start).chain(&series).map(|a| a[k]).collect();
-        let times = (0..=series.len()).map(|k| k as f64 * self.rules.dt()).collect();
-        let profile = Profile::default()
-            .with("t", "s", times)
-            .with("p", "rho c0^2", column(0))
-            .with("v_along", "c0", column(1))
-            .with("v_across", "c0", column(2));
+        let rows: Vec<_> = once(&start).chain(&series).enumerate().collect();
+        let profile = Profile::of(
+            &rows,
+            &[
+                ("t", "s", &|(step, _)| *step as f64 * self.rules.dt()),
+                ("p", "rho c0^2", &|(_, of)| of.pressure),
+                ("v_along", "c0", &|(_, of)| of.along),
+                ("v_across", "c0", &|(_, of)| of.across),
+            ],
+        );
         record.profiles.insert("amplitudes".into(), profile);
         // Of every step, not of the last one.
-        record.state = Some(digest(series.as_flattened()));
+        let all: Vec<f64> = series.iter().flat_map(WaveAmplitudes::all).collect();
+        record.state = Some(digest(&all));
     }
 }
 
@@ -268,7 +273,7 @@ touchstone_base::metrics! {
 fn compare(
     wave: &Wave,
     integrator: time_step::Integrator,
-    series: &[[f64; 3]],
+    series: &[WaveAmplitudes],
     record: &mut Record,
 ) {
     let Mode { omega, longitudinal, transverse, .. } = wave.mode;
@@ -291,8 +296,9 @@ fn compare(
     let scale = if gamma > 0.0 { gamma } else { omega };
     record.put(DECAY_ERROR, (found - gamma).abs() / scale);
     let predicted = wave.predicted(integrator, series.len());
-    let pairs = series.as_flattened().iter().zip(predicted.as_flattened());
-    let error = largest(pairs.map(|(found, expected)| (found - expected).abs()));
+    let [found, expected] =
+        [series, &predicted].map(|all| all.iter().flat_map(WaveAmplitudes::all));
+    let error = largest(found.zip(expected).map(|(found, expected)| (found - expected).abs()));
     record.put(TRAJECTORY_ERROR, error / s.amplitude);
 }
 
@@ -325,8 +331,8 @@ mod tests {
         let simulation = (method.build)(parts).expect("a scene");
         let mut projection = Projection::new(&wave);
         projection.after_step(&wave, &*simulation);
-        let [p, along, across] = projection.series[0];
-        assert_relative_eq!(p, 0.003, max_relative = 1e-9);
+        let WaveAmplitudes { pressure, along, across } = projection.series[0];
+        assert_relative_eq!(pressure, 0.003, max_relative = 1e-9);
         assert_relative_eq!(along, 0.02, max_relative = 1e-9);
         assert_relative_eq!(across, -0.005, max_relative = 1e-9);
         let [first, last] = projection.momentum.expect("a momentum").map(Vector2::from);
@@ -360,11 +366,11 @@ mod tests {
         );
 
         let mut series = wave.predicted(leapfrog, 50);
-        series[30][1] -= 0.04 * s.amplitude;
+        series[30].along -= 0.04 * s.amplitude;
         let mut found = record();
         compare(&wave, leapfrog, &series, &mut found);
         assert_relative_eq!(value(&found, TRAJECTORY_ERROR), 0.04, max_relative = 1e-6);
-        series[7][0] = f64::NAN;
+        series[7].pressure = f64::NAN;
         compare(&wave, leapfrog, &series, &mut found);
         assert!(value(&found, TRAJECTORY_ERROR).is_nan());
 

@@ -4,10 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
 use touchstone_harness::prelude::*;
-use touchstone_harness::{
-    series::Series,
-    snapshot::{Point, Snapshot},
-};
+use touchstone_harness::snapshot::{Point, Snapshot};
 use touchstone_solver::Symmetric;
 
 use super::{
@@ -28,10 +25,21 @@ pub const LEAST_POINTS: usize = 400;
 pub struct End {
     /// When it is sampled next \[s\].
     pub until: f64,
-    /// t \[s\], displacement of the end along x and y \[m\].
-    pub path: Vec<[f64; 3]>,
-    /// t \[s\], kinetic energy and total energy, minus the total at the start \[J/m\].
-    pub energies: Series<3>,
+    /// The path of the end.
+    pub path: Path,
+    /// The energies of every tenth sample.
+    pub energies: Vec<EnergySample>,
+}
+
+/// Energies at a time.
+#[derive(Serialize, Deserialize)]
+pub struct EnergySample {
+    /// \[s\].
+    time: f64,
+    /// \[J/m\].
+    kinetic: f64,
+    /// Change of the total energy since the start \[J/m\].
+    change: Result<f64, Absent>,
 }
 
 impl End {
@@ -43,26 +51,34 @@ impl End {
         };
         // The line through the last two columns, continued by half a spacing: the end has no curvature.
         let end = 1.5 * middle(columns - 1) - 0.5 * middle(columns - 2);
-        self.path.push([now.time(), end.x - s.length, end.y]);
-        if self.path.len().is_multiple_of(ENERGY_EVERY) {
-            self.energies.push(energy(s, now));
+        self.path.push(now.time(), end - Vector2::new(s.length, 0.0));
+        if self.path.0.len().is_multiple_of(ENERGY_EVERY) {
+            self.energies.push(EnergySample::of(s, now));
         }
     }
 }
 
-/// A row of the energies. The energy of the weight is 0 at the start, because the bar is along y = 0.
-fn energy(s: &CantileverSettings, now: &Snapshot<Symmetric>) -> [Result<f64, Absent>; 3] {
-    if let Some(known) = ElasticEnergy::known(now) {
-        return [now.time(), known.kinetic, known.total()].map(Ok);
+impl EnergySample {
+    /// At the start, when nothing has moved.
+    pub fn start() -> Self {
+        Self { time: 0.0, kinetic: 0.0, change: Ok(0.0) }
     }
-    let of_points = ElasticEnergy::of_points(now.stored(), now, &s.material());
-    let total = of_points.map(|mut found| {
-        let height = |p: Point| p.mass * p.position.y;
-        let height = now.stored().map(height).fold(0.0, |sum, one| sum + one);
-        found.compression += s.gravity * height;
-        found.total()
-    });
-    [Ok(now.time()), Ok(solid::kinetic(now.stored())), total]
+
+    /// The energy of the weight is 0 at the start, because the bar is along y = 0.
+    fn of(s: &CantileverSettings, now: &Snapshot<Symmetric>) -> Self {
+        let time = now.time();
+        if let Some(known) = ElasticEnergy::known(now) {
+            return Self { time, kinetic: known.kinetic, change: Ok(known.total()) };
+        }
+        let of_points = ElasticEnergy::of_points(now.stored(), now, &s.material());
+        let change = of_points.map(|mut found| {
+            let height = |p: Point| p.mass * p.position.y;
+            let height = now.stored().map(height).fold(0.0, |sum, one| sum + one);
+            found.compression += s.gravity * height;
+            found.total()
+        });
+        Self { time, kinetic: solid::kinetic(now.stored()), change }
+    }
 }
 
 impl Watch<CantileverSettings> for End {
@@ -74,18 +90,25 @@ impl Watch<CantileverSettings> for End {
     }
 
     fn measure(mut self, s: &CantileverSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
-        self.energies.push(energy(s, end));
-        let most = |k: usize| -> Result<f64, Absent> {
-            let larger = |a: f64, b: &f64| if b.abs() > a.abs() || b.is_nan() { *b } else { a };
-            Ok(self.energies.column(k)?.iter().fold(0.0, larger))
-        };
-        let change = most(2).and_then(|change| Ok(change / most(1)?));
+        self.energies.push(EnergySample::of(s, end));
+        let most =
+            |most: f64, of: f64| if of.abs() > most.abs() || of.is_nan() { of } else { most };
+        let kinetic = self.energies.iter().map(|of| of.kinetic).fold(0.0, most);
+        let changes = self.energies.iter().map(|of| of.change.clone());
+        let changes = changes.collect::<Result<Vec<f64>, Absent>>();
+        let change = changes.map(|all| all.into_iter().fold(0.0, most) / kinetic);
         record.put_or_absent(ENERGY_CHANGE, change);
-        let energies = self.energies.profile(&[("t", "s"), ("kinetic", "J/m"), ("change", "J/m")]);
+        let energies = Profile::of_known(
+            &self.energies,
+            &[
+                ("t", "s", &|of| Ok(of.time)),
+                ("kinetic", "J/m", &|of| Ok(of.kinetic)),
+                ("change", "J/m", &|of| of.change.clone()),
+            ],
+        );
         record.profiles.insert("energy".into(), energies);
-        let path = Path(self.path);
-        let columns = [("t", "s"), ("x", "m"), ("y", "m")];
-        record.profiles.insert("end".into(), Profile::of_rows(&columns, &path.0));
+        let path = self.path;
+        record.profiles.insert("end".into(), path.profile(["x", "y"]));
         if path.0.len() < LEAST_POINTS {
             let why = Absent::NotGiven(format!("{LEAST_POINTS} times, for the path of the end"));
             let all = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);
@@ -130,7 +153,7 @@ mod tests {
     use crate::solids::solid::ElasticBody;
     use approx::assert_relative_eq;
     use touchstone_harness::method::Parts;
-    use touchstone_harness::{series::Series, snapshot::Snapshot};
+    use touchstone_harness::snapshot::Snapshot;
 
     /// The frequency goes with the root of the stiffness, the sag with its inverse.
     #[test]
@@ -161,11 +184,10 @@ mod tests {
             (method.build)(Parts { mirrors: vec![solid::clamp()], ..parts }).expect("a scene");
         let place = |x: Vector2<f64>| Vector2::new(0.01 * x.x + 0.3 * x.y, -0.2 * x.x);
         lagrangian::displace(&mut *simulation, place);
-        let (path, energies) = (vec![[0.0; 3]], Series::default());
-        let mut end = End { until: 0.0, path, energies };
+        let mut end = End { until: 0.0, path: Path::start(), energies: Vec::new() };
         end.sample(&s, &Snapshot::ours(&*simulation));
-        let [_, x, y] = end.path[1];
-        assert_relative_eq!(x, 0.01 * 0.35, max_relative = 1e-9);
-        assert_relative_eq!(y, -0.2 * 0.35, max_relative = 1e-9);
+        let found = end.path.0[1].displacement;
+        assert_relative_eq!(found.x, 0.01 * 0.35, max_relative = 1e-9);
+        assert_relative_eq!(found.y, -0.2 * 0.35, max_relative = 1e-9);
     }
 }

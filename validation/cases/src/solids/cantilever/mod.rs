@@ -9,17 +9,17 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use touchstone_base::record::MetricKey;
 use touchstone_harness::prelude::*;
-use touchstone_harness::{series::Series, snapshot::Snapshot};
-use touchstone_maths::exact::thin_plate;
+use touchstone_harness::snapshot::Snapshot;
+use touchstone_maths::exact::thin_plate::ThinPlate;
 use touchstone_schemes::total;
 use touchstone_solver::lagrangian::{Hencky, Law, SaintVenantKirchhoff};
 use touchstone_solver::{Role, Symmetric};
 
 use crate::solids::solid::{
-    self, ElasticBody, Elements, LAGRANGIAN, SolidParameters, SolidScales, SolidSettings, TOTAL,
-    Watch, lagrangian,
+    self, ElasticBody, Elements, LAGRANGIAN, Path, SolidParameters, SolidScales, SolidSettings,
+    TOTAL, Watch, lagrangian,
 };
-use end::End;
+use end::{End, EnergySample};
 use path::{
     AMPLITUDE_X, AMPLITUDE_Y, AVERAGE_X, AVERAGE_Y, FIRST_LEAST_Y, FREQUENCY, HARMONIC_X,
     HARMONIC_Y, MEAN_X, MEAN_Y,
@@ -140,7 +140,7 @@ fn elements(variant: &str, s: &CantileverSettings) -> Option<Elements> {
     let middle = [law, gravity, ("layers", "")];
     let mut found = Elements::of("cantilever", [&middle, &of], ["x", "y"])?;
     // Later, bars of another period are wherever they are.
-    found.path.0.retain(|row| row[0] <= FIRST_SWING);
+    found.path.0.retain(|at| at.time <= FIRST_SWING);
     found.number("harmonic_y").is_some().then_some(found)
 }
 
@@ -158,7 +158,7 @@ impl ElasticBody for CantileverSettings {
         let SolidSettings { young, poisson, rho, .. } = self.solid;
         let modulus = young / (1.0 - poisson * poisson);
         let slenderness = length * length / thickness;
-        let period = thin_plate::period([length, thickness], [young, poisson, rho]);
+        let period = ThinPlate { length, thickness, young, poisson, density: rho }.period();
         let sag = 1.5 * rho * gravity / modulus * slenderness * slenderness;
         SolidScales {
             speed: (sag * (TAU / period)).min((3.0 * gravity * length).sqrt()),
@@ -187,7 +187,7 @@ impl ElasticBody for CantileverSettings {
     }
 
     fn watch(&self, _: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> End {
-        End { until: 0.0, path: vec![[0.0; 3]], energies: Series::from(vec![[0.0; 3]]) }
+        End { until: 0.0, path: Path::start(), energies: vec![EnergySample::start()] }
     }
 }
 

@@ -10,7 +10,7 @@ use touchstone_base::{
 use touchstone_maths::metrics::history::passes;
 
 use super::COMPARED;
-use crate::solids::solid::Path;
+use crate::solids::solid::{Path, PathPoint};
 
 touchstone_base::metrics! {
     all OF_PATH;
@@ -33,26 +33,26 @@ touchstone_base::metrics! {
 /// Points between the two times, at which the path is taken for averages and harmonics.
 const POINTS: usize = 8000;
 
-/// The greatest and the least displacement of rows along an axis \[m\], each by a parabola through three
-/// rows; `None` of one that is at an end of the rows.
-fn extremes(rows: &[[f64; 3]], axis: usize) -> [Option<f64>; 2] {
-    let value = |k: usize| rows[k][1 + axis];
-    let places = || 0..rows.len();
+/// The greatest and the least displacement along an axis \[m\], each by a parabola through three points;
+/// `None` of one that is at an end of the path.
+fn extremes(path: &[PathPoint], axis: usize) -> [Option<f64>; 2] {
+    let value = |k: usize| path[k].displacement[axis];
+    let places = || 0..path.len();
     let greatest = places().max_by(|a, b| value(*a).total_cmp(&value(*b)));
     let least = places().min_by(|a, b| value(*a).total_cmp(&value(*b)));
     [greatest, least].map(|place| {
-        let k = place.filter(|&k| k > 0 && k + 1 < rows.len())?;
+        let k = place.filter(|&k| k > 0 && k + 1 < path.len())?;
         let [a, b, c] = [value(k - 1), value(k), value(k + 1)];
         let bend = a - 2.0 * b + c;
         Some(if bend == 0.0 { b } else { b - (a - c) * (a - c) / (8.0 * bend) })
     })
 }
 
-/// Mean and amplitude along an axis \[m\]. Where an extreme is at an end of the rows, it is the value there.
-fn mean_and_amplitude(rows: &[[f64; 3]], axis: usize) -> [f64; 2] {
-    let all = || rows.iter().map(|row| row[1 + axis]);
+/// Mean and amplitude along an axis \[m\]. Where an extreme is at an end of the path, it is the value there.
+fn mean_and_amplitude(path: &[PathPoint], axis: usize) -> [f64; 2] {
+    let all = || path.iter().map(|at| at.displacement[axis]);
     let ends = [all().fold(f64::NEG_INFINITY, f64::max), all().fold(f64::INFINITY, f64::min)];
-    let [greatest, least] = extremes(rows, axis);
+    let [greatest, least] = extremes(path, axis);
     let (high, low) = (greatest.unwrap_or(ends[0]), least.unwrap_or(ends[1]));
     [0.5 * (high + low), 0.5 * (high - low)]
 }
@@ -63,9 +63,9 @@ pub fn measure(path: &Path) -> Vec<(MetricKey, Option<f64>)> {
     let [[mean_x, amplitude_x], [mean_y, amplitude_y]] =
         [0, 1].map(|axis| mean_and_amplitude(&path.0, axis));
     let falls = |(time, falls)| if falls { Some(time) } else { None };
-    let times: Vec<f64> = passes(&path.0, 2, mean_y).filter_map(falls).collect();
+    let times: Vec<f64> = passes(path.heights(), mean_y).filter_map(falls).collect();
     let second = times.get(1).copied().unwrap_or(f64::INFINITY);
-    let swing = &path.0[..path.0.partition_point(|row| row[0] < second)];
+    let swing = &path.0[..path.0.partition_point(|at| at.time < second)];
     let periods = if let [first, .., last] = times[..] {
         let frequency = (times.len() - 1) as f64 / (last - first);
         let (average, harmonic) = fourier(path, [first, last], frequency);
@@ -104,9 +104,10 @@ mod tests {
         let row = |k: i32| {
             let t = 0.0025 * f64::from(k);
             let angle = TAU * frequency * t;
-            [t, -0.01 + 0.01 * cos(angle) + 0.002 * sin(2.0 * angle), -0.06 * (1.0 - cos(angle))]
+            let x = -0.01 + 0.01 * cos(angle) + 0.002 * sin(2.0 * angle);
+            PathPoint::new(t, Vector2::new(x, -0.06 * (1.0 - cos(angle))))
         };
-        Path((0..).map(row).take_while(|row| row[0] <= end).collect())
+        Path((0..).map(row).take_while(|at| at.time <= end).collect())
     }
 
     #[test]

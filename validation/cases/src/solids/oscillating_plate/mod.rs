@@ -8,7 +8,10 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_harness::prelude::*;
 use touchstone_harness::snapshot::Snapshot;
-use touchstone_maths::{exact::thin_plate, metrics::history::passes};
+use touchstone_maths::{
+    exact::thin_plate::{self, ThinPlate},
+    metrics::history::passes,
+};
 use touchstone_solver::lagrangian::{Hencky, Law as _};
 use touchstone_solver::{Role, Symmetric};
 
@@ -100,7 +103,9 @@ const EVERY: u64 = 8;
 
 /// The period of a thin plate \[s\].
 fn thin_plate_period(s: &PlateSettings) -> f64 {
-    thin_plate::period([s.length, s.thickness], [s.solid.young, s.solid.poisson, s.solid.rho])
+    let PlateSettings { length, thickness, ref solid, .. } = *s;
+    let SolidSettings { young, poisson, rho: density, .. } = *solid;
+    ThinPlate { length, thickness, young, poisson, density }.period()
 }
 
 impl ElasticBody for PlateSettings {
@@ -133,7 +138,7 @@ impl ElasticBody for PlateSettings {
 
     fn watch(&self, scene: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> Tip {
         let energy = solid::kinetic(scene.all().into_iter());
-        Tip { until: 0, energy, series: vec![[0.0; 3]] }
+        Tip { until: 0, energy, path: Path::start() }
     }
 }
 
@@ -143,14 +148,14 @@ pub struct Tip {
     until: u64,
     /// Energy at the start \[J/m\].
     energy: f64,
-    /// t \[s\], displacements of the tip along the plate and upwards \[m\].
-    series: Vec<[f64; 3]>,
+    /// Along the plate and upwards.
+    path: Path,
 }
 
 impl Tip {
     /// Times at which the tip passes its height of rest \[s\].
     fn passes(&self) -> Vec<f64> {
-        passes(&self.series, 2, 0.0).map(|(time, _)| time).collect()
+        passes(self.path.heights(), 0.0).map(|(time, _)| time).collect()
     }
 
     /// \[s\]; none if the tip does not pass its height of rest.
@@ -164,8 +169,8 @@ impl Tip {
 
     fn measure_swing(&self, s: &PlateSettings, record: &mut Record) {
         let first = self.passes().first().copied().unwrap_or(f64::INFINITY);
-        let swing = self.series.iter().take_while(|row| row[0] <= first);
-        let highest = swing.map(|row| row[2]).fold(f64::NEG_INFINITY, f64::max);
+        let swing = self.path.heights().take_while(|(time, _)| *time <= first);
+        let highest = swing.map(|(_, height)| height).fold(f64::NEG_INFINITY, f64::max);
         let (thin, speed) = (thin_plate_period(s), s.speed());
         let period = self.period();
         let never = "the tip does not pass its height of rest again";
@@ -187,7 +192,7 @@ impl Watch<PlateSettings> for Tip {
         let tip = (1..=s.n).map(|row| all[row * columns - 1].position);
         let mean = tip.fold(Vector2::zeros(), |sum, x| sum + x) / s.n as f64;
         let rest = (columns as f64 - 0.5) * s.dx();
-        self.series.push([now.time(), mean.x - rest, mean.y]);
+        self.path.push(now.time(), mean - Vector2::new(rest, 0.0));
     }
 
     fn measure(self, s: &PlateSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
@@ -195,19 +200,17 @@ impl Watch<PlateSettings> for Tip {
         let after = ElasticEnergy::of(end, &s.material());
         let change = after.map(|after| after.total() / self.energy - 1.0);
         record.put_or_absent(ENERGY_CHANGE, change);
-        let path = Path(self.series);
         let errors = [(PERIOD, PERIOD_ERROR), (AMPLITUDE_RATIO, AMPLITUDE_ERROR)];
         let exact = elements(&record.run.variant, s);
         let lacks = "the run is too short, or finite elements have no such plate: they have 0.2 m and 0.02 \
                      m, 2 MPa, Poisson's ratio 0.3975, 1000 kg/m^3, 0.01 c0, and 5, 10 and 20 layers";
         let of_path = (PATH_RMS, "extreme_1");
-        solid::compare(exact.as_ref(), &errors, of_path, (&path, lacks), record);
+        solid::compare(exact.as_ref(), &errors, of_path, (&self.path, lacks), record);
         let error = record.value(PERIOD_ERROR).filter(|_| record.run.variant == LAGRANGIAN);
         let stiffness = || solid::lagrangian::bending(s.n, s.solid.poisson);
         let bent = error.map(|error| (1.0 + error) * stiffness().sqrt() - 1.0);
         record.put_or(BENDING_PERIOD_ERROR, bent, "no error, or no theory of its layers");
-        let columns = [("t", "s"), ("along", "m"), ("tip", "m")];
-        record.profiles.insert("tip".into(), Profile::of_rows(&columns, &path.0));
+        record.profiles.insert("tip".into(), self.path.profile(["along", "tip"]));
     }
 }
 
@@ -225,13 +228,14 @@ fn elements(variant: &str, s: &PlateSettings) -> Option<Elements> {
     let rows: [&[_]; 2] = [&[law, ("layers", &n)], &[law]];
     let mut found = Elements::of("oscillating_plate", rows, [&x, &y])?;
     let end = found.number("passage_6").unwrap_or(0.0);
-    found.path.0.retain(|row| row[0] <= end);
+    found.path.0.retain(|at| at.time <= end);
     Some(found)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solids::solid::PathPoint;
     use approx::assert_relative_eq;
     use touchstone_base::functions::sin;
     use touchstone_base::record::Status;
@@ -242,11 +246,11 @@ mod tests {
         let [period, amplitude] = [0.3, 0.004];
         let row = |k: i32| {
             let time = 0.0007 * f64::from(k);
-            [time, 0.0, amplitude * sin(TAU * time / period)]
+            PathPoint::new(time, Vector2::new(0.0, amplitude * sin(TAU * time / period)))
         };
-        let series = (0..).map(row).take_while(|row| row[0] < periods * period).collect();
+        let path = Path((0..).map(row).take_while(|at| at.time < periods * period).collect());
         let mut record = Record::new("oscillating_plate", "made-up", serde_json::Value::Null, 1);
-        Tip { until: 0, energy: 0.0, series }.measure_swing(s, &mut record);
+        Tip { until: 0, energy: 0.0, path }.measure_swing(s, &mut record);
         record
     }
 
@@ -278,8 +282,9 @@ mod tests {
         let now = Snapshot::of(0.0, &particles);
         let mut tip = s.watch(&now, &now);
         tip.after_step(&s, &now);
-        assert!(tip.series[1][1].abs() < 1e-15);
-        assert_relative_eq!(tip.series[1][2], 0.001, max_relative = 1e-9);
+        let found = tip.path.0[1].displacement;
+        assert!(found.x.abs() < 1e-15);
+        assert_relative_eq!(found.y, 0.001, max_relative = 1e-9);
     }
 
     /// At the tip, 0.01 c0 = 0.5702 m/s; in the middle 0.3395 of that.

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Vector2;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{
-    record::{MetricKey, Record},
+    record::{MetricKey, Profile, Record},
     reference::Reference,
 };
 
@@ -34,8 +35,9 @@ impl Elements {
     /// the path has the columns x and y.
     pub fn of(package: &str, [summary, series]: [Texts; 2], [x, y]: [&str; 2]) -> Option<Self> {
         let table = Reference::load(package).ok()?.table("series").ok()?;
-        let path = Path(table.select(series, ["t", x, y]).ok()?);
-        Some(Self { quantities: quantities(package, summary)?, path })
+        let rows = table.select(series, ["t", x, y]).ok()?.into_iter();
+        let path = rows.map(|[time, x, y]| PathPoint::new(time, Vector2::new(x, y))).collect();
+        Some(Self { quantities: quantities(package, summary)?, path: Path(path) })
     }
 
     /// A quantity.
@@ -67,33 +69,75 @@ pub fn compare(
     record.put_or(rms, distance, lacks);
 }
 
-/// The path of a place: times \[s\], ascending, and its displacements \[m\].
-#[derive(Clone, Debug, Default)]
-pub struct Path(pub Vec<[f64; 3]>);
+/// A point of a path.
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
+pub struct PathPoint {
+    /// \[s\].
+    pub time: f64,
+    /// \[m\].
+    pub displacement: Vector2<f64>,
+}
+
+impl PathPoint {
+    /// A displacement \[m\] at a time \[s\].
+    pub fn new(time: f64, displacement: Vector2<f64>) -> Self {
+        Self { time, displacement }
+    }
+}
+
+/// The path of a place; times ascend.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Path(pub Vec<PathPoint>);
 
 impl Path {
-    /// Its last time \[s\].
-    pub fn end(&self) -> f64 {
-        self.0.last().map_or(0.0, |row| row[0])
+    /// The path of a place that has not moved yet.
+    pub fn start() -> Self {
+        Self(vec![PathPoint::default()])
     }
 
-    /// Where the place is at a time \[s\], between two rows; `None` before the first and after the last.
+    /// Adds a point, at a later time \[s\].
+    pub fn push(&mut self, time: f64, displacement: Vector2<f64>) {
+        self.0.push(PathPoint::new(time, displacement));
+    }
+
+    /// Its last time \[s\].
+    pub fn end(&self) -> f64 {
+        self.0.last().map_or(0.0, |at| at.time)
+    }
+
+    /// Times \[s\] and displacements upwards \[m\].
+    pub fn heights(&self) -> impl Iterator<Item = (f64, f64)> + Clone {
+        self.0.iter().map(|at| (at.time, at.displacement.y))
+    }
+
+    /// A profile with these names of both displacements.
+    pub fn profile(&self, [x, y]: [&str; 2]) -> Profile {
+        Profile::of(
+            &self.0,
+            &[
+                ("t", "s", &|at| at.time),
+                (x, "m", &|at| at.displacement.x),
+                (y, "m", &|at| at.displacement.y),
+            ],
+        )
+    }
+
+    /// Where the place is at a time \[s\], between two points; `None` before the first and after the last.
     pub fn at(&self, time: f64) -> Option<Vector2<f64>> {
-        let after = self.0.partition_point(|row| row[0] < time);
+        let after = self.0.partition_point(|at| at.time < time);
         let b = self.0.get(after)?;
-        let a = if b[0] == time { b } else { self.0.get(after.checked_sub(1)?)? };
-        let share = if b[0] > a[0] { (time - a[0]) / (b[0] - a[0]) } else { 0.0 };
-        let [x, y] = [1, 2].map(|k| a[k] + (b[k] - a[k]) * share);
-        Some(Vector2::new(x, y))
+        let a = if b.time == time { b } else { self.0.get(after.checked_sub(1)?)? };
+        let share = if b.time > a.time { (time - a.time) / (b.time - a.time) } else { 0.0 };
+        Some(a.displacement + (b.displacement - a.displacement) * share)
     }
 
     /// Root of the mean square of the distance from another path, at its times that this one covers \[m\];
     /// NaN if it covers none.
     pub fn distance(&self, other: &Self) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
-        for [t, x, y] in &other.0 {
-            if let Some(place) = self.at(*t) {
-                sum += (place - Vector2::new(*x, *y)).norm_squared();
+        for PathPoint { time, displacement } in &other.0 {
+            if let Some(place) = self.at(*time) {
+                sum += (place - displacement).norm_squared();
                 count += 1.0;
             }
         }
@@ -106,9 +150,13 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
+    fn path<const N: usize>(rows: [[f64; 3]; N]) -> Path {
+        Path(rows.map(|[t, x, y]| PathPoint::new(t, Vector2::new(x, y))).into())
+    }
+
     #[test]
     fn a_path_is_straight_between_its_rows_and_nowhere_beyond_them() {
-        let path = Path(vec![[0.0, 0.0, 1.0], [1.0, 2.0, 1.0], [3.0, 2.0, 5.0]]);
+        let path = path([[0.0, 0.0, 1.0], [1.0, 2.0, 1.0], [3.0, 2.0, 5.0]]);
         assert_eq!(path.at(0.0), Some(Vector2::new(0.0, 1.0)));
         assert_eq!(path.at(0.25), Some(Vector2::new(0.5, 1.0)));
         assert_eq!(path.at(2.0), Some(Vector2::new(2.0, 3.0)));
@@ -120,8 +168,8 @@ mod tests {
 
     #[test]
     fn the_distance_of_two_paths_is_that_at_the_times_of_both() {
-        let path = Path(vec![[0.0, 0.0, 0.0], [2.0, 2.0, 0.0]]);
-        let other = Path(vec![[0.0, 0.0, 3.0], [1.0, 5.0, 3.0], [3.0, 100.0, 100.0]]);
+        let other = path([[0.0, 0.0, 3.0], [1.0, 5.0, 3.0], [3.0, 100.0, 100.0]]);
+        let path = path([[0.0, 0.0, 0.0], [2.0, 2.0, 0.0]]);
         // 3 and 5 apart; the last time is beyond the first path.
         assert_relative_eq!(path.distance(&other), (17.0_f64).sqrt(), max_relative = 1e-14);
         assert!(Path::default().distance(&other).is_nan());

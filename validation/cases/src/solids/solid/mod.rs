@@ -10,7 +10,7 @@ mod problem;
 #[cfg(test)]
 pub mod tests;
 
-pub use elements::{Elements, Path, Quantities, compare, quantities};
+pub use elements::{Elements, Path, PathPoint, Quantities, compare, quantities};
 pub use energy::{ElasticEnergy, angular_momentum, kinetic, norm_squared};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{Material, limits};

@@ -260,7 +260,8 @@ pub struct Gauge {
     /// x beyond which water is in reach of the wall \[m\].
     reach: f64,
     sensors: Vec<Vec<Spot>>,
-    rows: Vec<[f64; 5]>,
+    /// Times \[s\], and the pressure at each sensor \[Pa\].
+    rows: Vec<(f64, Vec<f64>)>,
 }
 
 /// The kernel W(r) \[1/m²\] of r² \[m²\].
@@ -299,7 +300,7 @@ impl Gauge {
     /// Reads the sensors after a step.
     pub fn after_step(&mut self, dam: &Dam, now: &Snapshot) -> ControlFlow<()> {
         if let (false, Ok(p)) = (self.sensors.is_empty(), self.read(dam, now)) {
-            self.rows.push([now.time(), p[0], p[1], p[2], p[3]]);
+            self.rows.push((now.time(), p));
         }
         ControlFlow::Continue(())
     }
@@ -307,16 +308,17 @@ impl Gauge {
     /// Pressures over time, means over blocks of [`BLOCK`], in the units of the column.
     pub fn measure(&self, dam: &Dam, record: &mut Record) {
         let (unit, scale) = (dam.settings.unit_time(), dam.unit_pressure());
-        let block = |row: &[f64; 5]| (row[0] / (BLOCK * unit)).floor();
-        let mean = |rows: &[[f64; 5]]| {
-            let p = |k: usize| rows.iter().map(|row| row[k]).sum::<f64>() / rows.len() as f64;
-            let t = (block(&rows[0]) + 0.5) * (BLOCK * unit);
-            [t / unit, p(1) / scale, p(2) / scale, p(3) / scale, p(4) / scale]
-        };
-        let means: Vec<_> = self.rows.chunk_by(|a, b| block(a) == block(b)).map(mean).collect();
-        let [one, two, three, four] = ["P1", "P2", "P3", "P4"].map(|name| (name, "rho g H"));
-        let columns = [("t", "(H/g)^(1/2)"), one, two, three, four];
-        record.profiles.insert("pressure".into(), Profile::of_rows(&columns, &means));
+        let block = |(time, _): &(f64, Vec<f64>)| (time / (BLOCK * unit)).floor();
+        let blocks: Vec<_> = self.rows.chunk_by(|a, b| block(a) == block(b)).collect();
+        let middle = |rows: &&[_]| (block(&rows[0]) + 0.5) * (BLOCK * unit) / unit;
+        let mut means = Profile::of(&blocks, &[("t", "(H/g)^(1/2)", &middle)]);
+        for (k, name) in ["P1", "P2", "P3", "P4"].into_iter().enumerate() {
+            let mean = |rows: &&[(f64, Vec<f64>)]| {
+                rows.iter().map(|(_, p)| p[k]).sum::<f64>() / rows.len() as f64 / scale
+            };
+            means = means.with(name, "rho g H", blocks.iter().map(mean).collect());
+        }
+        record.profiles.insert("pressure".into(), means);
     }
 }
 
@@ -369,6 +371,7 @@ mod tests {
     impl Gauge {
         /// A gauge that has read these t \[s\] and pressures \[Pa\].
         pub fn made_up(rows: Vec<[f64; 5]>) -> Self {
+            let rows = rows.into_iter().map(|[time, p @ ..]| (time, p.to_vec())).collect();
             Self { reach: 0.0, sensors: Vec::new(), rows }
         }
     }

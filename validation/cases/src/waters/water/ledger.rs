@@ -7,7 +7,7 @@ use touchstone_base::{absent::Absent, record::MetricKey};
 use touchstone_harness::prelude::*;
 use touchstone_harness::snapshot::Snapshot;
 use touchstone_maths::metrics::{
-    budget::{Metered, Powers},
+    budget::{EnergyItems, Metered},
     energy::{FluidEnergy, Water, water_slope},
 };
 
@@ -23,9 +23,15 @@ touchstone_base::metrics! {
     WORK_WALLS = "work_walls" ["-"] "energy that walls has added until the end/{}";
 }
 
-/// The works of the terms of [`Powers`], which are columns of the series too.
-const WORKS: [MetricKey; 6] =
-    [WORK_VISCOSITY, WORK_STRESS, WORK_DAMPER, WORK_DIFFUSION, WORK_XSPH, WORK_WALLS];
+/// The works of terms, which are columns of the series too.
+const WORKS: [(MetricKey, fn(&EnergyItems) -> f64); 6] = [
+    (WORK_VISCOSITY, |of| of.viscosity),
+    (WORK_STRESS, |of| of.stress),
+    (WORK_DAMPER, |of| of.damper),
+    (WORK_DIFFUSION, |of| of.diffusion),
+    (WORK_XSPH, |of| of.xsph),
+    (WORK_WALLS, |of| of.walls),
+];
 
 /// Metrics of a ledger, which needs pair sweeps of its own.
 pub const METRICS: [MetricKey; 7] =
@@ -35,15 +41,32 @@ pub const METRICS: [MetricKey; 7] =
 #[derive(Default, Serialize, Deserialize)]
 pub struct Ledger {
     /// At the last sample.
-    powers: Powers,
+    powers: EnergyItems,
     /// Momentum at the start \[kg/s\], force at the last sample \[N/m\], impulse since the start by the
     /// trapezoidal rule, and the largest difference of momentum that it does not explain \[kg/s\].
     start: Vector2<f64>,
     force: Vector2<f64>,
     impulse: Vector2<f64>,
     unexplained: f64,
-    /// t \[s\], kinetic, potential and compression energy, then the [`WORKS`] \[J/m\].
-    rows: Vec<[f64; 10]>,
+    samples: Vec<Sample>,
+}
+
+/// The energy of the water at one time.
+#[derive(Serialize, Deserialize)]
+struct Sample {
+    /// \[s\].
+    time: f64,
+    /// \[J/m\].
+    energy: FluidEnergy,
+    /// Works of terms since the first sample \[J/m\].
+    works: EnergyItems,
+}
+
+impl Sample {
+    /// The energy that no work explains \[J/m\].
+    fn balance(&self) -> f64 {
+        self.energy.sum() - self.works.sum()
+    }
 }
 
 impl Ledger {
@@ -53,18 +76,18 @@ impl Ledger {
         let (powers, pairs) = simulation.powers(&water_slope(&water));
         let time = simulation.time();
         self.balance_momentum(&*simulation, water.gravity, pairs);
-        let FluidEnergy { kinetic, potential, compression } = water.energy(&*simulation);
-        let [a, b, c, d, e, f] = self.works(time, &powers);
-        self.rows.push([time, kinetic, potential, compression, a, b, c, d, e, f]);
+        let (energy, works) = (water.energy(&*simulation), self.works(time, powers));
+        self.samples.push(Sample { time, energy, works });
         self.powers = powers;
     }
 
     /// Works from the first sample to a time, by the trapezoidal rule over the powers of each sample;
     /// negative for a term that takes energy from the particles.
-    fn works(&self, time: f64, powers: &Powers) -> Powers {
-        let Some(last) = self.rows.last() else { return Powers::default() };
-        let half = 0.5 * (time - last[0]);
-        std::array::from_fn(|k| last[4 + k] + half * (powers[k] + self.powers[k]))
+    fn works(&self, time: f64, powers: EnergyItems) -> EnergyItems {
+        let Some(last) = self.samples.last() else { return EnergyItems::default() };
+        let half = 0.5 * (time - last.time);
+        let added = powers.with(self.powers, |now, before| half * (now + before));
+        last.works.with(added, |work, more| work + more)
     }
 
     /// Adds the impulse since the last sample; `pairs` is the force of all pairs on the water \[N/m\].
@@ -79,10 +102,10 @@ impl Ledger {
             momentum += p.velocity * mass;
             force += gravity * mass;
         }
-        match self.rows.last() {
+        match self.samples.last() {
             None => self.start = momentum,
             Some(last) => {
-                self.impulse += (self.force + force) * (0.5 * (simulation.time() - last[0]));
+                self.impulse += (self.force + force) * (0.5 * (simulation.time() - last.time));
                 let gap = (momentum - self.start - self.impulse).norm();
                 self.unexplained = self.unexplained.max(gap);
             }
@@ -92,7 +115,7 @@ impl Ledger {
 
     /// The largest change of momentum that walls and gravity do not explain \[kg/s\]; NaN without a sample.
     pub fn unexplained_momentum(&self) -> f64 {
-        if self.rows.is_empty() { f64::NAN } else { self.unexplained }
+        if self.samples.is_empty() { f64::NAN } else { self.unexplained }
     }
 
     /// Were samples taken until this end?
@@ -101,14 +124,13 @@ impl Ledger {
     /// An error is the reason: the run belongs to another code, or the balances were not requested.
     pub fn sampled(&self, end: &Snapshot) -> Result<(), Absent> {
         end.simulation()?;
-        if self.rows.is_empty() { Err(Absent::NotAsked) } else { Ok(()) }
+        if self.samples.is_empty() { Err(Absent::NotAsked) } else { Ok(()) }
     }
 
     /// The largest |E(t) − E(0) − work(t)| so far \[J/m\].
     fn gap(&self) -> f64 {
-        let balance = |row: &[f64; 10]| row[1] + row[2] + row[3] - row[4..].iter().sum::<f64>();
-        let start = self.rows.first().map_or(0.0, balance);
-        self.rows.iter().map(|row| (balance(row) - start).abs()).fold(0.0, f64::max)
+        let start = self.samples.first().map_or(0.0, Sample::balance);
+        self.samples.iter().map(|of| (of.balance() - start).abs()).fold(0.0, f64::max)
     }
 
     /// Metrics relative to a scale \[J/m\], and the series, if samples were taken of our run.
@@ -117,16 +139,21 @@ impl Ledger {
             return record.leave_all_out(&METRICS, &absent);
         }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
-        for (k, work) in WORKS.into_iter().enumerate() {
-            record.put(work.of(of_what), self.rows.last().map_or(0.0, |row| row[4 + k]) / scale);
+        let works = self.samples.last().map(|of| of.works).unwrap_or_default();
+        let mut series = Profile::of(
+            &self.samples,
+            &[
+                ("t", "s", &|of| of.time),
+                ("kinetic", "J/m", &|of| of.energy.kinetic),
+                ("potential", "J/m", &|of| of.energy.potential),
+                ("compression", "J/m", &|of| of.energy.compression),
+            ],
+        );
+        for (metric, work) in WORKS {
+            record.put(metric.of(of_what), work(&works) / scale);
+            let column = self.samples.iter().map(|of| work(&of.works)).collect();
+            series = series.with(&String::from(metric), "J/m", column);
         }
-        let names = ["t", "kinetic", "potential", "compression"].map(String::from);
-        let names = names.into_iter().chain(WORKS.map(String::from));
-        let add = |profile: Profile, (k, name): (usize, String)| {
-            let unit = if k == 0 { "s" } else { "J/m" };
-            profile.with(&name, unit, self.rows.iter().map(|row| row[k]).collect())
-        };
-        let series = names.enumerate().fold(Profile::default(), add);
         record.profiles.insert("energy".into(), series);
     }
 }
@@ -170,6 +197,10 @@ mod tests {
         assert!((ledger.unexplained_momentum() - 6.0 * 0.5).abs() < 1e-9);
     }
 
+    fn items([viscosity, stress, damper, diffusion, xsph, walls]: [f64; 6]) -> EnergyItems {
+        EnergyItems { viscosity, stress, damper, diffusion, xsph, walls }
+    }
+
     #[test]
     fn energy_that_no_term_gave_is_the_gap_and_works_are_integrals_over_the_scale() {
         let medium = modern().properties.medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
@@ -179,7 +210,8 @@ mod tests {
         for (height, v) in [(0.0, 0.0), (0.2, 0.0), (0.0, 3.0)] {
             ledger.sample(&medium, &mut *particles(&medium, height, Vector2::new(v, 0.0)));
         }
-        assert!((ledger.rows[1][2] - 12.0).abs() < 1e-9 && (ledger.rows[2][1] - 27.0).abs() < 1e-9);
+        let [raised, moving] = [&ledger.samples[1].energy, &ledger.samples[2].energy];
+        assert!((raised.potential - 12.0).abs() < 1e-9 && (moving.kinetic - 27.0).abs() < 1e-9);
         assert!((ledger.gap() - 27.0).abs() < 1e-9, "{}", ledger.gap());
         let mut record = Record::new("dam_break", "modern", serde_json::json!({}), 1);
         let end = particles(&medium, 0.0, Vector2::zeros());
@@ -188,22 +220,29 @@ mod tests {
         let gap = record.value(ENERGY_GAP).expect("a metric");
         assert!((gap - 27.0 / 50.0).abs() < 1e-12);
         // Each term with a power that rises at its own rate for 3 s.
-        ledger.rows.clear();
+        ledger.samples.clear();
         for time in [0.0, 1.0, 3.0] {
-            let powers = std::array::from_fn(|k| (k + 1) as f64 * time);
-            let [a, b, c, d, e, f] = ledger.works(time, &powers);
-            ledger.rows.push([time, 0.0, 0.0, 0.0, a, b, c, d, e, f]);
+            let powers = items([1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|k| k * time));
+            let (energy, works) = (FluidEnergy::default(), ledger.works(time, powers));
+            ledger.samples.push(Sample { time, energy, works });
             ledger.powers = powers;
         }
         ledger.measure(&end, 50.0, "it", &mut record);
-        for (k, metric) in WORKS.into_iter().enumerate() {
+        for (k, (metric, _)) in WORKS.into_iter().enumerate() {
             let work = record.value(metric).expect("a metric");
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
         }
         // Work of terms is no gap; work of terms that is missing in the energy is one.
-        ledger.rows = vec![[0.0; 10], [1.0, 3.0, 0.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.5, 0.5]];
+        let sample = |time, kinetic, compression, works| {
+            let energy = FluidEnergy { kinetic, compression, ..FluidEnergy::default() };
+            Sample { time, energy, works: items(works) }
+        };
+        ledger.samples = vec![
+            sample(0.0, 0.0, 0.0, [0.0; 6]),
+            sample(1.0, 3.0, 2.0, [3.0, 0.0, 0.0, 0.0, 1.5, 0.5]),
+        ];
         assert!(ledger.gap() < 1e-12, "{}", ledger.gap());
-        ledger.rows.push([3.0, 0.0, 0.0, 0.0, 1.0, 2.0, 0.0, 5.0, 0.0, -4.0]);
+        ledger.samples.push(sample(3.0, 0.0, 0.0, [1.0, 2.0, 0.0, 5.0, 0.0, -4.0]));
         assert!((ledger.gap() - 4.0).abs() < 1e-12, "{}", ledger.gap());
     }
 }
