@@ -68,7 +68,7 @@ impl<T: Settings, M: 'static> Variants<T, M> {
         [name, about]: [&'static str; 2],
         method: M,
         lacks: Vec<&'static str>,
-        adjust: fn(&mut T),
+        adjust: impl FnOnce(&mut T),
     ) -> Self {
         let (pose, mut settings) = (Rc::clone(&self.pose), Box::new(T::default()));
         adjust(&mut settings);
@@ -88,7 +88,7 @@ impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
         name: &'static str,
         about: &'static str,
         method: Method<X, D>,
-        adjust: fn(&mut T),
+        adjust: impl FnOnce(&mut T),
     ) -> Self {
         let lacks = MediumSetting::others(&method.properties.uses, T::all());
         self.lacking([name, about], method, lacks, adjust)

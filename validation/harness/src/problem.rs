@@ -129,8 +129,10 @@ pub trait Problem: Sized {
         None
     }
 
-    /// The times of interest, ascending, the end last \[s\].
-    fn times(&self) -> Vec<f64>;
+    /// The times of interest, ascending, the end last \[s\]; the end alone unless a case has others.
+    fn times(&self) -> Vec<f64> {
+        vec![Problem::brief(self).rules.end]
+    }
 
     /// Particles, walls and medium.
     ///
@@ -688,10 +690,6 @@ impl<X: Numbers> Problem for Simple<X> {
 
     fn not_exported(&self) -> Option<&'static str> {
         self.not_exported
-    }
-
-    fn times(&self) -> Vec<f64> {
-        vec![self.rules.end]
     }
 
     fn scene(&self) -> Result<Parts<X>, RunError> {

@@ -187,9 +187,8 @@ fn facts() -> Facts {
 
 /// Both walls with the order that they should have.
 fn accuracy(table: &Table<SlipSettings, ()>) -> Accuracy {
-    let because = "Sums of both walls are of second order. The lattice factor of the quintic spline, \
-                   1.0004 at h/dx = 1.3, is opposite to this error, and adds up to 0.5 to the order at \
-                   28 rows.";
+    let because = "Sums of both walls are of second order. The lattice factor of the quintic spline, 1.0004 \
+                   at h/dx = 1.3, is opposite to this error, and adds up to 0.5 to the order at 28 rows.";
     let spacing = Spacing::count(|s: &mut SlipSettings| &mut s.n, "{} rows");
     let ladder = |variant: &'static str| {
         let (bound, id) = (Bound::Within(1.8, 2.5), format!("{NAME}.{variant}.order"));

@@ -189,10 +189,9 @@ pub static CASE: Composed<CylinderSettings> = Composed {
                   %<!-- taylor_couette.interface-wall; layers=8; l2 -->, whose order is lower",
         papers: Some(INTERFACE),
     },
-    about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the \
-            exact velocity u = A r + B/r. It starts from rest. Both walls are curved, the inner one convex \
-            and the outer one concave, and made of rows of particles that are spaced by their own arc \
-            length.",
+    about: "Viscous flow between two cylinders, of which the inner one turns, becomes steady with the exact \
+            velocity u = A r + B/r. It starts from rest. Both walls are curved, the inner one convex and the \
+            outer one concave, and made of rows of particles that are spaced by their own arc length.",
     variants,
     facts,
     studies,

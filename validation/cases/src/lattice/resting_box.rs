@@ -16,14 +16,14 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::{
     bisect::Growth,
     case::{PLANNED_DT, Planned, Step},
-    limits,
+    limits::TimeStepLimits,
     method::{MediumSetting, Properties},
     rules::PLANNED_DT_OVER_LIMIT,
     snapshot::{Point, Snapshot},
     studies::{StepLimit, StepLimits},
     table::{Row, Table},
 };
-use touchstone_maths::theory::time_step::{self, Mode};
+use touchstone_maths::theory::time_step::{self, Mode, WaveMedium};
 use touchstone_solver::{DivergenceBounds, Tait};
 
 use crate::lattice::torus;
@@ -138,8 +138,7 @@ fn stiffness(s: &BoxSettings) -> f64 {
 /// The waves of the box in the lattice of a method, in units of c₀ and h.
 fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
-    let medium =
-        time_step::WaveMedium { nu, alpha, delta, ..time_step::WaveMedium::of_sound(1.0, 1.0) };
+    let medium = WaveMedium { nu, alpha, delta, ..WaveMedium::of_sound(1.0, 1.0) };
     time_step::modes(&method.properties.square([s.h_over_dx, ETA2]), s.n, &medium)
 }
 
@@ -157,8 +156,8 @@ impl Resting {
             let variant = "without density diffusion".into();
             return Err(RunError::Unused { key: "delta".into(), variant });
         }
-        let limits =
-            limits::TimeStepLimits::of(&modes(method, s), method.properties.theory).times(h(s));
+        let limits = TimeStepLimits::of(&modes(method, s), method.properties.theory);
+        let limits = limits.times(h(s));
         let step = Step::courant(s.courant, h(s), [1.0, 0.0]);
         let rules = Rules { step, limits, sound_speed: 1.0, end: s.steps as f64 * step.dt };
         Ok(Self { method: method.clone(), settings: s.clone(), rules })
@@ -175,15 +174,6 @@ fn medium(method: &Method, s: &BoxSettings) -> Medium {
     }
 }
 
-fn parts(method: &Method, s: &BoxSettings) -> Parts {
-    let medium = medium(method, s);
-    let mut random = Random::new(7);
-    let mut noise = || NOISE * random.normal();
-    let limits = DivergenceBounds { density: [0.7, 1.3], speed: 2.0 };
-    let velocity = |_, place| (place, Vector2::new(noise(), noise()));
-    Parts { limits, ..torus((1.0, s.n), medium, velocity) }
-}
-
 /// Kinetic and acoustic energy, ½ m v² + ½ m (ρ/ρ₀ - 1)² with c₀ = 1.
 fn energy(now: &Snapshot) -> Result<f64, Absent> {
     let density = now.density()?;
@@ -192,12 +182,6 @@ fn energy(now: &Snapshot) -> Result<f64, Absent> {
         0.5 * p.mass * (p.velocity.norm_squared() + compression * compression)
     };
     Ok(now.stored().map(of).sum())
-}
-
-/// Watches the energy, and ends the run if it grew beyond doubt.
-fn watch(growth: &mut Growth, now: &Snapshot) -> ControlFlow<()> {
-    let is_beyond_doubt = energy(now).is_ok_and(|energy| growth.see(energy));
-    if is_beyond_doubt { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
 impl Problem for Resting {
@@ -226,12 +210,13 @@ impl Problem for Resting {
         Some("its energy is read after every step")
     }
 
-    fn times(&self) -> Vec<f64> {
-        vec![self.rules.end]
-    }
-
     fn scene(&self) -> Result<Parts, RunError> {
-        Ok(parts(&self.method, &self.settings))
+        let medium = medium(&self.method, &self.settings);
+        let mut random = Random::new(7);
+        let mut noise = || NOISE * random.normal();
+        let limits = DivergenceBounds { density: [0.7, 1.3], speed: 2.0 };
+        let velocity = |_, place| (place, Vector2::new(noise(), noise()));
+        Ok(Parts { limits, ..torus((1.0, self.settings.n), medium, velocity) })
     }
 
     fn watch(&self, _: &Snapshot, start: &Snapshot) -> Growth {
@@ -239,7 +224,13 @@ impl Problem for Resting {
     }
 
     fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
-        calls.after_step("energy", |_, growth, now| watch(growth, now))
+        // The run ends if the energy grew beyond doubt.
+        calls.after_step("energy", |_, growth, now| {
+            match energy(now).is_ok_and(|energy| growth.see(energy)) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
+        })
     }
 
     fn measure(&self, growth: Growth, end: &Snapshot, record: &mut Record) {
@@ -259,10 +250,9 @@ fn at_limit(variant: &str) -> impl Fn(&mut BoxSettings, [f64; 3]) {
     move |s, [stiffness, alpha, delta]| {
         s.stiffness = stiffness.is_finite().then_some(stiffness);
         (s.alpha, s.delta) = (alpha, delta);
-        let modes = modes(&method, s);
-        s.courant = time_step::time_step_limit(&modes, method.properties.theory);
-        let growth =
-            time_step::growth_per_step(&modes, method.properties.theory, SEEN_FROM * s.courant);
+        let (modes, theory) = (modes(&method, s), method.properties.theory);
+        s.courant = time_step::time_step_limit(&modes, theory);
+        let growth = time_step::growth_per_step(&modes, theory, SEEN_FROM * s.courant);
         s.steps = (0.5 / growth).clamp(STEPS[0], STEPS[1]) as usize;
     }
 }
@@ -310,13 +300,8 @@ fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
 /// The bisection of a row, whose step is the limit of theory.
 fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
     let Row { settings: s, run, .. } = row;
-    let bisect = Bisect {
-        setting: "courant".into(),
-        guess: s.courant,
-        unit: 1.0,
-        resolution: RESOLUTION,
-        end: None,
-    };
+    let (setting, guess) = ("courant".into(), s.courant);
+    let bisect = Bisect { setting, guess, unit: 1.0, resolution: RESOLUTION, end: None };
     StepLimit {
         scene: format!("c0 h/nu = {}, alpha = {}, delta = {}", stiffness(&s), s.alpha, s.delta),
         spec: run.spec.allow_unstable().bisect(bisect),

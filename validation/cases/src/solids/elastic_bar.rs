@@ -57,11 +57,10 @@ pub static ELASTIC_BAR: Composed<BarSettings> = Composed {
     problem: "A pulse in an elastic bar; two bars collide",
     recommended: Recommended {
         variant: LAGRANGIAN,
-        because: "with 40 spacings its pulse differs from the exact one by \
-                  20 %<!-- elastic_bar.lagrangian; n=40; pulse_rms -->, rms over that, the paper's by \
-                  44 %<!-- elastic_bar.seed; n=40; pulse_rms -->, and comes in time to \
-                  -0.010 %<!-- elastic_bar.lagrangian; n=40; travel_error -->, the paper's to \
-                  -7.0 %<!-- elastic_bar.seed; n=40; travel_error -->",
+        because: "with 40 spacings its pulse differs from the exact one by 20 %<!-- elastic_bar.lagrangian; \
+                  n=40; pulse_rms -->, rms over that, the paper's by 44 %<!-- elastic_bar.seed; n=40; \
+                  pulse_rms -->, and comes in time to -0.010 %<!-- elastic_bar.lagrangian; n=40; \
+                  travel_error -->, the paper's to -7.0 %<!-- elastic_bar.seed; n=40; travel_error -->",
         papers: Some("seed"),
     },
     about: "Elastic bars along x are periodic in y, so they strain along x only and every wave runs at c_p \
@@ -408,8 +407,7 @@ fn pulse(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
     let most = if row.variant == LAGRANGIAN { 0.005 } else { 0.01 };
     let travel = gates.analytic(TRAVEL_ERROR, Bound::magnitude(most), group);
     let shape = "The earlier result of this program, with 5 % either way. Waves of a few spacings are slow \
-                 and follow the pulse; their share falls from 52 over 20 to 5 % with 20, 40 and 80 \
-                 spacings.";
+                 and follow the pulse; their share falls from 52 over 20 to 5 % with 20, 40 and 80 spacings.";
     let before = gates.gate(PULSE_RMS, Bound::Within(0.19, 0.21), Evidence::Regression, shape);
     let arrives = "A pulse that is half of its standard deviation away differs from the exact one by (2 - 2 \
                    e^(-1/16))^(1/2) = 0.35 of it, one that has not moved by 1.4.";
@@ -441,8 +439,7 @@ fn pulse(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
 /// Of two bars.
 fn meeting(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
     let jump = "The jump conditions hold with any dissipation: equal bars exchange their velocities, and \
-                meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 \
-                %.";
+                meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 %.";
     let welded = "The contact pulls as soon as the first expansion returns, whose front is as wide as the \
                   kernel, so a part of the exchange is missing. The bound: 20 spacings exchange 0.93, with \
                   viscosity 0.85.";

@@ -7,7 +7,6 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::{acos, cos, sin},
@@ -21,7 +20,7 @@ use touchstone_harness::{
 };
 use touchstone_solver::{CubicSpline, Kernel, Symmetric};
 
-use super::solid::{Material, limits};
+use super::solid::{Material, limits, medium_of};
 
 touchstone_base::settings! {
     /// Settings of a wave along x on a lattice of the unit square.
@@ -66,11 +65,9 @@ touchstone_base::metrics! {
 fn variants() -> Compositions<WaveSettings> {
     let equations = "equations (9) to (12), leapfrog, cubic spline: does the method have both moduli of the \
                      material?";
-    Variants::of(|m: &Method<Symmetric>, s: &WaveSettings| {
-        Ok(Wave { settings: s.clone(), method: m.clone() })
-    })
-    .with(CubicSpline::NAME, equations, touchstone_schemes::solid::bare(), |_| {})
-    .all
+    Variants::of(|m, s| Ok(Wave::new(m, s)))
+        .with(CubicSpline::NAME, equations, touchstone_schemes::solid::bare(), |_| {})
+        .all
 }
 
 /// Particles along each side of the unit square, and their spacing.
@@ -82,43 +79,6 @@ const AMPLITUDE: f64 = 1e-6;
 const RUBBER: Material = Material { density: 1.0, bulk: 1.0, shear: 0.22 };
 /// Steps of a wave.
 const STEPS: usize = 400;
-impl WaveSettings {
-    /// The scene: a lattice with a cosine of velocity.
-    fn parts(&self, method: &Method<Symmetric>) -> Parts<Symmetric> {
-        let places = touchstone_solver::lattice(Vector2::repeat(0.5 * DX), DX, N, N).enumerate();
-        let wave = places.map(|(k, x)| {
-            let velocity = self.direction() * (AMPLITUDE * cos(phase(k)));
-            Particle::fluid(x, velocity, RUBBER.density, DX * DX)
-        });
-        let medium = RUBBER.medium(&method.properties, [DX, self.h_over_dx * DX]);
-        Parts::new(medium, Domain::torus(1.0, 1.0), wave.collect())
-    }
-
-    /// Direction of the particles' motion in a wave along x.
-    fn direction(&self) -> Vector2<f64> {
-        if self.transverse { Vector2::y() } else { Vector2::x() }
-    }
-
-    /// ω of the wave, from the gradient symbol.
-    fn frequency(&self, method: &Method<Symmetric>) -> f64 {
-        let h = self.h_over_dx / N as f64;
-        let lattice = method.properties.square([self.h_over_dx, 0.0]);
-        let g = lattice.gradient(Vector2::new(TAU / N as f64, 0.0)).norm() / h;
-        let Material { bulk, shear, .. } = RUBBER;
-        let modulus = if self.transverse { shear } else { bulk + 4.0 / 3.0 * shear };
-        g * modulus.sqrt()
-    }
-
-    /// A fiftieth of the period of the wave.
-    fn rules(&self, method: &Method<Symmetric>) -> Rules {
-        let dt = 0.02 / self.frequency(method) * TAU;
-        let step = Step { dt, number: 0.02, by: "period" };
-        let medium = RUBBER.medium(&method.properties, [DX, self.h_over_dx / N as f64]);
-        let limits = limits(&method.properties, &RUBBER, &medium, self.h_over_dx, 0.0);
-        let end = dt * STEPS as f64;
-        Rules { step, limits, sound_speed: RUBBER.sound_speed(), end }
-    }
-}
 
 /// Phase of particle `k` in the wave \[rad\].
 fn phase(k: usize) -> f64 {
@@ -127,77 +87,88 @@ fn phase(k: usize) -> f64 {
 
 /// A run of a wave.
 struct Wave {
-    settings: WaveSettings,
     method: Method<Symmetric>,
+    h_over_dx: f64,
+    /// Direction of the particles' motion in a wave along x.
+    direction: Vector2<f64>,
+    /// ω of the wave, from the gradient symbol.
+    frequency: f64,
+    medium: Medium,
+    /// A step is a fiftieth of the period of the wave.
+    rules: Rules,
+}
+
+impl Wave {
+    fn new(method: &Method<Symmetric>, s: &WaveSettings) -> Self {
+        let (h_over_dx, h, properties) = (s.h_over_dx, s.h_over_dx * DX, &method.properties);
+        let direction = if s.transverse { Vector2::y() } else { Vector2::x() };
+        let lattice = properties.square([h_over_dx, 0.0]);
+        let g = lattice.gradient(Vector2::new(TAU / N as f64, 0.0)).norm() / h;
+        let Material { bulk, shear, .. } = RUBBER;
+        let modulus = if s.transverse { shear } else { bulk + 4.0 / 3.0 * shear };
+        let frequency = g * modulus.sqrt();
+        let step = Step { dt: 0.02 / frequency * TAU, number: 0.02, by: "period" };
+        let medium = medium_of(&RUBBER, properties, [DX, h]);
+        let limits = limits(properties, &RUBBER, &medium, h_over_dx, 0.0);
+        let (sound_speed, end) = (RUBBER.sound_speed(), step.dt * STEPS as f64);
+        let rules = Rules { step, limits, sound_speed, end };
+        Self { method: method.clone(), h_over_dx, direction, frequency, medium, rules }
+    }
 }
 
 impl Problem for Wave {
     type Extra = Symmetric;
     type Simulation = dyn Stepper<Symmetric>;
-    type Watch = Watch;
+    /// Projections of the velocities on the wave.
+    type Watch = Vec<f64>;
 
     fn method(&self) -> &Method<Symmetric> {
         &self.method
     }
 
     fn brief(&self) -> Brief {
-        let rules = self.settings.rules(&self.method);
-        let h_over_dx = self.settings.h_over_dx;
-        let medium = RUBBER.medium(&self.method.properties, [DX, h_over_dx * DX]);
-        Brief::new(medium, rules, (N * N) as f64, "h_over_dx")
-            .numbers(&[("h/dx", h_over_dx), (PLANNED_DT, rules.dt())])
-    }
-
-    fn times(&self) -> Vec<f64> {
-        vec![self.settings.rules(&self.method).end]
+        Brief::new(self.medium, self.rules, (N * N) as f64, "h_over_dx")
+            .numbers(&[("h/dx", self.h_over_dx), (PLANNED_DT, self.rules.dt())])
     }
 
     fn scene(&self) -> Result<Parts<Symmetric>, RunError> {
-        Ok(self.settings.parts(&self.method))
+        let places = touchstone_solver::lattice(Vector2::repeat(0.5 * DX), DX, N, N).enumerate();
+        let wave = places.map(|(k, x)| {
+            let velocity = self.direction * (AMPLITUDE * cos(phase(k)));
+            Particle::fluid(x, velocity, RUBBER.density, DX * DX)
+        });
+        Ok(Parts::new(self.medium, Domain::torus(1.0, 1.0), wave.collect()))
     }
 
-    fn watch(&self, _: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> Watch {
-        Watch { direction: self.settings.direction(), amplitudes: Vec::new() }
+    fn watch(&self, _: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> Vec<f64> {
+        Vec::new()
     }
 
     fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
-        calls.every_step_of_ours("projection", |_, watch, simulation| watch.after_step(simulation))
+        calls.every_step_of_ours("projection", |wave, amplitudes, simulation| {
+            let along = |p: &Particle<Symmetric>| p.velocity.dot(&wave.direction);
+            let all = simulation.particles();
+            amplitudes.push(all.iter().enumerate().map(|(k, p)| along(p) * cos(phase(k))).sum());
+        })
     }
 
-    fn measure(&self, watch: Watch, end: &Snapshot<Symmetric>, record: &mut Record) {
+    fn measure(&self, amplitudes: Vec<f64>, end: &Snapshot<Symmetric>, record: &mut Record) {
         if end.simulation().is_err() {
             return record.leave_out(FREQUENCY_ERROR, Absent::EveryStep);
         }
-        let dt = self.settings.rules(&self.method).dt();
-        let turn = self.settings.frequency(&self.method) * dt;
-        record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * watch.angle()) / turn - 1.0).abs());
+        let turn = self.frequency * self.rules.dt();
+        record.put(FREQUENCY_ERROR, (2.0 * sin(0.5 * angle(&amplitudes)) / turn - 1.0).abs());
     }
 }
 
-/// Projections of the velocities on the wave.
-#[derive(Serialize, Deserialize)]
-struct Watch {
-    direction: Vector2<f64>,
-    amplitudes: Vec<f64>,
-}
-
-impl Watch {
-    /// θ of a step, from a fit to all steps.
-    fn angle(&self) -> f64 {
-        let (mut forward, mut square) = (0.0, 0.0);
-        for a in self.amplitudes[..self.amplitudes.len().saturating_sub(1)].windows(3) {
-            forward += a[1] * (a[0] + a[2]);
-            square += a[1] * a[1];
-        }
-        acos(0.5 * forward / square)
+/// θ of a step, from a fit to all steps.
+fn angle(amplitudes: &[f64]) -> f64 {
+    let (mut forward, mut square) = (0.0, 0.0);
+    for a in amplitudes[..amplitudes.len().saturating_sub(1)].windows(3) {
+        forward += a[1] * (a[0] + a[2]);
+        square += a[1] * a[1];
     }
-
-    fn after_step(&mut self, simulation: &dyn Stepper<Symmetric>) {
-        let particles = simulation.particles();
-        let part =
-            |(k, p): (usize, &Particle<Symmetric>)| p.velocity.dot(&self.direction) * cos(phase(k));
-        self.amplitudes.push(particles.iter().enumerate().map(part).sum());
-    }
+    acos(0.5 * forward / square)
 }
 
 /// Every run: waves along and across.

@@ -16,7 +16,7 @@ use touchstone_maths::{
     exact, geometry,
     metrics::{
         budget::Metered,
-        norms::{l2, largest},
+        norms::{l2, largest, spread},
     },
 };
 use touchstone_schemes::water::WaterMethod;
@@ -306,7 +306,8 @@ impl ColumnHistory {
             !(0.0..=tank.width()).contains(&x.x) || x.y < 0.0
         };
         self.outside = self.outside.max(water.iter().filter(is_outside).count() as f64);
-        self.spread = spread(&water, tank.width()) * tank.width() / medium.dx;
+        let shares = water.iter().map(|p| (p.position.x / tank.width(), p.mass));
+        self.spread = spread(shares) * tank.width() / medium.dx;
         self.samples.push(WaterSample {
             time: now.time() / column.period,
             pressure: error,
@@ -351,19 +352,6 @@ impl ColumnHistory {
         );
         record.profiles.insert("history".into(), history);
     }
-}
-
-/// The mean distance between the fraction of the water at smaller x and the fraction for uniform water.
-fn spread(water: &[Point], width: f64) -> f64 {
-    let mut places: Vec<(f64, f64)> =
-        water.iter().map(|p| (p.position.x / width, p.mass)).collect();
-    places.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mass, mut before, mut sum) = (places.iter().map(|p| p.1).sum::<f64>(), 0.0, 0.0);
-    for (x, own) in places {
-        sum += own * ((before + 0.5 * own) / mass - x.clamp(0.0, 1.0)).abs();
-        before += own;
-    }
-    sum / mass
 }
 
 /// Mean heights of the lowest and of the highest particles in strips of width dx \[m\].

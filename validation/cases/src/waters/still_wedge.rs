@@ -11,7 +11,10 @@ use touchstone_harness::{
     studies::{Accuracy, Sensitivity, Spacing, Watched},
     table,
 };
-use touchstone_maths::metrics::{budget::Metered, norms::rms};
+use touchstone_maths::{
+    geometry::row_behind,
+    metrics::{budget::Metered, norms::rms},
+};
 use touchstone_report::ColourMap;
 use touchstone_schemes::water::WaterMethod;
 use touchstone_solver::{EquationOfState, Role, Smoothing, WendlandC2};
@@ -68,8 +71,7 @@ pub static STILL_WEDGE: Composed<Wedge> = Composed {
     recommended: Recommended {
         variant: "modern",
         because: "it has the smallest error of the pressure at both corners, and with 14 spacings its \
-                  pressure error is 0.60 %<!-- still_wedge.modern; n=14; p_l2 --> of the pressure at depth \
-                  H",
+                  pressure error is 0.60 %<!-- still_wedge.modern; n=14; p_l2 --> of the pressure at depth H",
         papers: Some("seed"),
     },
     about: "Water rests in a tank over a wedge of 45 degrees, whose apex is half way to the surface. Its \
@@ -107,33 +109,14 @@ impl Still {
     }
 }
 
-/// A row at a depth behind sides, floor and wedge \[m\]: a particle on each vertex, and others between, about
-/// dx apart; places with their spacing.
-fn row(s: &Wedge, depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
+/// Sides, floor and wedge, the water on the left.
+fn walls(s: &Wedge) -> Vec<Vector2<f64>> {
     let (left, right) = (HALF - s.apex, HALF + s.apex);
     let wedge = [(left, 0.0), (HALF, s.apex), (right, 0.0)];
     let tank = [[(0.0, 1.2), (0.0, 0.0)], [(2.0 * HALF, 0.0), (2.0 * HALF, 1.2)]];
     let wedge = wedge.into_iter().filter(|_| s.apex > 0.0);
-    let vertices: Vec<Vector2<f64>> =
-        tank[0].into_iter().chain(wedge).chain(tank[1]).map(|(x, y)| Vector2::new(x, y)).collect();
-    // The fluid is on the left.
-    let normals: Vec<Vector2<f64>> = vertices
-        .windows(2)
-        .map(|ends| (ends[1] - ends[0]).normalize())
-        .map(|along| Vector2::new(along.y, -along.x))
-        .collect();
-    let moved = |k: usize| {
-        let [a, b] = [k.saturating_sub(1), k.min(normals.len() - 1)].map(|side| normals[side]);
-        vertices[k] + (a + b) * (depth / (1.0 + a.dot(&b)))
-    };
-    let moved: Vec<Vector2<f64>> = (0..vertices.len()).map(moved).collect();
-    let side = |ends: &[Vector2<f64>]| {
-        let (start, along) = (ends[0], ends[1] - ends[0]);
-        let count = (along.norm() / dx).round().max(1.0);
-        (0..count as usize).map(move |k| (start + along * (k as f64 / count), along.norm() / count))
-    };
-    let last = moved.last().map(|end| (*end, dx));
-    moved.windows(2).flat_map(side).chain(last).collect()
+    let all = tank[0].into_iter().chain(wedge).chain(tank[1]);
+    all.map(|(x, y)| Vector2::new(x, y)).collect()
 }
 
 /// Water in columns that fill the tank up to y = H, with the exact density of their places, and its walls.
@@ -156,10 +139,11 @@ fn particles(s: &Wedge, method: &WaterMethod, medium: &Medium) -> Result<Vec<Par
         particles.extend((0..count as usize).map(|k| at_rest(Vector2::new(x, y(k)), dx * spacing)));
     }
     let rows = (method.properties.support * medium.h / dx - behind - 1e-9).floor() as usize;
+    let walls = walls(s);
     for k in 0..=rows {
         let depth = (behind + k as f64) * dx;
         let role = if depth > 0.0 { Role::Wall } else { Role::Interface };
-        let wall = row(s, depth, dx).into_iter();
+        let wall = row_behind(&walls, depth, dx).into_iter();
         particles.extend(wall.map(|(place, spacing)| at_rest(place, spacing * dx).with_role(role)));
     }
     water::check_above(&particles, 1.0, |above| {

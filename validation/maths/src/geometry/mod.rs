@@ -3,11 +3,17 @@
 
 mod curve;
 mod hill;
+mod layers;
+mod nearest;
+mod polyline;
 mod tank;
 mod topology;
 
 pub use curve::{Curve, ParticleRow};
 pub use hill::Hill;
+pub use layers::layers;
+pub use nearest::nearest;
+pub use polyline::row_behind;
 pub use tank::Tank;
 pub use topology::{BOND, Bonds, Topology};
 

@@ -26,10 +26,29 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     (sum / count).sqrt()
 }
 
+/// (Σ a/Σ b)^(1/2) of squares of differences and of exact values.
+pub fn relative(squares: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let [difference, scale] = squares.fold([0.0; 2], |[a, b], [d, e]| [a + d, b + e]);
+    (difference / scale).sqrt()
+}
+
 /// The largest of these numbers, which are not negative; NaN if one is NaN, because a value that was not
 /// measured must not pass.
 pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
     values.into_iter().fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
+}
+
+/// How far masses at places between 0 and 1 are from being spread evenly: the mean over the mass of |share of
+/// the mass at smaller places − place|.
+pub fn spread(masses: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let mut places: Vec<(f64, f64)> = masses.collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mass, mut before, mut sum) = (places.iter().map(|p| p.1).sum::<f64>(), 0.0, 0.0);
+    for (x, own) in places {
+        sum += own * ((before + 0.5 * own) / mass - x.clamp(0.0, 1.0)).abs();
+        before += own;
+    }
+    sum / mass
 }
 
 /// Do values pair up, is each of them finite, and is the scale positive and finite, so that a relative error
@@ -51,6 +70,16 @@ mod tests {
         assert_relative_eq!(linf(&u, &e, 10.0), 0.4);
         assert_relative_eq!(l2(&u, &e), (25.0f64 / 21.0).sqrt());
         assert_eq!(l2(&e, &e), 0.0);
+        let squares = u.iter().zip(&e).map(|(u, e): (&f64, &f64)| [(u - e).powi(2), e.powi(2)]);
+        assert_relative_eq!(relative(squares), l2(&u, &e));
+    }
+
+    /// Ten equal masses, evenly, and all in the middle: a quarter.
+    #[test]
+    fn even_masses_have_no_spread_and_those_at_one_place_have_one() {
+        let even = (0..10).map(|k| (0.1 * f64::from(k) + 0.05, 2.0));
+        assert!(spread(even.clone().rev()) < 1e-15);
+        assert_relative_eq!(spread(even.map(|(_, mass)| (0.5, mass))), 0.25);
     }
 
     #[test]

@@ -76,12 +76,11 @@ pub static POISEUILLE: ChannelCase = ChannelCase {
     problem: "Water between two plates, driven by a body force",
     recommended: Recommended {
         variant: "consistent",
-        because: "its velocity error falls with the spacing and stays below \
-                  1 %<!-- gate poiseuille.consistent.re20.l2_worst --> at every Reynolds number; with 20 \
-                  rows it is 0.11 %<!-- poiseuille.consistent; rows=20; l2_worst -->, the paper's \
-                  1.4 %<!-- poiseuille.seed; rows=20; l2_worst -->. `curved` has \
-                  0.081 %<!-- poiseuille.curved; rows=20; l2_worst -->, where two errors cancel, and does \
-                  not converge",
+        because: "its velocity error falls with the spacing and stays below 1 %<!-- gate \
+                  poiseuille.consistent.re20.l2_worst --> at every Reynolds number; with 20 rows it is 0.11 \
+                  %<!-- poiseuille.consistent; rows=20; l2_worst -->, the paper's 1.4 %<!-- poiseuille.seed; \
+                  rows=20; l2_worst -->. `curved` has 0.081 %<!-- poiseuille.curved; rows=20; l2_worst -->, \
+                  where two errors cancel, and does not converge",
         papers: Some("seed"),
     },
     about: "Water rests between two infinite plates, L = 1 mm apart. At t = 0 a body force F = 8 nu V/L^2 \

@@ -148,8 +148,7 @@ fn of_ladder(flow: Flow, variant: &str, rows: usize) -> Vec<Gate> {
         }
         (_, "plain", _) => {
             let because = "The error of rows that slide lies between those by the row-reduced matrices of \
-                           rows in columns and of rows slid past each other, with the steps of the \
-                           leapfrog.";
+                           rows in columns and of rows slid past each other, with the steps of the leapfrog.";
             let matrices = GHOSTS.iter().filter(|(of, n, _)| (*of, *n) == (flow, rows));
             let between = |(.., [low, high]): &(Flow, usize, [f64; 2])| {
                 let bound = Bound::Within(*low, *high);

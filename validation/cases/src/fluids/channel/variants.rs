@@ -52,8 +52,7 @@ pub fn of_couette() -> Compositions<ChannelSettings> {
 pub fn of_poiseuille() -> Compositions<ChannelSettings> {
     let bent = "plain with ghosts that include the curvature of the velocity at the wall: is this their \
                 error?";
-    let stress = "seed with artificial stress, equations (18) and (19): does it cure the seed's \
-                  instability?";
+    let stress = "seed with artificial stress, equations (18) and (19): does it cure the seed's instability?";
     let viscosity = "seed with artificial viscosity, equations (16) and (17): does it cure the seed's \
                      instability?";
     let xsph = "seed with XSPH, equation (22), epsilon 0.5: does it cure the seed's instability?";

@@ -85,10 +85,9 @@ pub static CASE: Composed<HillSettings> = Composed {
     problem: "Flow over a row of hills, with separation",
     recommended: Recommended {
         variant: RECOMMENDED,
-        because: "with ten spacings a hill at Re 50 its velocity error is 1.1 \
-                  %<!-- periodic_hill.carried; n=10 end=30; l2_u --> of the mean and its force error 0.4 \
-                  %<!-- periodic_hill.carried; n=10 end=30; force_error -->, without sums that cost more \
-                  for each pair",
+        because: "with ten spacings a hill at Re 50 its velocity error is 1.1 %<!-- periodic_hill.carried; \
+                  n=10 end=30; l2_u --> of the mean and its force error 0.4 %<!-- periodic_hill.carried; \
+                  n=10 end=30; force_error -->, without sums that cost more for each pair",
         papers: Some("interface-wall"),
     },
     about: "A body force keeps a given flux through a channel with hills on its floor, one every nine \

@@ -255,9 +255,8 @@ fn budgets(accuracy: &Accuracy) -> Budgets {
 
 /// Error through time, of each variant that keeps particles apart at one number of particles, and of `plain`.
 fn histories(tier: Tier, table: &Table) -> Curves {
-    let caption = "How fast does the error grow? Taylor-Green vortices at Re 100 from the disturbed \
-                   lattice; `plain`, without stabilisers, has more particles. The bound applies at \
-                   t = 2 L/U.";
+    let caption = "How fast does the error grow? Taylor-Green vortices at Re 100 from the disturbed lattice; \
+                   `plain`, without stabilisers, has more particles. The bound applies at t = 2 L/U.";
     let side = if tier == Tier::Quick { 24 } else { 50 };
     let stabilised = table.of(Group::Ladder).filter(|row| row.settings.n == side);
     let shown = stabilised.chain(table.of(Group::Control));

@@ -2,13 +2,17 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{absent::Absent, functions::hypot, random::Random, record::Status};
+use touchstone_base::{absent::Absent, random::Random, record::Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     pictures, rules,
     snapshot::{self, Point, Snapshot},
 };
-use touchstone_maths::{exact::TaylorGreen, metrics::norms::largest};
+use touchstone_maths::{
+    exact::TaylorGreen,
+    geometry::nearest,
+    metrics::norms::{largest, relative},
+};
 use touchstone_solver::EquationOfState;
 
 use super::VortexSettings;
@@ -80,12 +84,6 @@ impl VortexSetup {
             [(pressure(p) - mean - exact).powi(2), exact.powi(2)]
         })))
     }
-}
-
-/// (Σ a/Σ b)^(1/2) of squares of differences and of exact values.
-fn relative(squares: impl Iterator<Item = [f64; 2]>) -> f64 {
-    let [difference, scale] = squares.fold([0.0; 2], |[a, b], [d, e]| [a + d, b + e]);
-    (difference / scale).sqrt()
 }
 
 /// Ratio of exact speed to initial speed below which errors are not relative to it: 1 %, the effect of
@@ -179,7 +177,7 @@ fn measure(
     record.put(L2_WORST, largest(series.iter().filter(is_left).map(|s| s[1])));
     let end = now.all();
     record.put(MOMENTUM_ADDED, (drift(&end) - start).norm());
-    record.put(NEAREST, nearest(&end) / setup.flow.medium.dx);
+    record.put(NEAREST, nearest(end.iter().map(|p| p.position)) / setup.flow.medium.dx);
     let left = setup.exact.decay(time);
     if left < DECAYED {
         let reason = format!(
@@ -194,25 +192,6 @@ fn measure(
     let energy = end.iter().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum::<f64>();
     record.put(ENERGY, energy / setup.exact.kinetic_energy(time) - 1.0);
     record.put_or_absent(PRESSURE_L2, setup.pressure_error(now));
-}
-
-/// The least distance of two particles of the periodic unit square \[m\].
-fn nearest(particles: &[Point]) -> f64 {
-    let wrapped = |p: &Point| p.position.map(|x| x.rem_euclid(1.0));
-    let mut places: Vec<Vector2<f64>> = particles.iter().map(wrapped).collect();
-    places.sort_by(|a, b| a.x.total_cmp(&b.x));
-    let across: Vec<_> = places.iter().map(|place| place + Vector2::x()).collect();
-    places.extend(across);
-    let mut least = f64::INFINITY;
-    for (k, a) in places[..particles.len()].iter().enumerate() {
-        let ahead = places[k + 1..].iter().take_while(|b| b.x - a.x < least);
-        let apart = |b: &Vector2<f64>| {
-            let y = b.y - a.y;
-            hypot(b.x - a.x, y - y.round())
-        };
-        least = ahead.map(apart).fold(least, f64::min);
-    }
-    least
 }
 
 #[cfg(test)]
@@ -281,23 +260,6 @@ mod tests {
         assert_near(&fast, PRESSURE_L2, 0.03, 1e-6);
         let adrift = measured(&setup, 1.0, [0.0, 0.01, 0.0]);
         assert_near(&adrift, MOMENTUM_ADDED, 0.01, 1e-12);
-    }
-
-    /// Pairs across an edge were left out, which let particles pair there.
-    #[test]
-    fn particles_are_near_each_other_across_an_edge_too() {
-        let of = |places: [[f64; 2]; 3]| {
-            let places = places.map(|[x, y]| Vector2::new(x, y));
-            let all: [Particle; 3] = places.map(|x| Particle::fluid(x, Vector2::zeros(), 1.0, 1.0));
-            nearest(&Snapshot::of(0.0, &all).all())
-        };
-        let third = [0.4, 0.7];
-        for pair in [[[0.999, 0.5], [0.001, 0.5]], [[0.1, 0.999], [0.1, 0.001]]] {
-            assert!((of([pair[0], pair[1], third]) - 0.002).abs() < 1e-12, "{pair:?}");
-            assert!((of([third, pair[1], pair[0]]) - 0.002).abs() < 1e-12, "{pair:?}");
-        }
-        let beyond = of([[-0.001, 0.001], [0.001, 0.999], third]);
-        assert!((beyond - 8e-6_f64.sqrt()).abs() < 1e-12, "{beyond}");
     }
 
     /// At Re 10 and t = 2 the flow is 1e-7 of its start, and an error of 6162 % relative to it was shown.

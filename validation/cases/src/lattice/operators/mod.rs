@@ -17,6 +17,8 @@ use touchstone_harness::case::{Drawn, Draws, Statement};
 use touchstone_harness::prelude::*;
 use touchstone_schemes::lattice;
 
+use Operator::{Density, Divergence, Gradient, Laplacian};
+
 touchstone_base::settings! {
     /// Settings of an operator on particles in a periodic square, whose side, density and sound speed are 1.
     pub struct OperatorSettings {
@@ -47,136 +49,101 @@ enum Operator {
 }
 
 /// A variant: an operator of a kernel.
-#[derive(Clone, Copy)]
 struct OperatorVariant {
     name: &'static str,
     kernel: &'static str,
     operator: Operator,
     /// Is it exact for linear fields on any particles?
     is_corrected: bool,
-    adjust: fn(&mut OperatorSettings),
     method: fn() -> Method,
 }
 
 impl OperatorVariant {
+    /// The h/dx that other cases use for the kernel.
+    fn h_over_dx(&self) -> f64 {
+        match self.kernel {
+            QUINTIC => 1.0,
+            CUBIC => 1.3,
+            _ => 2.0,
+        }
+    }
+
     /// The power of h of the noise at fixed h/dx. In Σ V G(r) of a smooth G, displacements δ of the
     /// neighbours leave Σ V ∇G·δ, whose rms is |δ| dx (∫|∇G|²)^½. With the part of the field that G does not
     /// cancel, of order q in kr, and the derivative of order d that is sought, this is ε (dx/h)² (kh)^(q−d).
     fn order(&self) -> f64 {
         match (self.operator, self.is_corrected) {
-            (Operator::Density, _) => 0.0,        // q = 0, d = 0
-            (Operator::Gradient, false) => -1.0,  // q = 0, for p is added and not subtracted; d = 1
-            (Operator::Divergence, false) => 0.0, // q = 1, d = 1
-            (Operator::Laplacian, false) => -1.0, // q = 1, d = 2
-            (Operator::Laplacian, true) => 0.0,   // q = 2, d = 2
-            (_, true) => 1.0,                     // q = 2, d = 1
+            (Density, _) => 0.0,        // q = 0, d = 0
+            (Gradient, false) => -1.0,  // q = 0, for p is added and not subtracted; d = 1
+            (Divergence, false) => 0.0, // q = 1, d = 1
+            (Laplacian, false) => -1.0, // q = 1, d = 2
+            (Laplacian, true) => 0.0,   // q = 2, d = 2
+            (_, true) => 1.0,           // q = 2, d = 1
         }
     }
 
     fn about(&self) -> &'static str {
         match (self.operator, self.is_corrected) {
-            (Operator::Density, _) => "is the density the sum of the masses, m W?",
-            (Operator::Gradient, false) => {
-                "is the pressure force (5) the gradient of the pressure?"
-            }
-            (Operator::Laplacian, false) => {
-                "is the viscous force (6) the Laplacian of the velocity?"
-            }
-            (Operator::Laplacian, true) => "(6) minus its sum for the linear part of the velocity",
-            (Operator::Divergence, false) => "is (3) the divergence of the velocity?",
+            (Density, _) => "is the density the sum of the masses, m W?",
+            (Gradient, false) => "is the pressure force (5) the gradient of the pressure?",
+            (Laplacian, false) => "is the viscous force (6) the Laplacian of the velocity?",
+            (Laplacian, true) => "(6) minus its sum for the linear part of the velocity",
+            (Divergence, false) => "is (3) the divergence of the velocity?",
             (_, true) => "the same with sums that are exact for linear fields",
         }
     }
-}
-
-/// The operators of a kernel: its name, its methods (sums, plain, corrected), its h/dx, and the names of the
-/// variants.
-const fn subjects_of(
-    kernel: &'static str,
-    [sum, plain, corrected]: [fn() -> Method; 3],
-    adjust: fn(&mut OperatorSettings),
-    names: [&'static str; 7],
-) -> [OperatorVariant; 7] {
-    let [density, gradient, gradient_corrected, laplacian, laplacian_corrected, rest @ ..] = names;
-    let [divergence, divergence_corrected] = rest;
-    let plain = OperatorVariant {
-        name: gradient,
-        kernel,
-        operator: Operator::Gradient,
-        is_corrected: false,
-        adjust,
-        method: plain,
-    };
-    let corrected = OperatorVariant {
-        name: gradient_corrected,
-        is_corrected: true,
-        method: corrected,
-        ..plain
-    };
-    [
-        OperatorVariant { name: density, operator: Operator::Density, method: sum, ..plain },
-        plain,
-        corrected,
-        OperatorVariant { name: laplacian, operator: Operator::Laplacian, ..plain },
-        OperatorVariant { name: laplacian_corrected, operator: Operator::Laplacian, ..corrected },
-        OperatorVariant { name: divergence, operator: Operator::Divergence, ..plain },
-        OperatorVariant { name: divergence_corrected, operator: Operator::Divergence, ..corrected },
-    ]
 }
 
 /// The kernel of `modern` variants, whose ladders are in the quick tier too.
 const QUINTIC: &str = "quintic";
 /// The paper's kernel.
 const CUBIC: &str = "cubic";
+/// The kernel of water.
+const WENDLAND: &str = "wendland";
 
-/// All variants, with the h/dx that other cases use for the kernel.
-static SUBJECTS: [[OperatorVariant; 7]; 3] = [
-    subjects_of(
-        QUINTIC,
-        [lattice::quintic_sum, lattice::quintic, lattice::quintic_corrected],
-        |s| s.h_over_dx = 1.0,
-        [
-            "quintic-density",
-            "quintic-gradient",
-            "quintic-gradient-corrected",
-            "quintic-laplacian",
-            "quintic-laplacian-corrected",
-            "quintic-divergence",
-            "quintic-divergence-corrected",
-        ],
-    ),
-    subjects_of(
-        CUBIC,
-        [lattice::cubic_sum, lattice::cubic, lattice::cubic_corrected],
-        |s| s.h_over_dx = 1.3,
-        [
-            "cubic-density",
-            "cubic-gradient",
-            "cubic-gradient-corrected",
-            "cubic-laplacian",
-            "cubic-laplacian-corrected",
-            "cubic-divergence",
-            "cubic-divergence-corrected",
-        ],
-    ),
-    subjects_of(
-        "wendland",
-        [lattice::wendland_sum, lattice::wendland, lattice::wendland_corrected],
-        |s| s.h_over_dx = 2.0,
-        [
-            "wendland-density",
-            "wendland-gradient",
-            "wendland-gradient-corrected",
-            "wendland-laplacian",
-            "wendland-laplacian-corrected",
-            "wendland-divergence",
-            "wendland-divergence-corrected",
-        ],
+const fn subject(
+    name: &'static str,
+    kernel: &'static str,
+    operator: Operator,
+    is_corrected: bool,
+    method: fn() -> Method,
+) -> OperatorVariant {
+    OperatorVariant { name, kernel, operator, is_corrected, method }
+}
+
+/// All variants: name, kernel, operator, whether it is corrected, method.
+static SUBJECTS: [OperatorVariant; 21] = [
+    subject("quintic-density", QUINTIC, Density, false, lattice::quintic_sum),
+    subject("quintic-gradient", QUINTIC, Gradient, false, lattice::quintic),
+    subject("quintic-gradient-corrected", QUINTIC, Gradient, true, lattice::quintic_corrected),
+    subject("quintic-laplacian", QUINTIC, Laplacian, false, lattice::quintic),
+    subject("quintic-laplacian-corrected", QUINTIC, Laplacian, true, lattice::quintic_corrected),
+    subject("quintic-divergence", QUINTIC, Divergence, false, lattice::quintic),
+    subject("quintic-divergence-corrected", QUINTIC, Divergence, true, lattice::quintic_corrected),
+    subject("cubic-density", CUBIC, Density, false, lattice::cubic_sum),
+    subject("cubic-gradient", CUBIC, Gradient, false, lattice::cubic),
+    subject("cubic-gradient-corrected", CUBIC, Gradient, true, lattice::cubic_corrected),
+    subject("cubic-laplacian", CUBIC, Laplacian, false, lattice::cubic),
+    subject("cubic-laplacian-corrected", CUBIC, Laplacian, true, lattice::cubic_corrected),
+    subject("cubic-divergence", CUBIC, Divergence, false, lattice::cubic),
+    subject("cubic-divergence-corrected", CUBIC, Divergence, true, lattice::cubic_corrected),
+    subject("wendland-density", WENDLAND, Density, false, lattice::wendland_sum),
+    subject("wendland-gradient", WENDLAND, Gradient, false, lattice::wendland),
+    subject("wendland-gradient-corrected", WENDLAND, Gradient, true, lattice::wendland_corrected),
+    subject("wendland-laplacian", WENDLAND, Laplacian, false, lattice::wendland),
+    subject("wendland-laplacian-corrected", WENDLAND, Laplacian, true, lattice::wendland_corrected),
+    subject("wendland-divergence", WENDLAND, Divergence, false, lattice::wendland),
+    subject(
+        "wendland-divergence-corrected",
+        WENDLAND,
+        Divergence,
+        true,
+        lattice::wendland_corrected,
     ),
 ];
 
 fn subjects() -> impl Iterator<Item = &'static OperatorVariant> {
-    SUBJECTS.iter().flatten()
+    SUBJECTS.iter()
 }
 
 fn variants() -> Compositions<OperatorSettings> {
@@ -184,7 +151,8 @@ fn variants() -> Compositions<OperatorSettings> {
         Ok(run::Sampled::new(of, method, s))
     });
     let add = |all: Variants<_, _>, of: &'static OperatorVariant| {
-        all.lacking([of.name, of.about()], (of, (of.method)()), Vec::new(), of.adjust)
+        let adjust = |s: &mut OperatorSettings| s.h_over_dx = of.h_over_dx();
+        all.lacking([of.name, of.about()], (of, (of.method)()), Vec::new(), adjust)
     };
     subjects().fold(none, add).all
 }

@@ -1,7 +1,6 @@
 //! One operator: scene, steps, record.
 
 use nalgebra::Vector2;
-use serde::{Deserialize, Serialize};
 use touchstone_base::{absent::Absent, functions::cos, random::Random, record::Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
@@ -10,10 +9,10 @@ use touchstone_harness::{
 };
 use touchstone_maths::{
     exact::plane_wave::{K, PRESSURE, SPEED, scalar, slope, vector},
-    theory::time_step::{self, Mode},
+    theory::time_step::{Mode, WaveMedium},
 };
 use touchstone_schemes::lattice::summing_step;
-use touchstone_solver::{EquationOfState, Tait};
+use touchstone_solver::{EquationOfState, Tait, lattice};
 
 use super::{Operator, OperatorSettings, OperatorVariant};
 
@@ -74,39 +73,22 @@ impl Operator {
     /// Without densities that the operator reads.
     fn values(self, start: &ParticleArrays, end: &Snapshot, m: &Medium) -> Result<Values, Absent> {
         let (all, time) = (end.all(), end.time());
-        let pairs = || start.points.iter().zip(&all).enumerate();
+        let before = |k: usize| Ok::<f64, Absent>(start.densities()?[k]);
+        let after = |p: &Point| Ok::<f64, Absent>(end.density()?.of(p));
         let along = |value| Vector2::new(value, 0.0);
-        let accelerated = |start: &Point, end: &Point| (end.velocity - start.velocity) / time;
-        // Of the index, the start and the end of a particle.
-        type Value<'a> = &'a dyn Fn(usize, &Point, &Point) -> [Vector2<f64>; 2];
-        let each = |value: Value| pairs().map(|(k, (start, end))| value(k, start, end)).collect();
-        Ok(match self {
-            Self::Density => {
-                let density = end.density()?;
-                each(&|_, start, end| {
-                    [along(density.of(end) - 1.0), along(DENSITY * scalar(start.position))]
-                })
-            }
-            Self::Gradient => {
-                let density = start.densities()?;
-                each(&|k, start, end| {
-                    let exact = -slope(start.position) * (PRESSURE * K / density[k]);
-                    [accelerated(start, end), exact]
-                })
-            }
-            Self::Laplacian => each(&|_, start, end| {
-                let exact = vector(start.position) * (-2.0 * K * K * m.nu * SPEED);
-                [accelerated(start, end), exact]
-            }),
-            Self::Divergence => {
-                let (before, after) = (start.densities()?, end.density()?);
-                each(&|k, start, end| {
-                    let divergence = 2.0 * SPEED * K * cos(K * start.position.x);
-                    let divergence = divergence * cos(K * start.position.y);
-                    [along((before[k] - after.of(end)) / time), along(divergence)]
-                })
-            }
-        })
+        let value = |(k, (start, end)): (usize, (&Point, &Point))| {
+            let (x, accelerated) = (start.position, (end.velocity - start.velocity) / time);
+            Ok(match self {
+                Self::Density => [along(after(end)? - 1.0), along(DENSITY * scalar(x))],
+                Self::Gradient => [accelerated, -slope(x) * (PRESSURE * K / before(k)?)],
+                Self::Laplacian => [accelerated, vector(x) * (-2.0 * K * K * m.nu * SPEED)],
+                Self::Divergence => {
+                    let exact = 2.0 * SPEED * K * cos(K * x.x) * cos(K * x.y);
+                    [along((before(k)? - after(end)?) / time), along(exact)]
+                }
+            })
+        };
+        start.points.iter().zip(&all).enumerate().map(value).collect()
     }
 }
 
@@ -118,11 +100,8 @@ impl OperatorVariant {
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
         let phase = K * dx;
-        let corrected = if self.is_corrected {
-            method.properties.square([ratio, 0.0]).gradient_factor()
-        } else {
-            1.0
-        };
+        let plain = method.properties.square([ratio, 0.0]);
+        let corrected = if self.is_corrected { plain.gradient_factor() } else { 1.0 };
         match self.operator {
             Operator::Density => {
                 let reach = (method.properties.support * ratio).ceil() as i32;
@@ -133,16 +112,13 @@ impl OperatorVariant {
             }
             Operator::Laplacian => {
                 let eta2 = if self.is_corrected { 0.0 } else { ETA2 };
-                let unit =
-                    time_step::WaveMedium { nu: 1.0, ..time_step::WaveMedium::of_sound(1.0, 1.0) };
+                let unit = WaveMedium { nu: 1.0, ..WaveMedium::of_sound(1.0, 1.0) };
                 let lattice = method.properties.square([ratio, eta2]);
                 let mode = Mode::new(&lattice, Vector2::repeat(phase), &unit);
                 mode.viscous / (2.0 * (phase * ratio).powi(2)) / corrected
             }
             Operator::Gradient | Operator::Divergence => {
-                let symbol =
-                    method.properties.square([ratio, 0.0]).gradient(Vector2::repeat(phase)).x;
-                symbol / (phase * ratio) / corrected
+                plain.gradient(Vector2::repeat(phase)).x / (phase * ratio) / corrected
             }
         }
     }
@@ -235,16 +211,11 @@ impl Sampled {
     }
 }
 
-/// The particles at the start.
-#[derive(Serialize, Deserialize)]
-pub(super) struct Start {
-    particles: ParticleArrays,
-}
-
 impl Problem for Sampled {
     type Extra = ();
     type Simulation = dyn Stepper<()>;
-    type Watch = Start;
+    /// The particles at the start.
+    type Watch = ParticleArrays;
     const READS_START: bool = true;
 
     fn method(&self) -> &Method {
@@ -257,26 +228,20 @@ impl Problem for Sampled {
             .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]))
     }
 
-    fn times(&self) -> Vec<f64> {
-        vec![self.rules.end]
-    }
-
     fn scene(&self) -> Result<Parts, RunError> {
         let (s, medium) = (&self.settings, self.medium);
         let mut random = Random::new(s.seed as u64);
         let mut shake = || s.disorder * medium.dx * (2.0 * random.uniform() - 1.0);
-        let particles =
-            touchstone_solver::lattice(Vector2::repeat(0.5 * medium.dx), medium.dx, s.n, s.n)
-                .map(|x| self.of.operator.particle(x + Vector2::new(shake(), shake()), &medium))
-                .collect();
-        Ok(Parts::new(medium, Domain::torus(1.0, 1.0), particles))
+        let all = lattice(Vector2::repeat(0.5 * medium.dx), medium.dx, s.n, s.n)
+            .map(|x| self.of.operator.particle(x + Vector2::new(shake(), shake()), &medium));
+        Ok(Parts::new(medium, Domain::torus(1.0, 1.0), all.collect()))
     }
 
-    fn watch(&self, scene: &Snapshot, _: &Snapshot) -> Start {
-        Start { particles: scene.columns().cloned().unwrap_or_default() }
+    fn watch(&self, scene: &Snapshot, _: &Snapshot) -> ParticleArrays {
+        scene.columns().cloned().unwrap_or_default()
     }
 
-    fn measure(&self, Start { particles: start }: Start, end: &Snapshot, record: &mut Record) {
+    fn measure(&self, start: ParticleArrays, end: &Snapshot, record: &mut Record) {
         if record.status != Status::Completed {
             return;
         }

@@ -1,6 +1,6 @@
 //! One run of a mode: scene, stepping, projection, record.
 
-use std::iter::once;
+use std::{f64::consts::TAU, iter::once};
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -19,7 +19,7 @@ use touchstone_maths::{
     metrics::norms::largest,
     theory::{
         steps::{self, DampedMode, WaveAmplitudes},
-        time_step::{self, Mode, modes},
+        time_step::{Integrator, Mode, WaveMedium, modes},
     },
 };
 use touchstone_solver::{EquationOfState, Tait};
@@ -73,8 +73,7 @@ impl Wave {
             }
         }
         let (dx, h) = (s.length / s.n as f64, s.h_over_dx * s.length / s.n as f64);
-        let turn = std::f64::consts::TAU / s.n as f64;
-        let theta = Vector2::new(s.kx as f64, s.ky as f64) * turn;
+        let theta = Vector2::new(s.kx as f64, s.ky as f64) * (TAU / s.n as f64);
         let lattice = method.properties.square([s.h_over_dx, s.eta2_over_h2]);
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
@@ -88,22 +87,17 @@ impl Wave {
             nu: s.nu,
             ..method.properties.medium(eos, [dx, h]).set_by(s)
         };
-        let waves = time_step::WaveMedium {
-            nu: s.nu,
-            delta: s.diffusion,
-            ..time_step::WaveMedium::of_sound(sound_speed, h)
-        };
+        let waves =
+            WaveMedium { nu: s.nu, delta: s.diffusion, ..WaveMedium::of_sound(sound_speed, h) };
         let mode = Mode::new(&lattice, theta, &waves);
         let step = Step::courant(s.courant, h, [sound_speed, 0.0]).viscous(s.viscous, h, s.nu);
         // The predictor-corrector amplifies sound at every dt, which is part of the comparison.
-        let theory = time_step::Integrator::Leapfrog;
-        let limits = TimeStepLimits::of(&modes(&lattice, s.n, &waves), theory);
-        let period = std::f64::consts::TAU / mode.omega;
-        let time = match polarisation {
-            Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
-            _ => period,
-        };
-        let end = s.span * time;
+        let limits = TimeStepLimits::of(&modes(&lattice, s.n, &waves), Integrator::Leapfrog);
+        let end = s.span
+            * match polarisation {
+                Polarisation::Shear if mode.transverse > 0.0 => 1.0 / mode.transverse,
+                _ => TAU / mode.omega,
+            };
         let mut rules = Rules { step: step.or_given(s.dt), limits, sound_speed, end };
         rules.step.dt = end / (end / rules.dt()).ceil().max(4.0);
         let (settings, method) = (s.clone(), method.clone());
@@ -120,24 +114,8 @@ impl Wave {
         Vector2::new(-self.mode.along.y, self.mode.along.x)
     }
 
-    /// The scene: a cosine of velocity at uniform density.
-    fn parts(&self) -> Parts {
-        let (s, Medium { dx, sound_speed, .. }) = (&self.settings, self.medium);
-        let direction = match self.polarisation {
-            Polarisation::Sound => self.mode.along,
-            Polarisation::Shear => self.across(),
-        };
-        let mut random = Random::new(1);
-        let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
-        let start = |label: Vector2<f64>, place| {
-            let velocity = direction * (s.amplitude * sound_speed * cos(self.theta.dot(&label)));
-            (if s.jitter > 0.0 { place + offset() } else { place }, velocity)
-        };
-        torus((s.length, s.n), self.medium, start)
-    }
-
     /// Theoretical amplitudes after each of `steps` steps, exact.
-    fn predicted(&self, integrator: time_step::Integrator, steps: usize) -> Vec<WaveAmplitudes> {
+    fn predicted(&self, integrator: Integrator, steps: usize) -> Vec<WaveAmplitudes> {
         let (a, dt) = (self.settings.amplitude, self.rules.dt());
         let Mode { omega, longitudinal: gamma, transverse, density, .. } = self.mode;
         let m = steps::step(&DampedMode { omega, gamma }, density, integrator, dt);
@@ -147,7 +125,7 @@ impl Wave {
             Polarisation::Sound => (Vector2::new(0.0, a), 0.0),
             Polarisation::Shear => (Vector2::zeros(), a),
         };
-        if integrator == time_step::Integrator::Leapfrog {
+        if integrator == Integrator::Leapfrog {
             // The first kick is half a one: back to where a whole one would start.
             y.y = (y.y * (1.0 - 0.5 * gamma * dt) - omega * dt * y.x) / (1.0 - gamma * dt);
             shear *= (1.0 - 0.5 * transverse * dt) / (1.0 - transverse * dt);
@@ -211,12 +189,20 @@ impl Problem for Wave {
     }
 
     /// A pause would bring the leapfrog's velocities to whole steps, so there is none before the end.
-    fn times(&self) -> Vec<f64> {
-        vec![self.rules.end]
-    }
-
+    /// A cosine of velocity at uniform density.
     fn scene(&self) -> Result<Parts, RunError> {
-        Ok(self.parts())
+        let (s, Medium { dx, sound_speed, .. }) = (&self.settings, self.medium);
+        let direction = match self.polarisation {
+            Polarisation::Sound => self.mode.along,
+            Polarisation::Shear => self.across(),
+        };
+        let mut random = Random::new(1);
+        let mut offset = || Vector2::new(random.normal(), random.normal()) * (s.jitter * dx);
+        let start = |label: Vector2<f64>, place| {
+            let velocity = direction * (s.amplitude * sound_speed * cos(self.theta.dot(&label)));
+            (if s.jitter > 0.0 { place + offset() } else { place }, velocity)
+        };
+        Ok(torus((s.length, s.n), self.medium, start))
     }
 
     fn watch(&self, _: &Snapshot, _: &Snapshot) -> Projection {
@@ -270,12 +256,7 @@ touchstone_base::metrics! {
 }
 
 /// Frequency and damping against the symbols, and every amplitude against exact steps.
-fn compare(
-    wave: &Wave,
-    integrator: time_step::Integrator,
-    series: &[WaveAmplitudes],
-    record: &mut Record,
-) {
+fn compare(wave: &Wave, integrator: Integrator, series: &[WaveAmplitudes], record: &mut Record) {
     let Mode { omega, longitudinal, transverse, .. } = wave.mode;
     let (dt, turn, s) = (wave.rules.dt(), wave.theta.norm(), &wave.settings);
     let (found, gamma) = match wave.polarisation {
@@ -320,7 +301,7 @@ mod tests {
     #[test]
     fn amplitudes_are_those_of_made_up_particles() {
         let (wave, method) = wave(Polarisation::Sound);
-        let mut parts = wave.parts();
+        let mut parts = wave.scene().expect("a scene");
         let Medium { density, sound_speed, .. } = wave.medium;
         for (particle, phase) in parts.particles.iter_mut().zip(wave.phases()) {
             particle.density = density * (1.0 - 0.003 * sin(phase));
@@ -347,7 +328,7 @@ mod tests {
     /// A series that obeys another frequency or damping than theory is as far off as these are.
     #[test]
     fn errors_are_those_of_a_made_up_series() {
-        let leapfrog = time_step::Integrator::Leapfrog;
+        let leapfrog = Integrator::Leapfrog;
         let record = || Record::new("c", "v", serde_json::json!({}), 1);
         let (wave, _) = wave(Polarisation::Sound);
         let mut other = wave.clone();
@@ -358,7 +339,7 @@ mod tests {
         assert_relative_eq!(value(&found, FREQUENCY_ERROR), 0.01, max_relative = 1e-6);
         assert_relative_eq!(value(&found, DECAY_ERROR), 0.03, max_relative = 1e-6);
         let (c, s) = (wave.medium.sound_speed, &wave.settings);
-        let k = std::f64::consts::TAU * 5.0_f64.sqrt() / s.length;
+        let k = TAU * 5.0_f64.sqrt() / s.length;
         assert_relative_eq!(
             value(&found, SOUND_FACTOR),
             other.mode.omega / (c * k),

@@ -1,16 +1,9 @@
 //! Metrics of the path of the end of a bar, as for finite elements.
 
-use std::f64::consts::TAU;
-
-use nalgebra::Vector2;
-use touchstone_base::{
-    functions::{cos, sin},
-    record::MetricKey,
-};
-use touchstone_maths::metrics::history::passes;
+use touchstone_base::record::MetricKey;
+use touchstone_maths::metrics::{history::passes, path::Path};
 
 use super::COMPARED;
-use crate::solids::solid::{Path, PathPoint};
 
 touchstone_base::metrics! {
     all OF_PATH;
@@ -30,74 +23,36 @@ touchstone_base::metrics! {
     FIRST_LEAST_Y = "first_least_y" ["m"] "least displacement upwards in the first swing";
 }
 
-/// Points between the two times, at which the path is taken for averages and harmonics.
-const POINTS: usize = 8000;
-
-/// The greatest and the least displacement along an axis \[m\], each by a parabola through three points;
-/// `None` of one that is at an end of the path.
-fn extremes(path: &[PathPoint], axis: usize) -> [Option<f64>; 2] {
-    let value = |k: usize| path[k].displacement[axis];
-    let places = || 0..path.len();
-    let greatest = places().max_by(|a, b| value(*a).total_cmp(&value(*b)));
-    let least = places().min_by(|a, b| value(*a).total_cmp(&value(*b)));
-    [greatest, least].map(|place| {
-        let k = place.filter(|&k| k > 0 && k + 1 < path.len())?;
-        let [a, b, c] = [value(k - 1), value(k), value(k + 1)];
-        let bend = a - 2.0 * b + c;
-        Some(if bend == 0.0 { b } else { b - (a - c) * (a - c) / (8.0 * bend) })
-    })
-}
-
-/// Mean and amplitude along an axis \[m\]. Where an extreme is at an end of the path, it is the value there.
-fn mean_and_amplitude(path: &[PathPoint], axis: usize) -> [f64; 2] {
-    let all = || path.iter().map(|at| at.displacement[axis]);
-    let ends = [all().fold(f64::NEG_INFINITY, f64::max), all().fold(f64::INFINITY, f64::min)];
-    let [greatest, least] = extremes(path, axis);
-    let (high, low) = (greatest.unwrap_or(ends[0]), least.unwrap_or(ends[1]));
-    [0.5 * (high + low), 0.5 * (high - low)]
-}
-
 /// The quantities of [`COMPARED`](super::COMPARED), in this order; averages, harmonics and the frequency need
 /// two falls, and the least height of the first swing needs to be passed.
 pub fn measure(path: &Path) -> Vec<(MetricKey, Option<f64>)> {
     let [[mean_x, amplitude_x], [mean_y, amplitude_y]] =
-        [0, 1].map(|axis| mean_and_amplitude(&path.0, axis));
+        [0, 1].map(|axis| path.mean_and_amplitude(axis));
     let falls = |(time, falls)| if falls { Some(time) } else { None };
     let times: Vec<f64> = passes(path.heights(), mean_y).filter_map(falls).collect();
     let second = times.get(1).copied().unwrap_or(f64::INFINITY);
-    let swing = &path.0[..path.0.partition_point(|at| at.time < second)];
+    let swing = Path(path.0[..path.0.partition_point(|at| at.time < second)].to_vec());
     let periods = if let [first, .., last] = times[..] {
         let frequency = (times.len() - 1) as f64 / (last - first);
-        let (average, harmonic) = fourier(path, [first, last], frequency);
+        let (average, harmonic) = path.harmonic([first, last], frequency);
         [frequency, average.x, average.y, harmonic.x, harmonic.y].map(Some)
     } else {
         [None; 5]
     };
     let all = [mean_x, mean_y, amplitude_x, amplitude_y].map(Some);
-    let [_, first_least_y] = extremes(swing, 1);
+    let [_, first_least_y] = swing.extremes(1);
     let values = all.into_iter().chain(periods).chain([first_least_y]);
     COMPARED.into_iter().map(|(metric, _)| metric).zip(values).collect()
-}
-
-/// Mean between two times \[s\], and amplitude of the sinusoid of this frequency \[Hz\].
-fn fourier(path: &Path, [first, last]: [f64; 2], frequency: f64) -> (Vector2<f64>, Vector2<f64>) {
-    let mut sums = [Vector2::zeros(); 3];
-    for k in 0..POINTS {
-        let time = first + (last - first) * (k as f64 / POINTS as f64);
-        let (place, angle) = (path.at(time).unwrap_or_default(), TAU * frequency * time);
-        let [sum, even, odd] = &mut sums;
-        *sum += place;
-        *even += place * cos(angle);
-        *odd += place * sin(angle);
-    }
-    let [average, even, odd] = sums.map(|sum| sum / POINTS as f64);
-    (average, even.zip_map(&odd, |a, b| 2.0 * (a * a + b * b).sqrt()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use nalgebra::Vector2;
+    use std::f64::consts::TAU;
+    use touchstone_base::functions::{cos, sin};
+    use touchstone_maths::metrics::path::PathPoint;
 
     /// −0.06 (1 − cos 2πft), with a second harmonic along the bar.
     fn swing(frequency: f64, end: f64) -> Path {

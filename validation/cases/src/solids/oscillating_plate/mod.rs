@@ -44,9 +44,8 @@ pub static OSCILLATING_PLATE: Composed<PlateSettings> = Composed {
     problem: "An elastic cantilever swings",
     recommended: Recommended {
         variant: LAGRANGIAN,
-        because: "with 5 layers its period error is -0.15 \
-                  %<!-- oscillating_plate.lagrangian; n=5 end=3.1; period_error -->, the paper's 33 \
-                  %<!-- oscillating_plate.seed; n=5; period_error -->",
+        because: "with 5 layers its period error is -0.15 %<!-- oscillating_plate.lagrangian; n=5 end=3.1; \
+                  period_error -->, the paper's 33 %<!-- oscillating_plate.seed; n=5; period_error -->",
         papers: Some("seed"),
     },
     about: "An elastic plate, held at one end by particles at rest, starts flat with the velocity of its \

@@ -9,12 +9,10 @@ touchstone_base::metrics! {
     PIECES_MOST = "pieces_most" ["1"] "most connected pieces at any time";
     HOLES_LEAST = "holes_least" ["1"]
         "least number of holes of a ring at any time, discs of 0.75 dx; 1 is whole, 0 is cut through or \
-        pressed \
-         flat";
+        pressed flat";
     TORN_AT = "torn_at" ["L/c0"]
         "first sample at which a ring has no hole or more than one piece; absent if none, and of bodies \
-        whose \
-         neighbours stay, which are only pressed flat or stretched";
+        whose neighbours stay, which are only pressed flat or stretched";
     VOLUME_LEAST = "volume_least" ["-"]
         "least volume of a particle at any time/at the start, the determinant of the deformation gradient; \
          not above 0 where a body is turned inside out";

@@ -127,9 +127,8 @@ const GAINED: &str = "Nothing drives the rings, and artificial stress gives less
 const NOTHING_DISSIPATES: &str = "Nothing dissipates. Contacts that open and close within a step leave some \
     tenths of a per cent.";
 
-const INSIDE_OUT: &str = "Neighbours stay, so a total Lagrangian body fails by being turned inside out: \
-    its least \
-    volume falls to 0. At 0.5 a fold is as thin as half a spacing.";
+const INSIDE_OUT: &str = "Neighbours stay, so a total Lagrangian body fails by being turned inside out: its \
+    least volume falls to 0. At 0.5 a fold is as thin as half a spacing.";
 
 /// Gates on rings that stay whole: no piece comes off, and each stays closed around its hole. A ring that is
 /// cut through once is one piece still.
@@ -295,11 +294,8 @@ const HALF_A_SPACING: &str = "The surface of a body of particles is known to hal
 const SENSITIVE: &str = "The restitution depends on the phase of the vibration of the rings at the second \
     contact: in finite elements the law of St. Venant and Kirchhoff changes it by +3.1 %. The folds of \
     flattened rings are a few spacings wide: the error is 2.7 to 4.4 % with 4 to 10 layers, 1.5, 1.2, 0.5 \
-    and \
-    0.6 % with 12, 14, 17 and 20, of order 2.5 from 10 to 20. It is no draw: starts that differ by 0.001 \
-    dx have \
-    it within 0.02 %. The bound: the difference of the two laws and 1 %; with 20 \
-    layers 1 %.";
+    and 0.6 % with 12, 14, 17 and 20, of order 2.5 from 10 to 20. It is no draw: starts that differ by 0.001 \
+    dx have it within 0.02 %. The bound: the difference of the two laws and 1 %; with 20 layers 1 %.";
 const LIGHT_TOUCH: &str = "At the end of the second phase the rings touch lightly, while they vibrate. The \
     bound: the 5.9 L/c0 from 99 % of the impulse to the last touch of finite elements, a sample of 0.25 \
     L/c0, and the time in which rings come apart by a spacing of 0.2 L at the speed 0.094 c0 of both.";

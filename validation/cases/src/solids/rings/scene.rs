@@ -3,8 +3,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::{Rotation2, Vector2};
-use touchstone_base::functions::{rotation, sin_cos};
+use touchstone_base::functions::rotation;
 use touchstone_harness::{case::RunError, method::Properties, snapshot::Snapshot};
+use touchstone_maths::geometry::layers;
 use touchstone_solver::{DivergenceBounds, Particle, Symmetric};
 
 use super::{RingSettings, measure::RingHistory};
@@ -87,19 +88,11 @@ impl ElasticBody for RingSettings {
         })
     }
 
-    /// Concentric layers with numbers of particles that are multiples of four, so that mass is exact, the
-    /// edge is smooth, and each ring is its own mirror image. The ring on the right is the mirror image of
-    /// the one on the left, in the same order.
+    /// The ring on the right is the mirror image of the one on the left, in the same order.
     fn particles(&self) -> Vec<Particle<Symmetric>> {
         let (dx, v) = (self.dx(), self.speed());
         let rotation = self.to_flight().inverse();
-        let mut places = Vec::new();
-        for k in 0..((self.outer - self.inner) / dx).round() as usize {
-            let r = self.inner + (k as f64 + 0.5) * dx;
-            let quarter = (TAU * r / (4.0 * dx)).round().max(1.0) as usize;
-            let volume = TAU * r * dx / (4 * quarter) as f64;
-            places.extend((0..4 * quarter).map(|j| (r * quadrant_point(j, quarter), volume)));
-        }
+        let places = layers([self.inner, self.outer], dx);
         let ring = |side: f64| {
             // On the right: the mirror image, to the last bit.
             places.iter().map(move |(place, volume)| {
@@ -114,16 +107,6 @@ impl ElasticBody for RingSettings {
     fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> RingHistory {
         RingHistory::new(self, scene, start)
     }
-}
-
-/// The unit vector number j of 4 `quarter`, which begin half a step above the x axis; the four
-/// quadrants are mirror images of the first to the last bit.
-fn quadrant_point(j: usize, quarter: usize) -> Vector2<f64> {
-    let (quadrant, k) = (j / quarter, j % quarter);
-    let k = if quadrant % 2 == 0 { k } else { quarter - 1 - k };
-    let (sin, cos) = sin_cos(TAU * (k as f64 + 0.5) / (4 * quarter) as f64);
-    let x = if quadrant == 0 || quadrant == 3 { cos } else { -cos };
-    Vector2::new(x, if quadrant < 2 { sin } else { -sin })
 }
 
 #[cfg(test)]

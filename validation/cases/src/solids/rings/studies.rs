@@ -335,10 +335,9 @@ fn map(tier: Tier, table: &Table) -> Map {
         caption: "Do rings stay whole? Outcome of a collision over the speed of each ring, for the \
                   recommended variant and the paper's, without artificial stress (ξ = 0) and with it, which \
                   is to prevent fracture (claim M2); an empty cell was not run. Whole rings show the \
-                  coefficient of restitution e, or that they still touch at the end, as do rings whose \
-                  hole closes \
-                  while their neighbours stay (pressed flat: a total Lagrangian body cannot tear); torn \
-                  rings (cut through once) the time of the tear in L/c0, others the largest number of \
+                  coefficient of restitution e, or that they still touch at the end, as do rings whose hole \
+                  closes while their neighbours stay (pressed flat: a total Lagrangian body cannot tear); \
+                  torn rings (cut through once) the time of the tear in L/c0, others the largest number of \
                   pieces."
             .into(),
         x: "speed of each ring [c0]".into(),

@@ -1,7 +1,7 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
 use nalgebra::Vector2;
-use touchstone_base::{absent::Absent, functions::ln_1p};
+use touchstone_base::absent::Absent;
 use touchstone_harness::snapshot::{Point, Snapshot};
 use touchstone_solver::{Potential, Symmetric};
 
@@ -74,28 +74,6 @@ impl ElasticEnergy {
 /// Σ m v²/2 \[J/m\].
 pub fn kinetic(points: impl Iterator<Item = Point>) -> f64 {
     points.fold(0.0, |sum, p| sum + 0.5 * p.mass * p.velocity.norm_squared())
-}
-
-impl Material {
-    /// m e of [`ElasticEnergy::compression`] \[J/m\], of a mass \[kg/m\] at a density \[kg/m³\].
-    fn compression_energy(&self, mass: f64, density: f64) -> f64 {
-        let ratio = density / self.density;
-        let c2 = self.bulk / self.density;
-        // ln(1 + x) − x/(1 + x): neither term alone is small where their difference is.
-        let x = ratio - 1.0;
-        mass * c2 * (ln_1p(x) - x / ratio)
-    }
-
-    /// Energy of a deviator in a volume \[m²\]: without a shear modulus no shear stress holds energy.
-    fn shear_energy(&self, volume: f64, stress: &Symmetric) -> f64 {
-        if self.shear > 0.0 { volume * norm_squared(stress) / (4.0 * self.shear) } else { 0.0 }
-    }
-}
-
-/// S:S of a deviator of plane strain \[Pa²\]: Sᶻᶻ = −(Sˣˣ + Sʸʸ) counts too.
-pub fn norm_squared(s: &Symmetric) -> f64 {
-    let zz = s.xx + s.yy;
-    s.xx * s.xx + s.yy * s.yy + zz * zz + 2.0 * s.xy * s.xy
 }
 
 /// Angular momentum about the centre of mass \[kg m²/s per m\].

@@ -10,9 +10,8 @@ pub use touchstone_schemes::total::{bending, displace, limit_in_contact};
 /// The variant.
 pub const LAGRANGIAN: &str = "lagrangian";
 /// Its description.
-pub const TOTAL: &str = "total Lagrangian: neighbours of the reference configuration, forces from the \
-    stored energy of Hencky, contact between bodies, velocity Verlet: which error is left without \
-    dissipation?";
+pub const TOTAL: &str = "total Lagrangian: neighbours of the reference configuration, forces from the stored \
+    energy of Hencky, contact between bodies, velocity Verlet: which error is left without dissipation?";
 
 /// The usual Courant number dt (c_p + V)/h: about three quarters of the limit.
 const COURANT: f64 = 0.8;

@@ -10,15 +10,22 @@ mod problem;
 #[cfg(test)]
 pub mod tests;
 
-pub use elements::{Elements, Path, PathPoint, Quantities, compare, quantities};
-pub use energy::{ElasticEnergy, angular_momentum, kinetic, norm_squared};
+pub use elements::{Elements, Quantities, compare, quantities};
+pub use energy::{ElasticEnergy, angular_momentum, kinetic};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
-pub use material::{Material, limits};
+pub use material::{limits, medium_of};
 pub use problem::{
     ElasticBody, SolidParameters, SolidScales, Watch, clamp, leave_out, medium, no_variants,
     variants,
 };
-pub use touchstone_maths::{geometry::corners, metrics::norms::largest};
+pub use touchstone_maths::{
+    geometry::corners,
+    metrics::{
+        elastic::{Material, norm_squared},
+        norms::largest,
+        path::{Path, PathPoint},
+    },
+};
 
 touchstone_base::settings! {
     /// The settings that cases of solids have in common.

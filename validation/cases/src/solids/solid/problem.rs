@@ -13,7 +13,7 @@ use touchstone_solver::{PlaneWall, Role, Symmetric};
 use super::{
     Material,
     lagrangian::{self, LAGRANGIAN, TOTAL},
-    limits,
+    limits, medium_of,
 };
 
 /// The numbers that the settings of every solid state.
@@ -164,7 +164,7 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 pub fn medium(settings: &impl ElasticBody, method: &Properties) -> Medium {
     let SolidScales { dx, gravity, .. } = settings.scales();
     let SolidParameters { material, h_over_dx, .. } = settings.common();
-    let medium = material.medium(method, [dx, h_over_dx * dx]);
+    let medium = medium_of(&material, method, [dx, h_over_dx * dx]);
     Medium { acceleration: gravity, ..medium }.set_by(settings)
 }
 

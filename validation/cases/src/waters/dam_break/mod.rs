@@ -119,9 +119,8 @@ fn variants() -> Compositions<DamSettings> {
                 `ghosts` noisy?";
     let sticking = "modern with artificial viscosity also between water and resting wall particles: how \
                     much do they drag the water?";
-    let damped_is = "modern with an acoustic damper, a bulk viscosity of rho h c0 in the momentum \
-        equation, h/dx 2 \
-                     and c0 20: does the pressure on a wall ring less?";
+    let damped_is = "modern with an acoustic damper, a bulk viscosity of rho h c0 in the momentum equation, \
+        h/dx 2 and c0 20: does the pressure on a wall ring less?";
     Variants::of(Dam::new)
         .with("seed", paper, water::seed(), seed)
         .with("ghosts", ghosts, water::ghosts(), seed)

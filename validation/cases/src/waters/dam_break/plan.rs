@@ -200,9 +200,8 @@ const FREE_POTENTIAL: f64 = 0.003;
 /// The gate on the potential energy, which depends on heights and gravity.
 fn potential(gates: &RunGates, most: f64) -> Gate {
     let because = "By the slope of the curve by volume of fluid, which is known to 0.003 M g H/2, in the \
-                   tank to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The \
-                   bound is half of this, \
-                   so that either sign of it is outside.";
+                   tank to 0.0012, 3 % of gravity moves it by 0.0060 and 0.0039, rms. The bound is half of \
+                   this, so that either sign of it is outside.";
     gates.reference(POTENTIAL_AWAY, Bound::Below(most), because)
 }
 
@@ -271,9 +270,8 @@ fn tank_model(gates: &RunGates) -> Vec<Gate> {
 
 /// Gates on the ringing of the pressure.
 fn tank_rings(gates: &RunGates) -> Vec<Gate> {
-    let because = "Once the jet has struck, the pressure changes within 0.5 √(H/g) by 0.018 to 0.036 ρ g \
-        H in \
-                   the experiment and by 0.011 to 0.020 by volume of fluid, rms.";
+    let because = "Once the jet has struck, the pressure changes within 0.5 √(H/g) by 0.018 to 0.036 ρ g H \
+        in the experiment and by 0.011 to 0.020 by volume of fluid, rms.";
     RINGING.map(|ringing| gates.reference(ringing, Bound::Below(0.04), because)).into()
 }
 

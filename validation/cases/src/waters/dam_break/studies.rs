@@ -234,9 +234,8 @@ fn compared(
 ) -> Vec<Comparison> {
     let of_method =
         "computed for the same inputs; u_D: meshes and steps (`references/dam_break_vof`)";
-    let of_model = "u_input: heights wrong by half of the last digit that is stated, of a = 2.25 \
-                    inches and of H = 300 mm; u_D: spread of digitised curves, of two series, of two \
-                    sensors";
+    let of_model = "u_input: heights wrong by half of the last digit that is stated, of a = 2.25 inches and \
+                    of H = 300 mm; u_D: spread of digitised curves, of two series, of two sensors";
     let spacing = Spacing::count(|s: &mut DamSettings| &mut s.n, "");
     let ladder = table.ladder(&[group], "modern", spacing);
     let higher = Mutation { of: Constant::Height, factor: 1.0 + digit };
