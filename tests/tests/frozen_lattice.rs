@@ -13,7 +13,7 @@ use touchstone_harness::{
     case::{self, Case},
     context::Context,
     method::{Method, Properties},
-    problem::{INTEGRATOR, KERNEL, WALLS},
+    problem::{INTEGRATOR, KERNEL, Problem, WALLS},
 };
 use touchstone_maths::theory::time_step::Integrator;
 use touchstone_schemes::flow::{self, Fluid};
@@ -52,7 +52,7 @@ fn setup(method: &Method, rows: usize, wall_curvature: bool, flow: Flow) -> Chan
 }
 
 fn simulation(method: &Method, setup: &ChannelSetup) -> Box<dyn Stepper<()>> {
-    (method.build)(setup.parts()).expect("a scene")
+    (method.build)(setup.scene().expect("a scene")).expect("a scene")
 }
 
 /// The wall rule of the matrix for a setup.

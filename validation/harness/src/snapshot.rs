@@ -50,6 +50,35 @@ pub fn momentum(points: &[Point]) -> Vector2<f64> {
     moving.fold(Vector2::zeros(), |sum, point| sum + point.velocity * point.mass)
 }
 
+/// Kinetic energy per unit depth \[J/m\], summed in the order given.
+pub fn kinetic(points: impl Iterator<Item = Point>) -> f64 {
+    points.fold(0.0, |sum, p| sum + 0.5 * p.mass * p.velocity.norm_squared())
+}
+
+/// Mass \[kg/m\] of particles, centre of mass \[m\] and its velocity \[m/s\].
+#[derive(Clone, Copy, Debug)]
+pub struct Moments {
+    /// Mass.
+    pub mass: f64,
+    /// Centre of mass.
+    pub centre: Vector2<f64>,
+    /// Velocity of the centre of mass.
+    pub velocity: Vector2<f64>,
+}
+
+impl Moments {
+    /// Of these particles, summed in the order given.
+    pub fn of(points: impl Iterator<Item = Point>) -> Self {
+        let (mut mass, mut first, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
+        for p in points {
+            mass += p.mass;
+            first += p.position * p.mass;
+            momentum += p.velocity * p.mass;
+        }
+        Self { mass, centre: first / mass, velocity: momentum / mass }
+    }
+}
+
 /// An optional column of a snapshot.
 #[derive(Clone, Copy)]
 pub enum SnapshotColumn<'a, X, T> {

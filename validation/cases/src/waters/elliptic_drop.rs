@@ -9,7 +9,7 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Draws, Statement},
     pictures, rules,
-    snapshot::{Point, Snapshot},
+    snapshot::{Moments, Point, Snapshot},
     studies::{Accuracy, Spacing},
     table,
 };
@@ -125,33 +125,19 @@ impl Drop {
 
     /// The exact drop with the second moment of these initial particles.
     fn exact(&self, start: &[Point]) -> Exact {
-        Exact::circle(shape(start).axes[0], self.settings.strain)
+        Exact::circle(shape(start).1[0], self.settings.strain)
     }
 }
 
-/// Mean position and velocity, and the semi-axes of the ellipse with equal second moments: a² = 4 Σ m (x −
+/// The moments of particles, and the semi-axes of the ellipse with equal second moments: a² = 4 Σ m (x −
 /// x_c)²/Σ m.
-struct EllipseMoments {
-    mass: f64,
-    centre: Vector2<f64>,
-    velocity: Vector2<f64>,
-    axes: [f64; 2],
-}
-
-fn shape(particles: &[Point]) -> EllipseMoments {
-    let (mut mass, mut centre, mut velocity) = (0.0, Vector2::zeros(), Vector2::zeros());
-    for p in particles {
-        mass += p.mass;
-        centre += p.position * p.mass;
-        velocity += p.velocity * p.mass;
-    }
-    (centre, velocity) = (centre / mass, velocity / mass);
+fn shape(particles: &[Point]) -> (Moments, [f64; 2]) {
+    let moments = Moments::of(particles.iter().copied());
     let squares = particles.iter().fold(Vector2::zeros(), |sum, p| {
-        let r: Vector2<f64> = p.position - centre;
+        let r: Vector2<f64> = p.position - moments.centre;
         sum + r.component_mul(&r) * p.mass
     });
-    let axes = [squares.x, squares.y].map(|s| 2.0 * (s / mass).sqrt());
-    EllipseMoments { mass, centre, velocity, axes }
+    (moments, [squares.x, squares.y].map(|s| 2.0 * (s / moments.mass).sqrt()))
 }
 
 /// Measurements through time.
@@ -194,7 +180,7 @@ impl DropHistory {
     fn sample(&mut self, drop: &Drop, now: &Snapshot) {
         let (t, g) = (now.time(), drop.medium.acceleration);
         let particles = now.all();
-        let EllipseMoments { centre, velocity, axes, .. } = shape(&particles);
+        let (Moments { centre, velocity, .. }, axes) = shape(&particles);
         let exact = self.exact.after(t);
         let [error, scale] = particles.iter().fold([0.0; 2], |[error, scale], p| {
             let r = p.position - g * (0.5 * t * t);
@@ -271,7 +257,7 @@ impl Problem for Drop {
 
     fn watch(&self, _: &Snapshot, _: &Snapshot) -> Watch {
         let start = Snapshot::of(0.0, &self.particles()).all();
-        let EllipseMoments { mass, axes, .. } = shape(&start);
+        let (Moments { mass, .. }, axes) = shape(&start);
         let kinetic = mass * (self.settings.strain * axes[0]).powi(2) / 4.0;
         let (history, ledger) = (DropHistory::new(self.exact(&start)), Ledger::default());
         Watch { history, ledger, kinetic }
@@ -298,7 +284,7 @@ impl Problem for Drop {
         ledger.measure(end, kinetic, "initial kinetic energy", record);
         if let (true, Ok(density)) = (OptionalOutput::of(&record.run).particles, end.density()) {
             let (s, particles) = (&self.settings, end.all());
-            let centre = shape(&particles).centre;
+            let centre = shape(&particles).0.centre;
             let scale = s.water.rho * Exact::circle(s.radius, s.strain).central_pressure();
             let pressure = |p: &Point| self.medium.eos.pressure(density.of(p)) / scale;
             let pressures =
@@ -482,10 +468,8 @@ mod tests {
         let drop = Drop::new(&water::plain(), &DropSettings::default());
         let particles = drop.particles();
         let points = Snapshot::of(0.0, &particles).all();
-        let start = shape(&points);
-        assert!(
-            (start.axes[0] - 1.0).abs() < 5e-3 && (start.axes[0] - start.axes[1]).abs() < 1e-12
-        );
+        let (start, axes) = shape(&points);
+        assert!((axes[0] - 1.0).abs() < 5e-3 && (axes[0] - axes[1]).abs() < 1e-12);
         assert!(start.velocity.norm() < 1e-12 && start.centre.norm() < 1e-12);
         let pressure = |p: &Particle| drop.medium.eos.pressure(p.density);
         let most = particles.iter().map(pressure).fold(0.0, f64::max);

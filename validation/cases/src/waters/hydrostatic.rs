@@ -8,7 +8,7 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Drawn, Draws, Statement, Step},
     method::FirstRow,
-    snapshot::{Point, Snapshot},
+    snapshot::{Point, Snapshot, kinetic},
     studies::{Accuracy, Sensitivity, Spacing, Watched},
     table,
 };
@@ -191,27 +191,6 @@ impl WaterColumn {
         lattice(first, self.medium.dx, columns, rows)
             .map(move |x| self.at_rest(x + Vector2::new(jitter(), jitter())))
     }
-
-    /// The scene. Wall particles have the density of water at their position: the density of the interface is
-    /// constant, and its effect on others is its mass by p/ρ², so that with the surface mass a compressed
-    /// column would sink into the bottom.
-    fn parts(&self) -> Result<Parts, RunError> {
-        let m = &self.method;
-        let walls = water::wall_particles(
-            m.properties.first_row,
-            &self.tank,
-            m.properties.support * self.medium.h,
-        );
-        let walls = walls.into_iter().map(|(place, role)| self.at_rest(place).with_role(role));
-        let particles: Vec<Particle> = self.water(m.properties.first_row).chain(walls).collect();
-        water::check_above(&particles, self.level, |above| {
-            let HydrostaticSettings { compressibility, gamma, depth, .. } = self.settings;
-            let most = depth / ((gamma as f64 - 1.0) * above);
-            ("compressibility", compressibility, format!("less than {most:.4}"))
-        })?;
-        let parts = Parts::new(self.medium, Domain::open(), particles);
-        Ok(Parts { mirrors: self.tank.mirrors(), ..parts })
-    }
 }
 
 impl Problem for WaterColumn {
@@ -236,8 +215,21 @@ impl Problem for WaterColumn {
         times.take_while(|t| *t < self.rules.end).chain([self.rules.end]).collect()
     }
 
+    /// Wall particles have the density of water at their position: the density of the interface is constant,
+    /// and its effect on others is its mass by p/ρ², so that with the surface mass a compressed column would
+    /// sink into the bottom.
     fn scene(&self) -> Result<Parts, RunError> {
-        self.parts()
+        let of = &self.method.properties;
+        let walls = water::wall_particles(of, &self.tank, &self.medium);
+        let walls = walls.into_iter().map(|(place, role)| self.at_rest(place).with_role(role));
+        let particles: Vec<Particle> = self.water(of.first_row).chain(walls).collect();
+        water::check_above(&particles, self.level, |above| {
+            let HydrostaticSettings { compressibility, gamma, depth, .. } = self.settings;
+            let most = depth / ((gamma as f64 - 1.0) * above);
+            ("compressibility", compressibility, format!("less than {most:.4}"))
+        })?;
+        let parts = Parts::new(self.medium, Domain::open(), particles);
+        Ok(Parts { mirrors: self.tank.mirrors(), ..parts })
     }
 
     fn watch(&self, _: &Snapshot, start: &Snapshot) -> ColumnHistory {
@@ -298,9 +290,7 @@ impl ColumnHistory {
             l2(&pressure, &exact)
         });
         let [low, high] = ends(column, &water);
-        let (mass, kinetic) = water.iter().fold((0.0, 0.0), |(mass, kinetic), p| {
-            (mass + p.mass, kinetic + 0.5 * p.mass * p.velocity.norm_squared())
-        });
+        let mass = water.iter().fold(0.0, |sum, p| sum + p.mass);
         let is_outside = |p: &&Point| {
             let x = p.position;
             !(0.0..=tank.width()).contains(&x.x) || x.y < 0.0
@@ -313,7 +303,7 @@ impl ColumnHistory {
             pressure: error,
             level: (high - self.start[1]) / s.depth,
             gap: (low - self.start[0]) / medium.dx,
-            kinetic: kinetic / (mass * s.g * s.depth),
+            kinetic: kinetic(water.iter().copied()) / (mass * s.g * s.depth),
         });
     }
 

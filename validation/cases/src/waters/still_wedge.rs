@@ -7,7 +7,7 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Draws, Statement},
     pictures,
-    snapshot::{Point, Snapshot},
+    snapshot::{Point, Snapshot, kinetic},
     studies::{Accuracy, Sensitivity, Spacing, Watched},
     table,
 };
@@ -179,9 +179,8 @@ impl Moments {
     fn sample(&mut self, Still { settings: s, medium, .. }: &Still, now: &Snapshot) {
         let kernel = Smoothing::<WendlandC2>::new(medium.h);
         let water = now.moving();
-        let energy = |p: &Point| 0.5 * p.mass * p.velocity.norm_squared();
         let mass: f64 = water.iter().map(|p| p.mass).sum();
-        let kinetic = water.iter().map(energy).sum::<f64>() / (mass * s.gravity);
+        let kinetic = kinetic(water.iter().copied()) / (mass * s.gravity);
         self.kinetic = self.kinetic.max(kinetic);
         self.samples += 1.0;
         let Ok(density) = now.density() else { return };

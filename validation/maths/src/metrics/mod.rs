@@ -1,6 +1,7 @@
 //! Measures of a run, each one function with its formula.
 
 pub mod budget;
+pub mod contact;
 pub mod curve;
 pub mod elastic;
 pub mod energy;

@@ -185,7 +185,7 @@ pub fn last_of_mode(setup: &ChannelSetup, series: &[[f64; 2]], end: f64) -> Opti
 #[cfg(test)]
 mod tests {
     use nalgebra::Vector2;
-    use touchstone_harness::method::Method;
+    use touchstone_harness::{method::Method, problem::Problem};
     use touchstone_solver::{Particle, Role};
 
     use touchstone_base::record::{MetricName, Record};
@@ -272,7 +272,7 @@ mod tests {
     fn the_pressure_mode_is_that_of_the_particles_and_its_end_is_kept() {
         let setup = setup(Flow::Poiseuille);
         let (s, v, eos) = (&setup.settings, setup.v, setup.medium.eos);
-        let mut parts = setup.parts();
+        let mut parts = setup.scene().expect("a scene");
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity = Vector2::new(0.7 * v, 0.02 * v);
             let mode = cos(std::f64::consts::PI * p.position.y / s.width);

@@ -4,7 +4,6 @@
 mod maps;
 mod measure;
 mod plan;
-mod run;
 mod setup;
 mod stiff;
 mod studies;

@@ -1,14 +1,19 @@
 //! The settings of the channel flows, and from them to numbers: the rules for sound speed, time step and
 //! arrangement, each stated once.
 
+use std::ops::ControlFlow;
+
 use nalgebra::Vector2;
-use touchstone_base::random::Random;
+use touchstone_base::{random::Random, record::Status};
 use touchstone_harness::prelude::*;
-use touchstone_harness::{case::Step, method::FirstRow};
+use touchstone_harness::{case::Step, method::FirstRow, snapshot::Snapshot};
 use touchstone_maths::exact::StartUp;
 use touchstone_solver::{DivergenceBounds, PlaneWall, Role, Tait};
 
-use super::{COUETTE, ChannelCase, POISEUILLE, TIMES};
+use super::{
+    COUETTE, ChannelCase, POISEUILLE, TIMES,
+    measure::{self, MODE},
+};
 use crate::{fluids::unit_flow::LIMIT_BOX, stabilisation::Stabilisation};
 
 touchstone_base::settings! {
@@ -143,7 +148,7 @@ pub struct ChannelSetup {
 }
 
 /// The settings on which time and memory of a run depend.
-pub const DECISIVE: &str = "end, dt, c0, rows or columns";
+const DECISIVE: &str = "end, dt, c0, rows or columns";
 /// Largest sound speed \[m/s\] that follows from the settings.
 const MOST_SOUND: f64 = 1e6;
 
@@ -187,31 +192,6 @@ impl ChannelSetup {
         let rules = Rules { step, limits, sound_speed, end };
         let (settings, method) = (s.clone(), method.clone());
         Ok(Self { settings, method, flow, v, force, medium, columns, rules })
-    }
-
-    /// The scene.
-    pub fn parts(&self) -> Parts {
-        let (s, method) = (&self.settings, &self.method);
-        let Medium { dx, h, eos, .. } = &self.medium;
-        let mut particles = self.particles(method);
-        let mut random = Random::new(1);
-        for p in particles.iter_mut().filter(|p| p.role == Role::Fluid && s.jitter > 0.0) {
-            let offset = Vector2::new(random.normal(), random.normal());
-            p.position += offset * (s.jitter * dx);
-            // Gaussian tails must not put a particle behind a wall.
-            p.position.y = p.position.y.clamp(0.1 * dx, s.width - 0.1 * dx);
-        }
-        let length = self.columns as f64 * dx;
-        // Half a period at most; one that is shorter than two supports is refused by the scene itself.
-        let skin = (s.skin * h).min(length - method.properties.support * h).max(0.0);
-        // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
-        let speed = 2.0 * (eos.sound_speed + self.v);
-        Parts {
-            mirrors: self.mirrors(),
-            skin: Some(skin),
-            limits: DivergenceBounds { density: [0.7 * s.rho, 1.3 * s.rho], speed },
-            ..Parts::new(self.medium, Domain::channel(length), particles)
-        }
     }
 
     /// Fluid, then both plates. Rows of the fluid at (j + 1/2) dx, which the walls mirror into each other, or
@@ -275,6 +255,85 @@ impl ChannelSetup {
         touchstone_solver::lattice(Vector2::new(0.5 * dx, first), dx, self.columns, count)
             .map(|x| Particle::fluid(x, Vector2::zeros(), self.settings.rho, dx * dx))
             .collect()
+    }
+}
+
+impl Problem for ChannelSetup {
+    type Extra = ();
+    type Simulation = dyn Stepper<()>;
+    /// Time and amplitude of the pressure mode after every step, if requested.
+    type Watch = Vec<[f64; 2]>;
+
+    fn method(&self) -> &Method {
+        &self.method
+    }
+
+    fn brief(&self) -> Brief {
+        let (s, Medium { eos, h, dx, .. }) = (&self.settings, self.medium);
+        let c0 = eos.sound_speed;
+        let own = [("V [m/s]", self.v), ("c0/V", c0 / self.v), ("c0 h/nu", c0 * h / s.nu)];
+        let particles = s.rows as f64 * self.columns as f64;
+        let mut brief = Brief::new(self.medium, self.rules, particles, DECISIVE)
+            .numbers(&self.rules.numbers([s.h_over_dx, dx]))
+            .numbers(&own);
+        brief.numbers.push(("columns", self.columns.into()));
+        Brief { least_steps: s.least_steps, ..brief }
+    }
+
+    fn times(&self) -> Vec<f64> {
+        self.settings.compared().iter().map(|tau| self.time(*tau)).collect()
+    }
+
+    fn scene(&self) -> Result<Parts, RunError> {
+        let (s, method) = (&self.settings, &self.method);
+        let Medium { dx, h, eos, .. } = &self.medium;
+        let mut particles = self.particles(method);
+        let mut random = Random::new(1);
+        for p in particles.iter_mut().filter(|p| p.role == Role::Fluid && s.jitter > 0.0) {
+            let offset = Vector2::new(random.normal(), random.normal());
+            p.position += offset * (s.jitter * dx);
+            // Gaussian tails must not put a particle behind a wall.
+            p.position.y = p.position.y.clamp(0.1 * dx, s.width - 0.1 * dx);
+        }
+        let length = self.columns as f64 * dx;
+        // Half a period at most; one that is shorter than two supports is refused by the scene itself.
+        let skin = (s.skin * h).min(length - method.properties.support * h).max(0.0);
+        // 30 % compression or twice the speed of sound is not a weakly compressible fluid any more.
+        let speed = 2.0 * (eos.sound_speed + self.v);
+        Ok(Parts {
+            mirrors: self.mirrors(),
+            skin: Some(skin),
+            limits: DivergenceBounds { density: [0.7 * s.rho, 1.3 * s.rho], speed },
+            ..Parts::new(self.medium, Domain::channel(length), particles)
+        })
+    }
+
+    fn watch(&self, _: &Snapshot, _: &Snapshot) -> Self::Watch {
+        Vec::new()
+    }
+
+    fn calls(&self, calls: Calls<Self>, _: OptionalOutput) -> Calls<Self> {
+        calls
+            .when(self.settings.watch_mode, |calls| {
+                calls.after_step("pressure mode", |setup, mode, now| {
+                    mode.extend(measure::pressure_mode(setup, now).map(|p| [now.time(), p]));
+                    ControlFlow::Continue(())
+                })
+            })
+            .at("profiles and errors", |setup, _, now, k, record| {
+                let tau = setup.settings.compared()[k];
+                measure::compare(setup, &now.moving(), tau, record);
+            })
+    }
+
+    fn measure(&self, mode: Self::Watch, end: &Snapshot, record: &mut Record) {
+        if record.status == Status::Completed {
+            measure::at_the_end(self, end, record);
+        }
+        if self.settings.watch_mode {
+            let last = measure::last_of_mode(self, &mode, end.time());
+            record.profiles.extend(last.map(|last| (MODE.into(), last)));
+        }
     }
 }
 

@@ -329,6 +329,7 @@ pub fn particles(setup: &HillSetup, end: &Snapshot, is_kept: bool, record: &mut 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use touchstone_harness::problem::Problem;
     use touchstone_maths::geometry::Hill;
     use touchstone_solver::Role;
 
@@ -344,7 +345,7 @@ mod tests {
         set(&mut settings);
         let method = touchstone_schemes::hill::carried();
         let setup = HillSetup::new(&method, &settings).expect("sound settings");
-        let simulation = (method.build)(setup.parts()).expect("a scene");
+        let simulation = (method.build)(setup.scene().expect("a scene")).expect("a scene");
         (setup, simulation)
     }
 
@@ -499,7 +500,7 @@ mod tests {
     #[test]
     fn the_mean_velocity_is_that_of_the_volumes() {
         let (setup, _) = scene(|_| {});
-        let mut parts = setup.parts();
+        let mut parts = setup.scene().expect("a scene");
         for p in parts.particles.iter_mut().filter(|p| p.role == Role::Fluid) {
             p.velocity.x = 0.7 + 0.1 * (p.position.y - 1.0);
         }
@@ -529,7 +530,7 @@ mod tests {
         // The crest 2 % of H too high, a fifth of a spacing.
         let [offset, _] = seen(&setup, &scene(|s| s.crest = 1.02).1.particles());
         assert!((offset - 0.2).abs() < 0.02, "{offset}");
-        let mut parts = setup.parts();
+        let mut parts = setup.scene().expect("a scene");
         let fluid = parts.particles.iter_mut().filter(|p| p.role == Role::Fluid);
         for (p, y) in fluid.step_by(7).zip([setup.hill.lid() + 0.01, setup.hill.lid() - 0.01]) {
             p.position.y = y;

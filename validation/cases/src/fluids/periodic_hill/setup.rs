@@ -4,7 +4,6 @@ use nalgebra::Vector2;
 use touchstone_harness::prelude::*;
 use touchstone_maths::geometry::{Curve, Hill};
 use touchstone_schemes::hill::HillMethod;
-use touchstone_solver::Role;
 
 use super::{
     HillSettings,
@@ -56,24 +55,6 @@ impl HillSetup {
         Ok(Self { settings, method, hill, flow, first, reference })
     }
 
-    /// The scene. Walls extrapolate the pressure without the body force: over a spacing it is 1 % of the
-    /// pressure of the flow and less.
-    pub fn parts(&self) -> Parts {
-        let domain = Domain::channel(self.hill.period());
-        let parts = self.flow.parts(domain, self.particles());
-        if !self.method.properties.has_feet {
-            return parts;
-        }
-        let curves = self.curves();
-        let [floor, lid] = curves.each_ref().map(Curve::nearest);
-        let on_surface = |p: &Particle| match p.role {
-            Role::Wall if p.position.y < self.hill.lid() => floor(p.position),
-            Role::Wall => lid(p.position),
-            _ => p.position,
-        };
-        Parts { surface: parts.particles.iter().map(on_surface).collect(), ..parts }
-    }
-
     /// Height of the floor at x \[m\].
     pub fn floor(&self, x: f64) -> f64 {
         self.settings.crest * self.hill.wall(x)
@@ -98,7 +79,7 @@ impl HillSetup {
 
     /// Fluid in columns dx apart, each with the number of particles nearest to a spacing of dx between floor
     /// and lid, and with volumes that fill the column; behind floor and lid rows along them.
-    fn particles(&self) -> Vec<Particle> {
+    pub fn particles(&self) -> Vec<Particle> {
         let (dx, lid) = (self.flow.medium.dx, self.hill.lid());
         let columns = (self.hill.period() / dx).round() as usize;
         let width = self.hill.period() / columns as f64;
@@ -133,7 +114,7 @@ impl HillSetup {
     }
 
     /// Floor and lid, the fluid on their left.
-    fn curves(&self) -> [Curve; 2] {
+    pub fn curves(&self) -> [Curve; 2] {
         let (dx, period, lid) = (self.flow.medium.dx, self.hill.period(), self.hill.lid());
         let floor = Curve::new(|x| Vector2::new(x, self.floor(x)), [0.0, period], dx);
         [floor, Curve::new(|x| Vector2::new(x, lid), [period, 0.0], dx)]

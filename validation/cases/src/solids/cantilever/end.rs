@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
 use touchstone_harness::prelude::*;
-use touchstone_harness::snapshot::{Point, Snapshot};
+use touchstone_harness::snapshot::{Point, Snapshot, kinetic};
 use touchstone_solver::Symmetric;
 
 use super::{
@@ -77,7 +77,7 @@ impl EnergySample {
             found.compression += s.gravity * height;
             found.total()
         });
-        Self { time, kinetic: solid::kinetic(now.stored()), change }
+        Self { time, kinetic: kinetic(now.stored()), change }
     }
 }
 

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_harness::prelude::*;
-use touchstone_harness::snapshot::Snapshot;
+use touchstone_harness::snapshot::{Snapshot, kinetic};
 use touchstone_maths::{
     exact::thin_plate::{self, ThinPlate},
     metrics::history::passes,
@@ -136,7 +136,7 @@ impl ElasticBody for PlateSettings {
     }
 
     fn watch(&self, scene: &Snapshot<Symmetric>, _: &Snapshot<Symmetric>) -> Tip {
-        let energy = solid::kinetic(scene.all().into_iter());
+        let energy = kinetic(scene.all().into_iter());
         Tip { until: 0, energy, path: Path::start() }
     }
 }

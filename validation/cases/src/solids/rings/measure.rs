@@ -9,18 +9,20 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     pictures,
-    series::Series,
-    snapshot::{Point, Snapshot, momentum},
+    snapshot::{Moments, Point, Snapshot, momentum},
 };
-use touchstone_maths::geometry::{Bonds, Topology};
+use touchstone_maths::{
+    geometry::{Bonds, Topology},
+    metrics::contact::ContactPhase,
+};
 use touchstone_solver::{EquationOfState, Symmetric};
 
 use super::{
     RingSettings,
     metrics::{
-        ContactPhase, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM,
-        PHASES, PIECES_MOST, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT,
-        VOLUME_LEAST, WIDTH_MIN, phase,
+        ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM, PHASES,
+        PIECES_MOST, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT, VOLUME_LEAST,
+        WIDTH_MIN, phase,
     },
     reference,
 };
@@ -49,14 +51,9 @@ fn along_flight(settings: &RingSettings, mut particles: Vec<Point>) -> Vec<Point
 /// A ring's centre of mass \[m\], its velocity \[m/s\], and its extents along and across the line of flight,
 /// half a spacing beyond the outermost particles \[m\].
 pub fn side(ring: &[Point], dx: f64) -> [Vector2<f64>; 3] {
-    let (mut mass, mut centre, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
-    for p in ring {
-        mass += p.mass;
-        centre += p.position * p.mass;
-        momentum += p.velocity * p.mass;
-    }
+    let Moments { centre, velocity, .. } = Moments::of(ring.iter().copied());
     let [low, high] = corners(ring.iter().map(|p| p.position));
-    [centre / mass, momentum / mass, high - low + Vector2::repeat(dx)]
+    [centre, velocity, high - low + Vector2::repeat(dx)]
 }
 
 /// Where the particles of a ring are.
@@ -65,8 +62,8 @@ fn places(ring: &[Point]) -> Vec<Vector2<f64>> {
 }
 
 /// Are there two pieces, each with a hole?
-fn is_whole([pieces, holes]: [f64; 2]) -> bool {
-    pieces == 2.0 && holes >= 1.0
+fn is_whole(at: &RingSample) -> bool {
+    at.pieces == 2.0 && at.holes >= 1.0
 }
 
 /// The ring on the left and the one on the right.
@@ -118,6 +115,29 @@ fn put_contact(phases: &[ContactPhase], restitution: f64, record: &mut Record) {
     }
 }
 
+/// Both rings at a time, the centre and the extents of the ring on the right.
+#[derive(Serialize, Deserialize)]
+struct RingSample {
+    /// \[L/c0\].
+    time: f64,
+    /// Place of the centre along the line of flight \[L\].
+    place: f64,
+    /// Its velocity \[c0\].
+    velocity: f64,
+    /// Along and across the line of flight \[L\].
+    extents: Vector2<f64>,
+    /// Pieces of both rings.
+    pieces: f64,
+    /// The fewest holes of one.
+    holes: f64,
+    /// The longest distance of neighbours \[dx\].
+    stretch: f64,
+    /// Kinetic, compression and shear energy \[J/m\].
+    energies: [Result<f64, Absent>; 3],
+    /// Least volume of a particle over its volume at the start.
+    volume: Result<f64, Absent>,
+}
+
 /// Watches a run.
 #[derive(Serialize, Deserialize)]
 pub struct RingHistory {
@@ -126,33 +146,8 @@ pub struct RingHistory {
     /// Whether neighbours stay neighbours, as in a total Lagrangian body, which cannot tear.
     stays: bool,
     next: f64,
-    /// t \[L/c0\], place \[L\] and velocity \[c0\] of the centre, width and height \[L\], pieces, holes, and
-    /// the longest distance of neighbours \[dx\].
-    rows: Vec<[f64; COLUMNS]>,
-    /// Kinetic, compression and shear energy of each row \[J/m\].
-    energies: Series<3>,
-    /// Least volume of a particle over its volume at the start, of each row.
-    volumes: Series<1>,
+    samples: Vec<RingSample>,
 }
-
-const COLUMNS: usize = 8;
-/// Columns of [`RingHistory::rows`].
-const PIECES: usize = 5;
-const HOLES: usize = 6;
-const STRETCH: usize = 7;
-const NAMES: [(&str, &str); COLUMNS + 3] = [
-    ("t", "L/c0"),
-    ("x_c", "L"),
-    ("v_c", "c0"),
-    ("width", "L"),
-    ("height", "L"),
-    ("pieces", "1"),
-    ("kinetic", "J/m"),
-    ("compression", "J/m"),
-    ("shear", "J/m"),
-    ("holes", "1"),
-    ("stretch", "dx"),
-];
 
 impl RingHistory {
     /// A series over a run with this start.
@@ -160,96 +155,95 @@ impl RingHistory {
         let all = along_flight(s, scene.all());
         let bonds = halves(&all).map(|ring| Bonds::of(&places(ring), NEIGHBOURS * s.dx()));
         let (known, next) = (ElasticEnergy::known(start), s.end() / SAMPLES);
-        let (rows, energies, volumes) = (Vec::new(), Series::default(), Series::default());
-        let mut this = Self { bonds, stays: known.is_some(), next, rows, energies, volumes };
-        this.volumes.push([least_volume(s, scene)]);
-        this.add(s, (0.0, &all), energies_of(s, known, &all, scene));
+        let mut this = Self { bonds, stays: known.is_some(), next, samples: Vec::new() };
+        this.add(s, scene, known);
         this
     }
 
     /// Takes a sample.
     pub fn sample(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>) {
-        let all = along_flight(s, now.all());
-        self.volumes.push([least_volume(s, now)]);
-        self.add(s, (now.time(), &all), energies_of(s, ElasticEnergy::known(now), &all, now));
+        self.add(s, now, ElasticEnergy::known(now));
     }
 
-    /// Adds a row of particles at a time: the ring on the right, whose centre has x > 0.
-    fn add(
-        &mut self,
-        s: &RingSettings,
-        (time, particles): (f64, &[Point]),
-        energies: [Result<f64, Absent>; 3],
-    ) {
-        let (c0, dx) = (s.c0(), s.dx());
-        let [left, right] = halves(particles);
-        let [pieces, holes] = match self.rows.last() {
-            Some(last) if !self.rows.len().is_multiple_of(COUNTED_EVERY) => {
-                [last[PIECES], last[HOLES]]
+    /// Adds a sample with the energies that the method knows.
+    fn add(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>, known: Option<ElasticEnergy>) {
+        let (c0, dx, all) = (s.c0(), s.dx(), along_flight(s, now.all()));
+        let [left, right] = halves(&all);
+        let [pieces, holes] = match self.samples.last() {
+            Some(last) if !self.samples.len().is_multiple_of(COUNTED_EVERY) => {
+                [last.pieces, last.holes]
             }
-            _ => count(s, particles),
+            _ => count(s, &all),
         };
-        let [centre, velocity, extent] = side(right, dx);
+        let [centre, velocity, extents] = side(right, dx);
         let bonds = self.bonds.iter().zip([left, right]);
         let stretch = largest(bonds.map(|(bonds, ring)| bonds.longest(&places(ring)) / dx));
-        self.rows.push([
-            time * c0,
-            centre.x,
-            velocity.x / c0,
-            extent.x,
-            extent.y,
+        self.samples.push(RingSample {
+            time: now.time() * c0,
+            place: centre.x,
+            velocity: velocity.x / c0,
+            extents,
             pieces,
             holes,
             stretch,
-        ]);
-        self.energies.push(energies);
+            energies: energies_of(s, known, &all, now),
+            volume: least_volume(s, now),
+        });
     }
 
-    /// The series, with the energies after the pieces.
+    /// The series, with the energies if they are known.
     fn profile(&self) -> Profile {
-        let row = |k: usize| Ok(self.rows.iter().map(|row| row[k]).collect());
-        let energy = |k: usize| self.energies.column(k).map(<[f64]>::to_vec);
-        let column = |k: usize| match k {
-            0..=PIECES => row(k),
-            HOLES..=8 => energy(k - HOLES),
-            _ => row(k - 3),
-        };
-        Series::of(std::array::from_fn(column)).profile(&NAMES)
+        Profile::of_known(
+            &self.samples,
+            &[
+                ("t", "L/c0", &|at| Ok(at.time)),
+                ("x_c", "L", &|at| Ok(at.place)),
+                ("v_c", "c0", &|at| Ok(at.velocity)),
+                ("width", "L", &|at| Ok(at.extents.x)),
+                ("height", "L", &|at| Ok(at.extents.y)),
+                ("pieces", "1", &|at| Ok(at.pieces)),
+                ("kinetic", "J/m", &|at| at.energies[0].clone()),
+                ("compression", "J/m", &|at| at.energies[1].clone()),
+                ("shear", "J/m", &|at| at.energies[2].clone()),
+                ("holes", "1", &|at| Ok(at.holes)),
+                ("stretch", "dx", &|at| Ok(at.stretch)),
+            ],
+        )
     }
 
-    /// The sum of the energies of each row \[J/m\].
+    /// The sum of the energies of each sample \[J/m\].
     fn energy(&self) -> Result<Vec<f64>, Absent> {
-        let [kinetic, compression, shear] =
-            [self.energies.column(0)?, self.energies.column(1)?, self.energies.column(2)?];
-        let all = kinetic.iter().zip(compression).zip(shear);
-        Ok(all.map(|((kinetic, compression), shear)| kinetic + compression + shear).collect())
+        let total = |at: &RingSample| {
+            let [kinetic, compression, shear] = at.energies.clone();
+            Ok(kinetic? + compression? + shear?)
+        };
+        self.samples.iter().map(total).collect()
     }
 
-    /// (t \[L/c0\], column number `k`) of every sample.
-    fn points(&self, k: usize) -> Vec<(f64, f64)> {
-        self.rows.iter().map(|row| (row[0], row[k])).collect()
+    /// (t \[L/c0\], value) of every sample.
+    fn points(&self, of: impl Fn(&RingSample) -> f64) -> Vec<(f64, f64)> {
+        self.samples.iter().map(|at| (at.time, of(at))).collect()
     }
 
     /// Metrics of the whole run, and the distances of a variant from finite elements.
     pub fn put(&self, s: &RingSettings, record: &mut Record) {
-        let (Some(first), Some(last)) = (self.rows.first(), self.rows.last()) else { return };
-        let column = |k: usize| self.rows.iter().map(move |row| row[k]);
-        let least = |k: usize| column(k).fold(f64::INFINITY, f64::min);
-        let most = |k: usize| column(k).fold(0.0, f64::max);
-        record.put(PIECES_MOST, most(PIECES));
+        let all = || self.samples.iter();
+        let least = |of: fn(&RingSample) -> f64| all().map(of).fold(f64::INFINITY, f64::min);
+        let most = |of: fn(&RingSample) -> f64| all().map(of).fold(0.0, f64::max);
+        record.put(PIECES_MOST, most(|at| at.pieces));
         // A hole narrower than a disc is not detected at the start either.
-        if is_whole([first[PIECES], first[HOLES]]) {
-            record.put(HOLES_LEAST, least(HOLES));
-            let torn = self.rows.iter().find(|row| !is_whole([row[PIECES], row[HOLES]]));
-            if let Some(torn) = torn.filter(|_| !self.stays) {
-                record.put(TORN_AT, torn[0]);
+        if self.samples.first().is_some_and(is_whole) {
+            record.put(HOLES_LEAST, least(|at| at.holes));
+            if let Some(torn) = all().find(|at| !is_whole(at)).filter(|_| !self.stays) {
+                record.put(TORN_AT, torn.time);
             }
         }
-        record.put(STRETCH_MOST, largest(column(STRETCH)));
-        let smallest = |all: &[f64]| all.iter().copied().fold(f64::INFINITY, f64::min);
-        record.put_or_absent(VOLUME_LEAST, self.volumes.column(0).map(smallest));
-        record.put(WIDTH_MIN, least(3));
-        record.put(HEIGHT_MAX, most(4));
+        record.put(STRETCH_MOST, largest(all().map(|at| at.stretch)));
+        let volumes: Result<Vec<f64>, Absent> = all().map(|at| at.volume.clone()).collect();
+        let smallest = |all: Vec<f64>| all.into_iter().fold(f64::INFINITY, f64::min);
+        record.put_or_absent(VOLUME_LEAST, volumes.map(smallest));
+        record.put(WIDTH_MIN, least(|at| at.extents.x));
+        record.put(HEIGHT_MAX, most(|at| at.extents.y));
         let energy = match s.speed > 0.0 {
             true => self.energy(),
             false => Err("the rings are at rest at the start".into()),
@@ -258,51 +252,17 @@ impl RingHistory {
         let gained = |all: &Vec<f64>| all.iter().copied().fold(0.0, f64::max) / all[0] - 1.0;
         record.put_or_absent(ENERGY_LOST, energy.as_ref().map(lost).map_err(Absent::clone));
         record.put_or_absent(ENERGY_GAINED, energy.as_ref().map(gained).map_err(Absent::clone));
-        let phases = self.phases(s);
-        put_contact(&phases, last[2] / s.speed, record);
-        let columns = [1, 2, 3, 4].map(|k| self.points(k));
-        reference::compare(s, &phases, &columns, record);
-    }
-
-    /// Phases of contact: where the force on a ring is above 1 % of its largest, with pauses of less
-    /// than 5 L/c0 bridged, as in `references/rubber_rings`.
-    fn phases(&self, s: &RingSettings) -> Vec<ContactPhase> {
-        let force = |w: &[[f64; COLUMNS]]| (w[1][2] - w[0][2]) / (w[1][0] - w[0][0]);
-        let forces: Vec<f64> = self.rows.windows(2).map(force).collect();
-        let round_off = ROUND_OFF * s.speed;
-        let least = (TOUCH * forces.iter().copied().fold(0.0, f64::max)).max(round_off);
-        let mut spans: Vec<[usize; 2]> = Vec::new();
-        for k in (0..forces.len()).filter(|&k| forces[k] > least) {
-            match spans.last_mut() {
-                Some([_, end]) if self.rows[k][0] - self.rows[*end][0] < PAUSE => *end = k + 1,
-                _ => spans.push([k, k + 1]),
-            }
-        }
-        spans.into_iter().map(|span| self.phase(s, span)).collect()
-    }
-
-    fn phase(&self, s: &RingSettings, [start, end]: [usize; 2]) -> ContactPhase {
-        let rows = &self.rows[start..=end];
         let mass = std::f64::consts::PI * (s.outer * s.outer - s.inner * s.inner);
-        let (first, last) = (rows[0][2], rows[rows.len() - 1][2]);
-        let times = SHARES.map(|share| {
-            let wanted = first + share * (last - first);
-            let crossing = rows.windows(2).find(|w| w[0][2] < wanted && w[1][2] >= wanted);
-            crossing.map_or(f64::NAN, |w| {
-                let part = (wanted - w[0][2]) / (w[1][2] - w[0][2]);
-                w[0][0] + part * (w[1][0] - w[0][0])
-            })
-        });
-        let is_over = end + 1 < self.rows.len();
-        ContactPhase { impulse: mass * (last - first), times, is_over }
+        let velocity = self.points(|at| at.velocity);
+        let phases = ContactPhase::all(&velocity, mass, ROUND_OFF * s.speed);
+        let last = velocity.last().map_or(f64::NAN, |(_, velocity)| *velocity);
+        put_contact(&phases, last / s.speed, record);
+        let [place, width] = [self.points(|at| at.place), self.points(|at| at.extents.x)];
+        let found = [place, velocity, width, self.points(|at| at.extents.y)];
+        reference::compare(s, &phases, &found, record);
     }
 }
 
-/// Shares of a phase's impulse whose times are kept.
-const SHARES: [f64; 2] = [0.01, 0.99];
-/// Force, over the largest, above which rings touch; pause that ends a phase \[L/c₀\].
-const TOUCH: f64 = 0.01;
-const PAUSE: f64 = 5.0;
 /// Force of round-off, over mass and speed of a ring \[c₀/L\].
 const ROUND_OFF: f64 = 1e-9;
 
@@ -340,7 +300,7 @@ impl Watch<RingSettings> for RingHistory {
 
     fn measure(mut self, s: &RingSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
         if record.status == Status::Completed {
-            if self.rows.last().is_some_and(|row| row[0] < end.time() * s.c0()) {
+            if self.samples.last().is_some_and(|last| last.time < end.time() * s.c0()) {
                 self.sample(s, end);
             }
             self.put(s, record);
@@ -384,7 +344,7 @@ mod tests {
         }
         let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
         series.put(&settings, &mut record);
-        (record, series.points(HOLES))
+        (record, series.points(|at| at.holes))
     }
 
     /// As in rings at 0.09 to 0.12 c0: a ring opens at its rear pole into a C, still one piece.

@@ -78,14 +78,3 @@ pub const RMS: [MetricKey; 4] = [X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS];
 pub fn phase(k: usize) -> String {
     format!("phase{}", k + 1)
 }
-
-/// One phase of contact.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactPhase {
-    /// Mass of a ring times the change of its velocity \[ρ c₀ L²\].
-    pub impulse: f64,
-    /// When 1 and 99 % of it have passed \[L/c₀\].
-    pub times: [f64; 2],
-    /// Does it end before the run does?
-    pub is_over: bool,
-}

@@ -4,14 +4,14 @@ use touchstone_base::{
     record::{MetricKey, Record},
     reference::Reference,
 };
-use touchstone_maths::metrics::{history, norms::rms};
+use touchstone_maths::metrics::{contact::ContactPhase, history, norms::rms};
 use touchstone_solver::lagrangian::{Hencky, Law as _};
 
 use super::{
     RingSettings,
     metrics::{
-        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ContactPhase, HEIGHT_RMS, HISTORIES,
-        IMPULSE_ERROR, OF_HISTORIES, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
+        COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, HEIGHT_RMS, HISTORIES, IMPULSE_ERROR,
+        OF_HISTORIES, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
     },
 };
 use crate::solids::solid::{LAGRANGIAN, Quantities, largest, quantities};

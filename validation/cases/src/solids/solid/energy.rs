@@ -1,8 +1,7 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
-use nalgebra::Vector2;
 use touchstone_base::absent::Absent;
-use touchstone_harness::snapshot::{Point, Snapshot};
+use touchstone_harness::snapshot::{Moments, Point, Snapshot, kinetic};
 use touchstone_solver::{Potential, Symmetric};
 
 use super::Material;
@@ -71,21 +70,10 @@ impl ElasticEnergy {
     }
 }
 
-/// Σ m v²/2 \[J/m\].
-pub fn kinetic(points: impl Iterator<Item = Point>) -> f64 {
-    points.fold(0.0, |sum, p| sum + 0.5 * p.mass * p.velocity.norm_squared())
-}
-
 /// Angular momentum about the centre of mass \[kg m²/s per m\].
 pub fn angular_momentum(now: &Snapshot<Symmetric>) -> f64 {
-    let sums = now.stored().fold(
-        (0.0, Vector2::zeros(), Vector2::zeros()),
-        |(mass, first, momentum), p| {
-            (mass + p.mass, first + p.position * p.mass, momentum + p.velocity * p.mass)
-        },
-    );
-    let (centre, drift) = (sums.1 / sums.0, sums.2 / sums.0);
-    let spin = |p: Point| p.mass * (p.position - centre).perp(&(p.velocity - drift));
+    let Moments { centre, velocity, .. } = Moments::of(now.stored());
+    let spin = |p: Point| p.mass * (p.position - centre).perp(&(p.velocity - velocity));
     now.stored().map(spin).fold(0.0, |sum, one| sum + one)
 }
 
@@ -93,6 +81,7 @@ pub fn angular_momentum(now: &Snapshot<Symmetric>) -> f64 {
 mod tests {
     use super::*;
     use approx::assert_relative_eq;
+    use nalgebra::Vector2;
     use touchstone_solver::Particle;
 
     fn particle(density: f64, speed: f64, extra: Symmetric) -> Particle<Symmetric> {

@@ -11,7 +11,7 @@ mod problem;
 pub mod tests;
 
 pub use elements::{Elements, Quantities, compare, quantities};
-pub use energy::{ElasticEnergy, angular_momentum, kinetic};
+pub use energy::{ElasticEnergy, angular_momentum};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{limits, medium_of};
 pub use problem::{

@@ -121,15 +121,9 @@ impl Dam {
 impl Samples {
     /// None yet.
     pub fn new() -> Self {
-        let (start, outside, fastest) = ([f64::NAN; 2], [f64::NAN; 2], f64::NAN);
-        Self {
-            start,
-            rows: Series::default(),
-            released: f64::NAN,
-            outside,
-            fastest,
-            spilled: BTreeSet::new(),
-        }
+        let ([start, outside], [released, fastest]) = ([[f64::NAN; 2]; 2], [f64::NAN; 2]);
+        let (rows, spilled) = (Series::default(), BTreeSet::new());
+        Self { start, rows, released, outside, fastest, spilled }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
@@ -477,7 +471,7 @@ mod tests {
                 }
             };
             let particles = touchstone_solver::lattice(first, dx, 10, 60).map(at).collect();
-            let parts = Parts { particles, ..tank.parts() };
+            let parts = Parts { particles, ..tank.scene().expect("a scene") };
             (tank.method.build)(parts).expect("a scene")
         };
         let full = wall(1.0);

@@ -1,15 +1,17 @@
 //! One run of the collapse: scene, stepping, record.
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::record::{MetricKey, Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
+    method::Boundary,
     pictures,
     snapshot::{Point, Snapshot},
 };
 use touchstone_maths::metrics::budget::Metered;
 use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::EquationOfState;
+use touchstone_solver::{DivergenceBounds, EquationOfState, Ghosts};
 
 use super::{
     Dam, DamSettings,
@@ -17,10 +19,7 @@ use super::{
     metrics::{MASS_ERROR, MOMENTUM_GAP, REACHED},
     reference,
 };
-use crate::waters::water::{
-    Ledger,
-    ledger::{self},
-};
+use crate::waters::water::{self, Ledger, ledger};
 
 /// When particles are kept for a picture, as a share of the run: the jet has risen at the far wall.
 pub const PICTURE: f64 = 0.6;
@@ -37,6 +36,14 @@ pub const PICTURED: &str = "particles@0.6";
 const SAMPLE: f64 = 4.0;
 /// Largest number of samples.
 const MOST_SAMPLES: f64 = 2e4;
+
+/// The settings on which time and memory of a run depend.
+const DECISIVE: &str = "end, dt, courant, c0, n or tank";
+
+/// The least Verlet skin \[h\].
+const LEAST_SKIN: f64 = 0.12;
+/// Steps of the fastest water that the Verlet skin reaches ahead, there and back.
+const SKIN_STEPS: f64 = 4.0;
 
 /// The metrics that take pair sweeps of their own.
 pub const COSTLY: &[MetricKey] = &{
@@ -79,7 +86,17 @@ impl Problem for Dam {
     }
 
     fn brief(&self) -> Brief {
-        Dam::brief(self)
+        let Self { counts: [columns, rows], tank, medium, .. } = self;
+        let all = (columns * rows + 8 * (tank.columns + 2 * tank.rows)) as f64;
+        let unstable = (self.method.properties.walls == Ghosts::NAME).then(|| {
+            let allowed = "--allow-unstable: particles of a stretched layer sink through mirrors to which \
+                           water sticks; ghosts-slip puts them back";
+            let (value, allowed) = (Ghosts::NAME.into(), allowed.into());
+            RunError::Combination { key: "variant", value, allowed }
+        });
+        let brief = Brief::new(*medium, self.rules, all, DECISIVE)
+            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, medium.dx]));
+        Brief { unstable, ..brief }
     }
 
     fn times(&self) -> Vec<f64> {
@@ -87,7 +104,23 @@ impl Problem for Dam {
     }
 
     fn scene(&self) -> Result<Parts, RunError> {
-        Ok(self.parts())
+        let Self { method, medium, tank, speed, .. } = self;
+        let (rho, c0, dx) = (self.settings.water.rho, medium.eos.sound_speed, medium.dx);
+        let mut particles = self.water(method.properties.first_row);
+        let walls = water::wall_particles(&method.properties, tank, medium);
+        particles.extend(walls.into_iter().map(|(place, role)| {
+            Particle::fluid(place, Vector2::zeros(), rho, dx * dx).with_role(role)
+        }));
+        // The fastest water crosses the least skin in a step or two; lists that last longer are worth their
+        // length. A step far beyond the limit must not make everything a neighbour of everything.
+        let skin = (SKIN_STEPS * self.rules.dt() * speed).clamp(LEAST_SKIN * medium.h, medium.h);
+        // Water that is twice as dense, or as fast as sound, is no water any more, unless it has left over
+        // the rim: nothing stops its fall.
+        let falling = speed + self.settings.gravity * self.rules.end;
+        let fastest = c0.max(2.0 * speed).max(falling);
+        let limits = DivergenceBounds { density: [0.5 * rho, 2.0 * rho], speed: fastest };
+        let parts = Parts::new(*medium, Domain::open(), particles);
+        Ok(Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts })
     }
 
     fn watch(&self, _: &Snapshot, start: &Snapshot) -> Watch {

@@ -1,22 +1,14 @@
 //! From settings to a scene: spacing, time step, tank, column.
 
 use nalgebra::Vector2;
-use touchstone_harness::method::{Boundary, FirstRow};
+use touchstone_harness::method::FirstRow;
 use touchstone_harness::prelude::*;
 use touchstone_maths::geometry::Tank;
 use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::{EquationOfState, Ghosts};
+use touchstone_solver::EquationOfState;
 
 use super::{DamSettings, Experiment};
-use crate::waters::water::{self};
-
-/// The settings on which time and memory of a run depend.
-const DECISIVE: &str = "end, dt, courant, c0, n or tank";
-
-/// The least Verlet skin \[h\].
-const LEAST_SKIN: f64 = 0.12;
-/// Steps of the fastest water that the Verlet skin reaches ahead, there and back.
-const SKIN_STEPS: f64 = 4.0;
+use crate::waters::water;
 
 /// The numbers of one run.
 pub struct Dam {
@@ -61,25 +53,6 @@ impl Dam {
         Ok(Self { settings, method, medium, tank, rim, counts, speed, rules })
     }
 
-    /// Data that need no particles.
-    pub fn brief(&self) -> Brief {
-        let Self { counts: [columns, rows], tank, medium, .. } = self;
-        let all = (columns * rows + 8 * (tank.columns + 2 * tank.rows)) as f64;
-        let unstable = (self.method.properties.walls == Ghosts::NAME).then(|| {
-            RunError::Combination {
-            key: "variant",
-            value: Ghosts::NAME.into(),
-            allowed:
-                "--allow-unstable: particles of a stretched layer sink through mirrors to which \
-                      water sticks; ghosts-slip puts them back"
-                    .into(),
-        }
-        });
-        let brief = Brief::new(*medium, self.rules, all, DECISIVE)
-            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, medium.dx]));
-        Brief { unstable, ..brief }
-    }
-
     /// ρ g H \[Pa\], the unit of pressure.
     pub fn unit_pressure(&self) -> f64 {
         self.settings.water.rho * self.settings.gravity * self.settings.height
@@ -111,33 +84,6 @@ impl Dam {
                 Particle::fluid(x - offset, Vector2::zeros(), density, dx * dx)
             })
             .collect()
-    }
-
-    /// The scene.
-    pub fn parts(&self) -> Parts {
-        let Self { method, medium, tank, speed, .. } = self;
-        let (rho, c0, dx) = (self.settings.water.rho, medium.eos.sound_speed, medium.dx);
-        let mut particles = self.water(method.properties.first_row);
-        let walls = water::wall_particles(
-            method.properties.first_row,
-            tank,
-            method.properties.support * medium.h,
-        );
-        particles.extend(walls.into_iter().map(|(place, role)| {
-            Particle::fluid(place, Vector2::zeros(), rho, dx * dx).with_role(role)
-        }));
-        // The fastest water crosses the least skin in a step or two; lists that last longer are worth their
-        // length.
-        // A step far beyond the limit must not make everything a neighbour of everything.
-        let skin = (SKIN_STEPS * self.rules.dt() * speed).clamp(LEAST_SKIN * medium.h, medium.h);
-        // Water that is twice as dense, or as fast as sound, is no water any more, unless it has left over
-        // the rim: nothing stops its fall.
-        let falling = speed + self.settings.gravity * self.rules.end;
-        let fastest = c0.max(2.0 * speed).max(falling);
-        let limits =
-            touchstone_solver::DivergenceBounds { density: [0.5 * rho, 2.0 * rho], speed: fastest };
-        let parts = Parts::new(*medium, Domain::open(), particles);
-        Parts { mirrors: tank.mirrors(), skin: Some(skin), limits, ..parts }
     }
 }
 
@@ -215,7 +161,7 @@ mod tests {
         let water = WaterSettings { dt: Some(167.0), ..WaterSettings::default() };
         let settings = DamSettings { water, ..DamSettings::default() };
         let dam = Dam::new(&water::modern(), &settings).unwrap();
-        assert_eq!(dam.parts().skin, Some(dam.medium.h));
+        assert_eq!(dam.scene().expect("a scene").skin, Some(dam.medium.h));
     }
 
     /// A front of shallow water runs at 2 (g H)^(1/2), and water that has left the tank falls by g t.
@@ -224,7 +170,7 @@ mod tests {
         let most = |end: f64| {
             let dam = Dam::changed(|s| (s.c0, s.end) = (10.0, end)).unwrap();
             let fall = (9.81 * 0.1143_f64).sqrt();
-            dam.parts().limits.speed / fall
+            dam.scene().expect("a scene").limits.speed / fall
         };
         for (end, expected) in [(1.8, 10.0), (7.9, 10.0), (20.0, 22.0)] {
             assert!((most(end) / expected - 1.0).abs() < 1e-12, "{end}: {}", most(end));

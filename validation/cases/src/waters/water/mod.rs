@@ -60,9 +60,10 @@ pub fn check_above(
     Err(SettingError(words).into())
 }
 
-/// Places and roles of the particles of a tank's walls, out to the support \[m\].
-pub fn wall_particles(walls: FirstRow, tank: &Tank, support: f64) -> Vec<(Vector2<f64>, Role)> {
-    match walls {
+/// Places and roles of the particles of a tank's walls, out to the support.
+pub fn wall_particles(of: &Properties, tank: &Tank, medium: &Medium) -> Vec<(Vector2<f64>, Role)> {
+    let support = of.support * medium.h;
+    match of.first_row {
         FirstRow::Nowhere => Vec::new(),
         FirstRow::OnSurface => tank.interface_walls(support),
         FirstRow::Behind => {
