@@ -333,7 +333,7 @@ mod tests {
     use touchstone_maths::geometry::Hill;
     use touchstone_solver::Role;
 
-    use crate::fluids::periodic_hill::{HillSettings, setup::FLUX as BULK};
+    use crate::fluids::periodic_hill::{HillSettings, run::FLUX as BULK};
     use std::f64::consts::TAU;
     use touchstone_base::functions::{cos, sin};
 

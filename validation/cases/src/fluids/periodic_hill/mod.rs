@@ -9,7 +9,6 @@ mod measure;
 mod plan;
 mod reference;
 mod run;
-mod setup;
 mod studies;
 
 use touchstone_harness::prelude::*;
@@ -17,7 +16,7 @@ use touchstone_schemes::hill;
 
 use crate::fluids::unit_flow::Numerics;
 
-pub use setup::HillSetup;
+pub use run::HillSetup;
 
 touchstone_base::settings! {
     /// Settings of the flow over hills. H = U_b = ρ = 1.

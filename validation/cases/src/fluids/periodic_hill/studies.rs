@@ -26,7 +26,7 @@ use super::{
     },
     plan::{END, Group, Row, Table, flow, name, shown, table},
     reference::{HillReference, REYNOLDS, Station, bubble, floor, reference, summary},
-    setup::FLUX,
+    run::FLUX,
 };
 
 /// The finite elements are of the Reynolds numbers that are judged. A run that goes on for longer is as near.

@@ -7,7 +7,6 @@
 //! has two parts: its projection on the exact values, with a gain that theory predicts on a lattice, and the
 //! rest, which is noise of disorder.
 
-mod plan;
 mod run;
 mod study;
 #[cfg(test)]

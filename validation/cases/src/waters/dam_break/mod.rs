@@ -12,14 +12,13 @@ mod metrics;
 mod plan;
 mod reference;
 mod run;
-mod setup;
 mod studies;
 
 use touchstone_harness::prelude::*;
 
 use crate::waters::water::WaterSettings;
 
-pub use setup::Dam;
+pub use run::Dam;
 
 touchstone_base::settings! {
     /// Settings of a collapsing column; the column of Martin & Moyce unless set otherwise.
