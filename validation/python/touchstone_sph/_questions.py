@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import secrets
 import socket
 import subprocess
@@ -17,8 +18,8 @@ from pathlib import Path
 from typing import Any, Optional, Union
 
 from . import _call, _program
-from ._problem import Problem, _read
-from ._verdicts import Frame, save
+from ._problem import DOCUMENT, NotApplicable, Problem, _read
+from ._verdicts import Frame, collect, write
 
 #: Exit code of a code that cannot solve a problem.
 DECLINES = 77
@@ -27,10 +28,6 @@ LOOK = 0.05
 
 #: A code: the particles at the times of a problem.
 Solver = Callable[[Problem], Iterable[Frame]]
-
-
-class NotApplicable(Exception):
-    """A code raises this on a problem that it cannot solve, with the reason."""
 
 
 @dataclass(frozen=True)
@@ -191,8 +188,9 @@ def solve_in(code: Solver, folder: Path, method: Optional[Mapping[str, Any]], th
     started = time.perf_counter()
     try:
         problem = _read(folder, folder, threads)
-        frames = list(code(problem))
-        save(problem, frames, folder, method, {"seconds": time.perf_counter() - started})
+        results = collect(problem, code(problem))
+        system = {"machine": platform.processor() or platform.machine(), "seconds": time.perf_counter() - started}
+        write(problem, results, folder, method, system)
     except NotApplicable as why:
         return DECLINES, str(why) or "it gave no reason"
     except Exception as error:
@@ -206,12 +204,14 @@ def main(code: Solver, method: Optional[Mapping[str, Any]] = None) -> None:
     """Makes a program of a function, for ``touchstone probe -- python run.py``.
 
     The last line of ``run.py`` is ``touchstone_sph.main(solve)``. The program solves the problem in the folder that
-    its last argument names, and ends with exit code 77 if the function raises `NotApplicable`.
+    its last argument names, and ends with exit code 77 if the function raises `NotApplicable`. Arguments before the
+    folder are for the code.
     """
-    if len(sys.argv) != 2:
+    folder = Path(sys.argv[-1])
+    if len(sys.argv) < 2 or not (folder / DOCUMENT).exists():
         sys.exit(f"usage: {sys.argv[0]} FOLDER (of a problem, written by `touchstone export` or `touchstone probe`)")
     threads = int(os.environ.get("OMP_NUM_THREADS", "1"))
-    status, words = solve_in(code, Path(sys.argv[1]), method, threads)
+    status, words = solve_in(code, folder, method, threads)
     if status:
         print(words, file=sys.stderr)
         sys.exit(status)

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -28,6 +28,8 @@ METHOD = {
     "changed": "",
 }
 SYSTEM = {"machine": "unknown", "threads": 1, "seconds": "unknown", "steps": "unknown", "interactions": "unknown"}
+#: What a frame may state of the run so far: the number of steps, and the time [s] of the loop over them.
+COST = {"steps": int, "seconds": float}
 #: Columns of results, with the format that has all digits of a double.
 COLUMNS = {"t": "%.17g", "id": "%d", **dict.fromkeys(("x", "y", "u", "v"), "%.17g")}
 DENSITY = "density"
@@ -111,25 +113,50 @@ def save(
     Raises:
         ValueError: if a frame lacks a column, or its arrays have the wrong length.
     """
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    rows, names, steps = [], None, {}
+    write(problem, collect(problem, frames), folder, method, system)
+
+
+class Results(NamedTuple):
+    """Results of a code as they are written."""
+
+    #: One row for each moving particle and time, shape (rows, columns), and the names of the columns.
+    table: np.ndarray
+    names: list[str]
+    #: Steps and seconds of the run, as far as the frames state them.
+    cost: dict[str, float]
+
+
+def collect(problem: Problem, frames: Iterable[Frame]) -> Results:
+    """Copies each frame when it is there: a code may change its arrays in place for the next one."""
+    rows, names, cost = [], None, {}
     for frame in frames:
-        with_density = [*COLUMNS, DENSITY] if DENSITY in frame else [*COLUMNS]
-        names = names or with_density
+        names = names or ([*COLUMNS, DENSITY] if DENSITY in frame else [*COLUMNS])
         rows.append(_rows(problem, frame, names))
-        steps = {"steps": int(frame["steps"])} if "steps" in frame else steps
+        cost |= {name: kind(frame[name]) for name, kind in COST.items() if name in frame}
     if not rows or names is None:
         raise ValueError("there are no frames; expected one at each of problem.times")
+    return Results(np.concatenate(rows), names, cost)
+
+
+def write(
+    problem: Problem,
+    results: Results,
+    folder: Union[str, Path],
+    method: Optional[Mapping[str, Any]],
+    system: Optional[Mapping[str, Any]],
+) -> None:
+    """Writes the files of a submission; see `save`."""
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
     for name, of in [
         (DOCUMENT, problem.document),
         ("method.json", {**METHOD, **(method or {})}),
-        ("system.json", {**SYSTEM, "threads": problem.threads, **steps, **(system or {})}),
+        ("system.json", {**SYSTEM, "threads": problem.threads, **(system or {}), **results.cost}),
     ]:
         (folder / name).write_text(json.dumps(of, indent=1, default=_plain), encoding="utf-8")
-    formats = [COLUMNS.get(name, "%.17g") for name in names]
+    formats = [COLUMNS.get(name, "%.17g") for name in results.names]
     with open(folder / "results.csv", "w", encoding="utf-8", newline="\n") as file:
-        np.savetxt(file, np.concatenate(rows), formats, ",", header=",".join(names), comments="")
+        np.savetxt(file, results.table, formats, ",", header=",".join(results.names), comments="")
 
 
 def _plain(value: Any) -> Any:
@@ -175,7 +202,8 @@ def judge(
         problem: the problem that was solved.
         frames: one for each of ``problem.times``: ``t`` [s] and arrays ``x``, ``y`` [m], ``u``, ``v`` [m/s] and
             ``density`` [kg/m³] of the moving particles in the order of the problem, shape (M,), or of all, shape (N,).
-            ``density`` may be left out of all frames, ``steps`` may state the number of steps so far.
+            ``density`` may be left out of all frames. ``steps`` and ``seconds`` may state the number of steps so far,
+            and the time of the loop over them.
         method: ``code``, ``version``, ``scheme``, ``settings`` and so on; see `save`.
         system: ``seconds`` of the time loop and so on; see `save`.
         store: a folder that keeps the record.
