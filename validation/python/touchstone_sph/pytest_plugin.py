@@ -23,7 +23,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--touchstone",
         metavar="PATH",
         help="the code: a Python file or a program, which is called with the folder of each problem, or a folder "
-        "with a probe.json",
+        "with a probe.toml",
     )
     group.addoption(
         "--touchstone-args",

@@ -303,7 +303,7 @@ pub struct Probe {
     /// problem as its last argument
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<OsString>,
-    /// A folder with a probe.json that names the command: `{"command": ["python", "run.py"]}`
+    /// A folder with a probe.toml that names the command: `command = ["python", "run.py"]`
     #[arg(long, value_name = "DIR")]
     pub code: Option<PathBuf>,
     /// Ask our own variant of this name, and the recommended one of each case that has none of this name

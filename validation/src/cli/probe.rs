@@ -22,7 +22,9 @@ use super::{
 };
 
 /// Name of the document in the folder of a code.
-const DOCUMENT: &str = "probe.json";
+const DOCUMENT: &str = "probe.toml";
+/// A complete document.
+const EXAMPLE: &str = r#"command = ["python", "run.py"]"#;
 /// More than this is no such document \[bytes\].
 const MOST_BYTES: u64 = 1 << 16;
 
@@ -109,20 +111,14 @@ fn code_of(arguments: &arguments::Probe, session: &Session) -> Result<Code, Fail
     let mut folder = None;
     if let Some(path) = code {
         let file = path.join(DOCUMENT);
-        let text = files::read_text(&file, MOST_BYTES)
-            .map_err(|why| Failure::usage(format!("{file:?} cannot be read: {why}")))?;
-        let document: Document = serde_json::from_str(&text)
-            .map_err(|why| Failure::usage(format!("{file:?}: {why}")))?;
-        command = document.command.into_iter().map(OsString::from).collect();
+        command = command_in(&file)
+            .map_err(|why| Failure::usage(format!("{file:?}{why}; expected {EXAMPLE}")))?;
         folder = Some(path.clone());
     }
     if variant.is_some() {
         command = vec![env::current_exe()?.into(), "solve".into()];
         let mutate = mutate.iter().map(|of| format!("--mutate={}={}", of.of, of.factor));
         command.extend(mutate.map(OsString::from));
-    }
-    if command.is_empty() {
-        return Err(Failure::usage(format!("{DOCUMENT} names no command")));
     }
     Ok(Code {
         command,
@@ -133,6 +129,17 @@ fn code_of(arguments: &arguments::Probe, session: &Session) -> Result<Code, Fail
         interrupt: session.interrupt,
         variant: variant.clone(),
     })
+}
+
+/// The command in the document of a code; otherwise where the document is wrong, and why.
+fn command_in(file: &Path) -> Result<Vec<OsString>, String> {
+    let text =
+        files::read_text(file, MOST_BYTES).map_err(|why| format!(" cannot be read: {why}"))?;
+    let Document { command } = basic_toml::from_str(&text).map_err(|why| format!(": {why}"))?;
+    match command.first().is_none_or(String::is_empty) {
+        true => Err(" names no command".into()),
+        false => Ok(command.into_iter().map(OsString::from).collect()),
+    }
 }
 
 /// The folder of all problems.
