@@ -327,7 +327,7 @@ static void find_forces(void) {
     }
     for (int i = 0; i < count; i++)
         for (int k = 0; k < 2 && all[i].body; k++)
-            force[i][k] = g[k] + (is("no-buoyancy") ? 0 : on_body[k] / body_mass);
+            force[i][k] = g[k] + (is("no-buoyancy") ? 0 : is("buoyancy") ? 1.07 : 1) * on_body[k] / body_mass;
 }
 
 static void check(void) {

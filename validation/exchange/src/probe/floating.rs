@@ -13,6 +13,10 @@ const LIGHT: f64 = 0.5;
 /// Rows in the water in the two problems, one less and one more than at rest.
 const DRAFTS: [usize; 2] = [4, 6];
 
+/// Uncertainty of the buoyancy: with the deeper draft the box and the water that moves with it are up to a fifth
+/// heavier, and the draft at rest lies 0.1 rows nearer to this one.
+const ADDED_MASS: f64 = 0.02;
+
 /// Words for another code.
 const BOUNDARY: &str = "Nothing passes floor and sides, along which water is free to slip. The surface is \
                         free: no pressure acts on it. The particles of body 1 are a rigid box without \
@@ -111,7 +115,7 @@ pub fn floats() -> Question {
             // nearly equal added masses.
             let [less, more] = DRAFTS.map(|rows| rows as f64);
             let draft = less - (more - less) * shallow / (deep - shallow);
-            let factor = Factor { value: draft / (LIGHT * SIDE as f64), uncertainty: 0.05 };
+            let factor = Factor { value: LIGHT * SIDE as f64 / draft, uncertainty: ADDED_MASS };
             let (from, to) = (fixed(shallow, 2), fixed(deep, 2));
             let moved =
                 format!("from {less} and {more} rows it has risen by {from} and {to} spacings");
@@ -120,16 +124,16 @@ pub fn floats() -> Question {
                 true => format!(
                     "no force acts on it with {} of its {SIDE} rows in the water: {}; {moved}",
                     fixed(draft, 1),
-                    factor.of("the draft")
+                    factor.of("the buoyancy")
                 ),
                 false => format!("no buoyancy: {moved}"),
             };
             let criteria = [
                 Criterion::new(
-                    "factor of the draft",
+                    "factor of the buoyancy",
                     factor.value,
-                    [0.9, 1.1],
-                    "weight and buoyancy are equal at the density ratio times the height; half a row is 0.1",
+                    [0.95, 1.05],
+                    "unequal added masses are 0.02, and a box that is 0.1 spacings larger on each side 0.04",
                 ),
                 Criterion::at_least(
                     "rise from the larger minus rise from the smaller draft [dx]",
@@ -141,6 +145,6 @@ pub fn floats() -> Question {
             let found = Finding::new(words, criteria);
             Ok(if floats { found.with(factor) } else { found })
         }),
-        finds: &["no-buoyancy", "mass-for-volume"],
+        finds: &["no-buoyancy", "buoyancy", "mass-for-volume"],
     }
 }

@@ -152,19 +152,16 @@ pub fn drag() -> Question {
             let [low, slope] = fit::line(&all);
             let off = fit::rms(all.iter().map(|[y, u]| u - low - slope * y));
             let [low, high] = [low / speed, (low + slope) / speed];
-            let factor = Factor { value: high, uncertainty: 0.005 + off / speed };
-            // u(0) = V δ/(L + 2 δ) of walls that act δ behind their place, and as much less at the other.
-            let behind = low / (high - low);
-            let is_symmetric = (low - (1.0 - high)).abs() < 0.01 && low.abs() > 0.01;
-            let rows = setting(of, "rows")?;
-            let words = match is_symmetric {
-                true => format!("the walls act {:.2} spacings behind their place", behind * rows),
-                false => {
-                    let other = fixed(low, 3);
-                    factor.of("the speed of the moving wall")
-                        + &format!(", that of the other wall is {other} of it")
-                }
+            // Walls that act δ behind their place have u(0) = f V δ/(L + 2 δ), u(L) = f V (L + δ)/(L + 2 δ).
+            let behind = low / (high - low) * setting(of, "rows")?;
+            let is_displaced = (0.05..1.0).contains(&behind.abs());
+            let value = if is_displaced { high + low } else { high };
+            let factor = Factor { value, uncertainty: 0.005 + off / speed };
+            let other = match is_displaced {
+                true => format!("the walls act {} spacings behind their place", fixed(behind, 2)),
+                false => format!("that of the other wall is {} of it", fixed(low, 3)),
             };
+            let words = format!("{}, {other}", factor.of("the speed of the moving wall"));
             let because = "second-order sums have the steady profile, a straight line, to 1 %";
             let criteria = [
                 Criterion::new("velocity at the moving wall", high, [0.98, 1.02], because),

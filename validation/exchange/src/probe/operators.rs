@@ -5,9 +5,6 @@ use touchstone_maths::exact::plane_wave::{K, PRESSURE, SPEED, slope, vector};
 
 use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
 
-/// Spacings along the sides of the two lattices.
-const SIDES: [f64; 2] = [24.0, 44.0];
-
 /// Particles with the fields; h is not the spacing, so that one in place of the other shows.
 fn particles(variant: &'static str, n: &str, disorder: &str) -> Pose {
     Pose::of("operators", variant, &[n, disorder, "h_over_dx=1.2"])
@@ -20,8 +17,7 @@ fn lattices(variant: &'static str) -> [Pose; 2] {
 /// Rates of change of velocity or density, and their exact values, as fields on the start.
 type Field = fn(&Solved) -> Result<Vec<[Vector2<f64>; 2]>, NotApplicable>;
 
-/// The factor of an operator in the limit of fine lattices: with an error c dx², g(dx) = g0 − c dx² of two
-/// lattices gives g0. Its uncertainty is what remains of the fourth order, (1 − g)² of the finer one.
+/// The factor of an operator in the limit of fine lattices.
 fn limit(coarse: &Solved, fine: &Solved, field: Field) -> Result<Factor, NotApplicable> {
     let gain = |of: &Solved| {
         if let Some(few) = of.entry.few_digits(&of.problem) {
@@ -29,11 +25,8 @@ fn limit(coarse: &Solved, fine: &Solved, field: Field) -> Result<Factor, NotAppl
         }
         Ok(fit::factor(fit::components(field(of)?.into_iter())))
     };
-    let [coarse, fine] = [gain(coarse)?, gain(fine)?];
-    let ratio = (SIDES[1] / SIDES[0]).powi(2);
-    let value = fine.value + (fine.value - coarse.value) / (ratio - 1.0);
-    let uncertainty = (value - fine.value).powi(2) + fine.uncertainty;
-    Ok(Factor { value, uncertainty })
+    let spacings = [coarse, fine].map(|of| of.problem.outline.medium.dx);
+    Ok(fit::limit([gain(coarse)?, gain(fine)?], spacings))
 }
 
 fn accelerations(
