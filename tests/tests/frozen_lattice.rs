@@ -314,7 +314,7 @@ fn check_variant(case: &dyn Case, variant: &str, flow: Flow) {
     let name = format!("{flow:?}, {variant}");
     let spec = case::spec(case, variant, &set).expect("settings");
     let record = case.run(&spec, &Context::default()).expect(&name);
-    let settings: ChannelSettings = record.settings_as();
+    let settings: ChannelSettings = record.run.settings_as();
     assert_eq!(record.status, Status::Completed, "{name}");
     // The kernel and the integrator decide on the limit of dt only, which is used for `stiff` alone.
     let flow::OfChannels { plain, stiff, .. } = flow::poiseuille();

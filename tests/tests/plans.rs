@@ -54,7 +54,7 @@ fn every_figure_answers_a_question() {
         let studies = case.studies(tier);
         let curves = studies.of::<Curves>().map(|of| of.caption.clone());
         let maps = studies.of::<Map>().map(|of| of.caption.clone());
-        let pictures = studies.of::<Picture>().map(|of| of.texts[2].to_string());
+        let pictures = studies.of::<Picture>().map(|of| of.heading.caption.to_string());
         let films = studies.of::<Picture>().filter_map(|of| of.film.as_ref());
         let films = films.map(|film| film.caption.to_string());
         for caption in curves.chain(maps).chain(pictures).chain(films) {

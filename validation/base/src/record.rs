@@ -27,7 +27,6 @@ use crate::breakdown::Breakdown;
 use crate::manifest::Manifest;
 use crate::number::is_default;
 use crate::reference::sha256;
-use crate::settings::{self, Settings};
 use crate::spec::{Measure, RunSpec};
 use crate::text::unseen;
 
@@ -220,9 +219,20 @@ pub struct MetricKey {
     formula: &'static str,
 }
 
-/// Whether a metric is one of these, at any time or other mark: `impulse@phase1` is an `impulse`.
+/// The name of a metric or a profile with its time, or another mark.
+pub fn marked(name: &str, mark: impl fmt::Display) -> String {
+    format!("{name}@{mark}")
+}
+
+/// The name of a metric or a profile without its mark, and the mark: `impulse` and `phase1` of
+/// `impulse@phase1`.
+pub fn name_and_mark(name: &str) -> (&str, Option<&str>) {
+    name.split_once('@').map_or((name, None), |(name, mark)| (name, Some(mark)))
+}
+
+/// Whether a metric is one of these, at any time or other mark.
 pub fn is_of(keys: &[MetricKey], name: &str) -> bool {
-    keys.iter().any(|key| name.split('@').next() == Some(key.name))
+    keys.iter().any(|key| name_and_mark(name).0 == key.name)
 }
 
 impl MetricKey {
@@ -233,7 +243,7 @@ impl MetricKey {
 
     /// The metric at a time, a station or another mark: `name@mark`.
     pub fn at(self, mark: impl fmt::Display) -> MetricName {
-        MetricName { key: self, name: format!("{}@{mark}", self.name), what: String::new() }
+        MetricName { key: self, name: marked(self.name, mark), what: String::new() }
     }
 
     /// The metric with `what` in place of `{}` in its formula.
@@ -499,12 +509,6 @@ impl Record {
         if is_part { Measure::Headline } else { Measure::All }
     }
 
-    /// The settings as their type; defaults if they belong to another case, which does not happen to a caller
-    /// with a run of its own case.
-    pub fn settings_as<T: Settings>(&self) -> T {
-        settings::of_json(&self.run.settings).unwrap_or_default()
-    }
-
     /// A record of one simulation of this process that is yet to be filled: completed, nothing measured.
     pub fn new(case: &str, variant: &str, settings: Value, threads: usize) -> Self {
         Self::of(&RunSpec::new(case, variant, settings), threads)
@@ -552,7 +556,7 @@ impl Record {
     /// Why a metric is absent; of `impulse@phase1` perhaps by the name `impulse`, of all phases.
     pub fn absent_as(&self, metric: &str) -> Option<&Absent> {
         let is_there = self.metrics.contains_key(metric);
-        let of_all = metric.split('@').next().filter(|_| !is_there);
+        let of_all = Some(name_and_mark(metric).0).filter(|_| !is_there);
         self.absent.get(metric).or_else(|| self.absent.get(of_all?))
     }
 

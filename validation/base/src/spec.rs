@@ -24,6 +24,7 @@ use crate::{
     mutation::{Constant, Detect, Disorder, Mutation},
     number::is_default,
     reference::sha256,
+    settings::{self, Settings},
     submission::Submission,
     text::short,
 };
@@ -198,6 +199,12 @@ impl RunSpec {
     /// One simulation that keeps metrics and curves.
     pub fn new(case: &str, variant: &str, settings: Value) -> Self {
         Self { case: case.to_string(), variant: variant.to_string(), settings, ..Self::default() }
+    }
+
+    /// The settings as their type; defaults if they belong to another case, which does not happen to a caller
+    /// with a run of its own case.
+    pub fn settings_as<T: Settings>(&self) -> T {
+        settings::of_json(&self.settings).unwrap_or_default()
     }
 
     /// Is it one simulation, and no search by many?

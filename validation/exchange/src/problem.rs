@@ -223,7 +223,7 @@ impl ExportedProblem {
             gates.retain(|gate| !record::is_of(&ours, &gate.metric));
             metrics = statement.metrics;
             metrics.retain(|metric| !record::is_of(&ours, &metric.name));
-            further = statement.further.map_or_else(Vec::new, |of| of(&spec.settings));
+            further = statement.further.map_or_else(Vec::new, |of| of(&spec));
             fields = fields_read(case, &spec);
             if gates.is_empty() {
                 let judges = |gate: Gate| {
@@ -362,7 +362,7 @@ impl ExportedProblem {
             document["curve"] = json!({
                 "file": CURVE,
                 "columns": curve.columns.iter().map(column).collect::<Vec<_>>(),
-                "rows_at_a_time": (curve.rows)(&self.spec.settings),
+                "rows_at_a_time": (curve.rows)(&self.spec),
                 "least_times": curve.least,
                 "about": curve.about,
             });
@@ -537,7 +537,7 @@ impl ExportedProblem {
             "- In place of the particles there may be `{CURVE}` with the columns `t[s]{}`, {} a time, at \
              {times}: {}. Metrics that need particles are not measured then.\n",
             columns.collect::<String>(),
-            match (curve.rows)(&self.spec.settings) {
+            match (curve.rows)(&self.spec) {
                 1 => "one line".into(),
                 rows => format!("{rows} lines"),
             },

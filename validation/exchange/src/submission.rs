@@ -350,9 +350,7 @@ impl Entry {
     ) -> Result<Option<ExportedProblem>, RunError> {
         let curve = self.curve.as_ref().and_then(|_| case.facts().curve);
         let Some(coarsen) = curve.and_then(|curve| curve.coarsen) else { return Ok(None) };
-        let mut spec = problem.spec.clone();
-        coarsen(&mut spec.settings);
-        ExportedProblem::of(case, spec).map(Some)
+        ExportedProblem::of(case, coarsen(&problem.spec)).map(Some)
     }
 
     /// The measured particles: for a curve the problem's.
@@ -379,8 +377,8 @@ impl Entry {
                 record.absent.entry(name.clone()).or_insert_with(|| why.clone());
             }
         }
-        let (begins, columns) = curve.shown;
-        record.profiles.retain(|name, _| name.starts_with(begins));
+        let (shown, columns) = curve.shown;
+        record.profiles.retain(|name, _| record::name_and_mark(name).0 == shown);
         for profile in record.profiles.values_mut() {
             profile.columns.retain(|column| columns.contains(&&*column.name));
         }

@@ -2,11 +2,10 @@
 //! know, and when a run counts as stable.
 
 use nalgebra::Vector2;
-use serde_json::Value;
 use touchstone_base::{
     gate::Gate,
     record::{MetricKey, MetricName, Record},
-    spec::Measure,
+    spec::{Measure, RunSpec},
 };
 
 /// Facts of a case.
@@ -46,8 +45,8 @@ impl Facts {
 pub struct Statement {
     /// The conditions at walls, clamps and surfaces in words.
     pub boundary: &'static str,
-    /// Drives or motions of a run with these settings, in addition to its acceleration.
-    pub further: Option<fn(&Value) -> Vec<Parameter>>,
+    /// Drives or motions of a run, in addition to its acceleration.
+    pub further: Option<fn(&RunSpec) -> Vec<Parameter>>,
     /// Every metric of the case.
     pub metrics: Vec<MetricName>,
 }
@@ -72,9 +71,9 @@ pub struct Parameter {
     pub about: &'static str,
 }
 
-/// Settings, the rows at a time, and the positions at the start of the particles that move in their order, to
+/// A run, the rows at a time, and the positions at the start of the particles that move in their order, to
 /// their positions and velocities.
-type Place = fn(&Value, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
+type Place = fn(&RunSpec, &[Vec<f64>], &[Vector2<f64>]) -> Vec<[Vector2<f64>; 2]>;
 
 /// A profile or a series from which some of the metrics follow.
 pub struct SubmittedCurve {
@@ -84,16 +83,16 @@ pub struct SubmittedCurve {
     pub about: &'static str,
     /// Least number of equidistant times; 0 if the times of the problem suffice.
     pub least: usize,
-    /// Rows at each time, for a run with these settings; the first column is ascending.
-    pub rows: fn(&Value) -> usize,
+    /// Rows at each time of a run; the first column is ascending.
+    pub rows: fn(&RunSpec) -> usize,
     /// Positions and velocities of particles that represent the rows at a time.
     pub place: Place,
     /// The metrics that follow from the curve, at any time; no other metric is measured.
     pub metrics: Vec<MetricKey>,
-    /// Makes the scene coarse in which it is measured, if neither its rows nor its times depend on the
+    /// The run in whose coarse scene it is measured, if neither its rows nor its times depend on the
     /// resolution. Then `export --solve` writes it in place of particles.
-    pub coarsen: Option<fn(&mut Value)>,
-    /// How the names of the profiles of a record begin that show it, and their columns.
+    pub coarsen: Option<fn(&RunSpec) -> RunSpec>,
+    /// The name of the profiles of a record that show it, without the time, and their columns.
     pub shown: (&'static str, &'static [&'static str]),
 }
 

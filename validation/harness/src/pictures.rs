@@ -2,10 +2,10 @@
 
 use nalgebra::Vector2;
 use touchstone_base::{
-    record::{Profile, Record},
+    record::{Profile, Record, marked},
     spec::RunSpec,
 };
-use touchstone_report::{Axis, Colour, ColourMap, Dots, Figure, Layer, Movie, Plot, Series};
+use touchstone_report::{Axis, Colour, ColourMap, Dot, Dots, Figure, Layer, Movie, Plot, Series};
 
 use crate::{
     runs::{Planned, Runs},
@@ -15,8 +15,8 @@ use crate::{
 
 /// Particles of some runs, coloured by a stored value.
 pub struct Picture {
-    /// Anchor of the study and of its figure, title of the section, caption.
-    pub texts: [&'static str; 3],
+    /// Its section.
+    pub heading: Heading,
     /// Name of the colour bar with its unit, and its colours.
     pub colours: (&'static str, ColourMap),
     /// Width and height of a panel \[px\].
@@ -31,6 +31,17 @@ pub struct Picture {
     pub range: Option<[f64; 2]>,
     /// The film of the run of the first panel.
     pub film: Option<Film>,
+}
+
+/// The section of a picture.
+#[derive(Clone, Copy)]
+pub struct Heading {
+    /// Anchor of the section and of its figure.
+    pub id: &'static str,
+    /// Title of the section.
+    pub title: &'static str,
+    /// Caption of the figure.
+    pub caption: &'static str,
 }
 
 /// A film of the particles of a run.
@@ -91,7 +102,7 @@ pub const FRAMES: usize = 50;
 
 /// The name of the profile of the particles at a share of the time of a run.
 pub fn at_share(share: f64) -> String {
-    format!("particles@{share}")
+    marked(END, share)
 }
 
 /// Diameter of a particle of a film \[spacings\]: particles of a square lattice leave no gaps, which
@@ -116,7 +127,12 @@ impl Picture {
     fn plot(&self, record: &Record, panel: &PicturePanel, profile: &str) -> Option<Plot> {
         let [x, y, value] = &record.profiles.get(profile)?.columns[..] else { return None };
         let points = x.values.iter().zip(&y.values).zip(&value.values);
-        let points = points.map(|((x, y), value)| (*x, *y, (self.shown)(*value))).collect();
+        let dot = |((x, y), value): ((&f64, &f64), &f64)| Dot {
+            x: *x,
+            y: *y,
+            value: (self.shown)(*value),
+        };
+        let points = points.map(dot).collect();
         let [x, y] = ["x", "y"].map(|name| Axis::linear(format!("{name} [{}]", x.unit)));
         let (label, colours) = self.colours;
         let dots = Dots::new(label, colours, panel.spacing, points);
@@ -140,7 +156,8 @@ impl Picture {
                 if !film.is_mirrored {
                     continue;
                 }
-                let images: Vec<_> = dots.points.iter().map(|(x, y, v)| (-x, *y, *v)).collect();
+                let images: Vec<_> =
+                    dots.points.iter().map(|dot| Dot { x: -dot.x, ..*dot }).collect();
                 dots.points.extend(images);
             }
             let panel = self.panels.iter().find(|panel| panel.profile == name);
@@ -149,7 +166,7 @@ impl Picture {
         let shares = (0..=FRAMES).map(|k| k as f64 / FRAMES as f64);
         let (shares, frames): (Vec<f64>, Vec<Plot>) = shares.filter_map(frame).unzip();
         let still = shares.iter().position(|share| *share >= film.still)?;
-        let (id, caption) = (format!("{}-film", self.texts[0]), film.caption.into());
+        let (id, caption) = (format!("{}-film", self.heading.id), film.caption.into());
         let size = (film.width, film.width * (y[1] - y[0]) / (x[1] - x[0]));
         (frames.len() > FRAMES / 2).then_some(Movie { id, caption, frames, still, size })
     }
@@ -172,7 +189,7 @@ impl Study for Picture {
             let plot = self.plot(runs.record(&panel.spec)?, panel, &panel.profile)?;
             Some(outlined(plot, &panel.lines))
         };
-        let [id, title, caption] = self.texts;
+        let Heading { id, title, caption } = self.heading;
         let [width, height] = self.size;
         let figure = Figure::new(id, caption).panel_size(width, height).columns(self.columns);
         let panels = self.panels.iter().filter_map(panel);

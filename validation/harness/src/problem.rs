@@ -181,10 +181,17 @@ type Resumed<P> = fn(&P, &<P as Problem>::Watch, &mut <P as Problem>::Simulation
 pub struct Calls<P: Problem> {
     after_step: Vec<(&'static str, AfterStep<P>)>,
     every_step: Vec<(&'static str, EveryStep<P>)>,
-    /// With `true`, velocities and extra fields are of the very time.
-    at: Vec<(&'static str, bool, At<P>)>,
+    at: Vec<TimedCall<P>>,
     of_ours: Vec<(&'static str, OfOurs<P>)>,
     resumed: Option<Resumed<P>>,
+}
+
+/// A function that is called at each of the times of interest.
+struct TimedCall<P: Problem> {
+    name: &'static str,
+    /// Does it need velocities and extra fields of the very time?
+    synchronised: bool,
+    call: At<P>,
 }
 
 impl<P: Problem> Default for Calls<P> {
@@ -218,7 +225,7 @@ impl<P: Problem> Calls<P> {
     /// Calls a function at each of the times of interest, with its number.
     #[must_use]
     pub fn at(mut self, name: &'static str, call: At<P>) -> Self {
-        self.at.push((name, true, call));
+        self.at.push(TimedCall { name, synchronised: true, call });
         self
     }
 
@@ -226,7 +233,7 @@ impl<P: Problem> Calls<P> {
     /// leapfrog may be half a step old, which costs no pair sweep.
     #[must_use]
     pub fn at_positions(mut self, name: &'static str, call: At<P>) -> Self {
-        self.at.push((name, false, call));
+        self.at.push(TimedCall { name, synchronised: false, call });
         self
     }
 
@@ -294,9 +301,9 @@ impl<P: Problem> ObservedRun<P::Extra> for Run<'_, P> {
     fn at(&mut self, k: usize, reached: usize) {
         let Observed { problem, calls, state: ObservedState { watch, record } } = &mut self.seen;
         match calls.at.get(k) {
-            Some((.., call)) => {
+            Some(of) => {
                 let now = Snapshot::ours(self.simulation.stepper());
-                call(problem, watch, &now, reached, record);
+                (of.call)(problem, watch, &now, reached, record);
             }
             None => (calls.of_ours[k - calls.at.len()].1)(problem, watch, &mut self.simulation),
         }
@@ -408,7 +415,7 @@ impl<P: Problem> Posed for P {
             times: &times,
             pressure: &pressure(&brief.medium),
             after_step: calls.after_step.iter().map(|(name, _)| *name).chain(every_step).collect(),
-            at: calls.at.iter().map(|(name, now, _)| (*name, *now)).chain(of_ours).collect(),
+            at: calls.at.iter().map(|of| (of.name, of.synchronised)).chain(of_ours).collect(),
         };
         let seen = Observed { problem: self, calls, state: ObservedState { watch, record } };
         let mut run = Run { simulation, seen };
@@ -490,8 +497,7 @@ impl<P: Problem> Posed for P {
             }
             // A time may be stated twice, for example for a sample and for a picture.
             while next(reached).is_some() {
-                at.iter()
-                    .for_each(|(_, _, call)| call(self, &mut watch, &last, reached, &mut record));
+                at.iter().for_each(|of| (of.call)(self, &mut watch, &last, reached, &mut record));
                 reached += 1;
             }
         }

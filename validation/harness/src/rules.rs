@@ -120,8 +120,12 @@ pub fn samples(end: f64, count: usize, given: Option<f64>) -> Vec<f64> {
 
 /// Key of the planned time step \[s\] in the numerics of a record.
 pub const PLANNED_DT: &str = "dt [s] planned";
-/// Name of that step over its theoretical limit.
+/// Key of the planned step over its theoretical limit.
 pub const PLANNED_DT_OVER_LIMIT: &str = "dt/limit planned";
+/// Key of the largest step of a run \[s\].
+pub const DT: &str = "dt [s]";
+/// Key of the largest step over its theoretical limit.
+pub const DT_OVER_LIMIT: &str = "dt/limit";
 
 /// Adds the largest step of the run to the planned one in a record: steps are shortened to reach the times of
 /// samples and the end.
@@ -130,8 +134,8 @@ pub fn state_steps(record: &mut Record) {
     let (Some(dt), limit) = (planned(PLANNED_DT), planned(PLANNED_DT_OVER_LIMIT)) else { return };
     let used = record.cost.largest_dt_s;
     if used > 0.0 {
-        let ratio = limit.map(|ratio| ("dt/limit", ratio * used / dt));
-        let taken = [("dt [s]", used)].into_iter().chain(ratio);
+        let ratio = limit.map(|ratio| (DT_OVER_LIMIT, ratio * used / dt));
+        let taken = [(DT, used)].into_iter().chain(ratio);
         record.numerics.extend(taken.map(|(name, value)| (name.into(), number::json(value))));
     }
 }

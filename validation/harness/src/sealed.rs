@@ -80,26 +80,28 @@ impl Draws {
 
     /// The bound at a resolution, and where it comes from.
     fn bound(&self, levels: &[&JudgedLevel], fineness: f64) -> Option<(f64, String)> {
-        let worst =
-            |levels: &mut dyn Iterator<Item = &&JudgedLevel>| -> Option<(f64, f64, String)> {
-                let worst = levels.max_by(|a, b| a.most.total_cmp(&b.most))?;
-                Some((worst.fineness, worst.most, worst.gate.id.clone()))
-            };
-        let of = |at: f64| worst(&mut levels.iter().filter(|level| level.fineness == at));
+        let worst = |at: f64| {
+            let levels = levels.iter().filter(|level| level.fineness == at);
+            levels.max_by(|a, b| a.most.total_cmp(&b.most))
+        };
         let before = levels.iter().rev().find(|level| level.fineness <= fineness);
         let after = levels.iter().find(|level| level.fineness >= fineness);
-        let near = |level: Option<&&JudgedLevel>| level.and_then(|level| of(level.fineness));
+        let near = |level: Option<&&JudgedLevel>| level.and_then(|level| worst(level.fineness));
         match (near(before), near(after)) {
-            (Some((coarse, at_coarse, a)), Some((fine, at_fine, b))) if coarse < fine => {
-                let share = ln(fineness / coarse) / ln(fine / coarse);
-                let most = at_coarse * exp(share * ln(at_fine / at_coarse));
+            (Some(coarse), Some(fine)) if coarse.fineness < fine.fineness => {
+                let share = ln(fineness / coarse.fineness) / ln(fine.fineness / coarse.fineness);
+                let most = coarse.most * exp(share * ln(fine.most / coarse.most));
+                let (a, b) = (&coarse.gate.id, &fine.gate.id);
                 Some((most, format!("The bound lies between those of {a} and {b}, by resolution.")))
             }
-            (Some((at, most, a)), _) | (None, Some((at, most, a))) => {
-                let (factor, order) = (exp(self.order * ln(at / fineness)), self.order);
-                let words =
-                    format!("The bound equals that of {a} at this resolution, with order {order}.");
-                Some((most * factor, words))
+            (Some(level), _) | (None, Some(level)) => {
+                let order = self.order;
+                let factor = exp(order * ln(level.fineness / fineness));
+                let id = &level.gate.id;
+                let words = format!(
+                    "The bound equals that of {id} at this resolution, with order {order}."
+                );
+                Some((level.most * factor, words))
             }
             (None, None) => None,
         }

@@ -98,8 +98,18 @@ pub fn most_steps(base: &Outline, other: &Outline) -> f64 {
 /// Periods beyond which a place has too few digits left within its period to be compared.
 const MOST_PERIODS: f64 = (1_u64 << 20) as f64;
 
-/// The first place that is too far away, in words, with the number of its frame and of its particle there.
-pub fn far_away((outline, frames): Seen) -> Option<(usize, usize, String)> {
+/// A place that is too far from its period to be compared.
+pub struct FarPlace {
+    /// Number of its frame.
+    pub frame: usize,
+    /// Number of its particle in the frame.
+    pub row: usize,
+    /// The place in words.
+    pub words: String,
+}
+
+/// The first place that is too far away.
+pub fn far_away((outline, frames): Seen) -> Option<FarPlace> {
     let places = frames.iter().enumerate().flat_map(|(k, frame)| {
         frame.particles.iter().enumerate().map(move |(row, placed)| (k, row, frame.time, placed))
     });
@@ -111,14 +121,14 @@ pub fn far_away((outline, frames): Seen) -> Option<(usize, usize, String)> {
             })
         };
         let axis = [0, 1].into_iter().find(is_far)?;
-        let what = format!(
+        let words = format!(
             "particle {} is at {} = {:e} m at t = {time} s; at most {MOST_PERIODS} periods from its box, a \
              place has the digits to be compared",
             placed.id,
             ["x", "y"][axis],
             placed.position[axis]
         );
-        Some((k, row, what))
+        Some(FarPlace { frame: k, row, words })
     })
 }
 

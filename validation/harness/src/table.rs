@@ -10,7 +10,7 @@ use std::{ops::RangeInclusive, sync::Arc};
 
 use crate::{
     composed::Composed,
-    pictures::{self, Picture, PicturePanel},
+    pictures::{self, Heading, Picture, PicturePanel},
     runs::{Planned, Tier},
     studies::{Ladder, Spacing},
 };
@@ -159,7 +159,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
     /// A picture of the runs that keep particles; `panels` gives the panels of one run.
     pub fn picture(
         &self,
-        texts: [&'static str; 3],
+        heading: Heading,
         colours: (&'static str, ColourMap),
         size: [f64; 2],
         panels: impl Fn(&Row<T, G>) -> Vec<PicturePanel>,
@@ -171,7 +171,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
             }
         }
         let shown = |value| value;
-        Picture { texts, colours, size, panels: all, columns, shown, range: None, film: None }
+        Picture { heading, colours, size, panels: all, columns, shown, range: None, film: None }
     }
 
     /// The plan: every run with its gates.

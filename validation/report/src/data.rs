@@ -45,16 +45,17 @@ pub(super) fn panel(panel: &Prepared, area: Rect, columns: &mut Columns) -> Valu
             Some(json!({ "name": series.name, "x": x, "y": y, "names": series.names }))
         }
         Layer::Dots(Dots { points, label, .. }) => {
-            let x = columns.numbers(points.iter().map(|p| p.0), plot.x.scale);
-            let y = columns.numbers(points.iter().map(|p| p.1), plot.y.scale);
-            let values = columns.numbers(points.iter().map(|p| p.2), Scale::Linear);
+            let x = columns.numbers(points.iter().map(|p| p.x), plot.x.scale);
+            let y = columns.numbers(points.iter().map(|p| p.y), plot.y.scale);
+            let values = columns.numbers(points.iter().map(|p| p.value), Scale::Linear);
             Some(json!({ "name": label, "x": x, "y": y, "values": values }))
         }
         Layer::Cells { name, cells, .. } => {
             let of = |names: &[String], k: usize| json!(names.get(k).cloned().unwrap_or_default());
-            let x = columns.place(cells.iter().map(|cell| of(&plot.x.names, cell.0)).collect());
-            let y = columns.place(cells.iter().map(|cell| of(&plot.y.names, cell.1)).collect());
-            let texts: Vec<_> = cells.iter().map(|cell| &cell.2).collect();
+            let x =
+                columns.place(cells.iter().map(|cell| of(&plot.x.names, cell.column)).collect());
+            let y = columns.place(cells.iter().map(|cell| of(&plot.y.names, cell.row)).collect());
+            let texts: Vec<_> = cells.iter().map(|cell| &cell.text).collect();
             Some(json!({ "name": name, "x": x, "y": y, "names": texts }))
         }
         Layer::Band { .. } => None,
@@ -102,7 +103,7 @@ fn short(value: f64, step: f64) -> Value {
 mod tests {
     use super::super::render::parts;
     use super::*;
-    use crate::{Axis, ColourMap, Figure, Plot, Series};
+    use crate::{Axis, ColourMap, Dot, Figure, GridCell, Plot, Series};
 
     /// The data that the script reads: values with five digits, gaps, and names of points.
     #[test]
@@ -111,12 +112,17 @@ mod tests {
         let line = Series::line("line", vec![(0.1, 1.0 / 3.0), (1.0, f64::NAN)]);
         let plot = Plot::new("Panel", Axis::log("x [m]"), Axis::linear("y [1]"));
         let plot = plot.layer(Series { names, ..line });
-        let dots = Dots::new("p [Pa]", ColourMap::Sequential, 0.1, vec![(0.0, 0.0, 2.0)]);
+        let dots = Dots::new(
+            "p [Pa]",
+            ColourMap::Sequential,
+            0.1,
+            vec![Dot { x: 0.0, y: 0.0, value: 2.0 }],
+        );
         let dots = Plot::new("", Axis::linear("x"), Axis::linear("y")).layer(dots);
         let named =
             |names: &[&str]| -> Vec<String> { names.iter().map(|n| n.to_string()).collect() };
         let (x, y) = (Axis::names("x", &named(&["1", "2"])), Axis::names("y", &named(&["3"])));
-        let cells = vec![(1, 0, "ok".into())];
+        let cells = vec![GridCell { column: 1, row: 0, text: "ok".into() }];
         let cells = Layer::Cells { name: "pass".into(), colour: crate::Colour::GREEN, cells };
         let figure = Figure::new("f", "").panel(plot).panel(dots);
         let data = parts(&figure.panel(Plot::new("", x, y).layer(cells)), "aloud").data;

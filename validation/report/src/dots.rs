@@ -3,7 +3,7 @@
 use super::bar::{Bar, STEPS};
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
-use super::figure::{Dots, Shape};
+use super::figure::{Dot, Dots, GridCell, Shape};
 use super::frame::{Frame, fit};
 
 /// Dots with their scale decided.
@@ -17,7 +17,7 @@ pub(super) struct Scaled<'a> {
 impl<'a> Scaled<'a> {
     /// Dots next to a bar of this height, with these CSS pixels for a unit of x and y.
     pub fn new(dots: &'a Dots, height: f64, pixels: f64) -> Self {
-        let data = dots.points.iter().map(|p| p.2);
+        let data = dots.points.iter().map(|p| p.value);
         Self {
             dots,
             bar: Bar::new(dots.map, &dots.label, dots.values, data, height),
@@ -28,7 +28,7 @@ impl<'a> Scaled<'a> {
     pub fn draw(&self, canvas: &mut Canvas, frame: &Frame) {
         // Dots of one colour after each other, because they are one element of an SVG.
         let mut all = vec![Vec::new(); STEPS];
-        for &(x, y, value) in &self.dots.points {
+        for &Dot { x, y, value } in &self.dots.points {
             let Some(at) = frame.place((x, y)).filter(|at| frame.area.contains(*at)) else {
                 continue;
             };
@@ -50,7 +50,7 @@ impl<'a> Scaled<'a> {
 pub(super) fn draw_cell(
     canvas: &mut Canvas,
     frame: &Frame,
-    (column, row, text): &(usize, usize, String),
+    GridCell { column, row, text }: &GridCell,
     colour: Colour,
 ) {
     let (x, y) = (*column as f64, *row as f64);

@@ -95,8 +95,8 @@ pub enum Layer {
     Series(Series),
     /// The area between two curves.
     Band {
-        /// (x, lower, upper).
-        points: Vec<(f64, f64, f64)>,
+        /// Its ends at each x.
+        points: Vec<BandPoint>,
         /// Drawn as a pale tint of this colour.
         colour: Colour,
     },
@@ -108,9 +108,31 @@ pub enum Layer {
         name: String,
         /// Colour of the cells.
         colour: Colour,
-        /// Column, row and a short text of each, counted from the lower left corner.
-        cells: Vec<(usize, usize, String)>,
+        /// The cells.
+        cells: Vec<GridCell>,
     },
+}
+
+/// The ends of a band at x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BandPoint {
+    /// Place on the horizontal axis.
+    pub x: f64,
+    /// Lower end.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+}
+
+/// A cell of a grid, counted from the lower left corner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GridCell {
+    /// Its column.
+    pub column: usize,
+    /// Its row.
+    pub row: usize,
+    /// A short text.
+    pub text: String,
 }
 
 impl From<Series> for Layer {
@@ -240,11 +262,22 @@ impl Series {
     }
 }
 
+/// A dot; one whose value is not finite becomes a black cross.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Dot {
+    /// Place on the horizontal axis.
+    pub x: f64,
+    /// Place on the vertical axis.
+    pub y: f64,
+    /// Value that gives its colour.
+    pub value: f64,
+}
+
 /// Dots coloured by a value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dots {
-    /// (x, y, value). Values that are not finite become black crosses.
-    pub points: Vec<(f64, f64, f64)>,
+    /// The dots.
+    pub points: Vec<Dot>,
     /// Colour map.
     pub map: ColourMap,
     /// Values at the ends of the colour bar; `None` takes the data's.
@@ -257,12 +290,7 @@ pub struct Dots {
 
 impl Dots {
     /// Dots of this diameter in units of x and y, with an automatic range of colours.
-    pub fn new(
-        label: impl Into<String>,
-        map: ColourMap,
-        diameter: f64,
-        points: Vec<(f64, f64, f64)>,
-    ) -> Self {
+    pub fn new(label: impl Into<String>, map: ColourMap, diameter: f64, points: Vec<Dot>) -> Self {
         Self { points, map, values: None, label: label.into(), diameter }
     }
 

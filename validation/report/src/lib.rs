@@ -37,7 +37,7 @@ pub use check::check_page;
 pub use colour::{Colour, ColourMap};
 pub use counts::Counts;
 pub use explorer::{Explorer, VERDICTS, verdicts_where};
-pub use figure::{Dash, Dots, Figure, Layer, Look, Plot, Series, Shape};
+pub use figure::{BandPoint, Dash, Dot, Dots, Figure, GridCell, Layer, Look, Plot, Series, Shape};
 pub use inline::{code, plain};
 pub use movie::Movie;
 pub use number::{counted, exact, percent, sci, seconds, sig};

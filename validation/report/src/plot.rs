@@ -5,7 +5,7 @@ use super::bar::Bar;
 use super::canvas::{Align, Canvas, Point, Rect, Type};
 use super::colour::Colour;
 use super::dots::{Scaled, draw_cell};
-use super::figure::{Layer, Look, Plot, Series, Shape};
+use super::figure::{BandPoint, Dot, Layer, Look, Plot, Series, Shape};
 use super::font::{self, TICK_EM};
 use super::frame::{Frame, Room};
 use super::geometry::{clip_line, runs, sample_rect, sample_segment, thin};
@@ -85,7 +85,7 @@ impl<'a> Prepared<'a> {
 
     /// Note on points that could not be drawn.
     fn dropped(&self) -> String {
-        let is_lost = |dot: &&(f64, f64, f64)| !(dot.0.is_finite() && dot.1.is_finite());
+        let is_lost = |dot: &&Dot| !(dot.x.is_finite() && dot.y.is_finite());
         let dots = self.plot.dots().into_iter().flat_map(|dots| &dots.points);
         let mut infinite = dots.filter(is_lost).count();
         let (mut nonpositive, mut off) = (0, 0);
@@ -175,8 +175,8 @@ impl<'a> Prepared<'a> {
         series.points.iter().zip(&series.x_bars).filter_map(bar).collect()
     }
 
-    fn draw_band(&self, canvas: &mut Canvas, points: &[(f64, f64, f64)], colour: Colour) {
-        let ends = |(x, lower, upper)| {
+    fn draw_band(&self, canvas: &mut Canvas, points: &[BandPoint], colour: Colour) {
+        let ends = |BandPoint { x, lower, upper }| {
             Some((self.frame.place((x, lower))?, self.frame.place((x, upper))?))
         };
         for run in runs(points, ends) {
@@ -292,12 +292,12 @@ pub(super) fn extent(plot: &Plot) -> [Vec<f64>; 2] {
                 xs.extend(s.x_bars.iter().flat_map(|b| [b.0, b.1]));
             }
             Layer::Band { points, .. } => {
-                xs.extend(points.iter().map(|p| p.0));
-                ys.extend(points.iter().flat_map(|p| [p.1, p.2]));
+                xs.extend(points.iter().map(|p| p.x));
+                ys.extend(points.iter().flat_map(|p| [p.lower, p.upper]));
             }
             Layer::Dots(dots) => {
-                xs.extend(dots.points.iter().map(|p| p.0));
-                ys.extend(dots.points.iter().map(|p| p.1));
+                xs.extend(dots.points.iter().map(|p| p.x));
+                ys.extend(dots.points.iter().map(|p| p.y));
             }
             Layer::Cells { .. } => {}
         }

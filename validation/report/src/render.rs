@@ -229,7 +229,7 @@ pub(super) fn png_bytes(figure: &Figure) -> io::Result<Vec<u8>> {
 mod tests {
     use super::*;
 
-    use crate::{Axis, ColourMap, Dots, Layer, Plot, Series, Shape};
+    use crate::{Axis, BandPoint, ColourMap, Dot, Dots, GridCell, Layer, Plot, Series, Shape};
 
     fn figure(panel: Plot) -> Figure {
         Figure::new("f", "A caption.").panel(panel).panel_size(120.0, 90.0)
@@ -253,12 +253,13 @@ mod tests {
     fn all_layers(values: &[f64], x: Axis, y: Axis) -> Plot {
         let pairs: Vec<_> =
             values.iter().flat_map(|&a| values.iter().map(move |&b| (a, b))).collect();
-        let triples: Vec<_> = pairs.iter().map(|p| (p.0, p.1, p.0)).collect();
+        let band = |&(x, lower): &(f64, f64)| BandPoint { x, lower, upper: x };
+        let band = pairs.iter().map(band).collect();
         let b = Series::line("b", pairs.clone()).open_markers(Shape::Cross);
         Plot::new("Title", x, y)
             .layer(Series::line("a", pairs.clone()).cycle(0))
             .layer(Series { x_bars: pairs, ..b })
-            .layer(Layer::Band { points: triples, colour: Colour::SKY })
+            .layer(Layer::Band { points: band, colour: Colour::SKY })
     }
 
     #[test]
@@ -274,7 +275,7 @@ mod tests {
                 let stray = text.lines().find(|l| l.contains("inf") || l.contains("NaN,"));
                 assert_eq!(stray, None, "{values:?}");
             }
-            let points = values.iter().map(|&v| (v, v, v)).collect();
+            let points = values.iter().map(|&v| Dot { x: v, y: v, value: v }).collect();
             let dots = Dots::new("p [Pa]", ColourMap::Diverging, 0.0, points);
             let plot = Plot::new("", Axis::linear("x"), Axis::log("y"));
             svg(&figure(plot.clone().layer(dots.clone())));
@@ -289,7 +290,8 @@ mod tests {
         let plot = |x: &[&str], y: &[&str]| {
             let [x, y] = [x, y].map(|names| names.iter().map(|name| name.to_string()).collect());
             let (x, y): (Vec<String>, Vec<String>) = (x, y);
-            let cells = vec![(0, 0, "ok".into()), (9, 1, "beyond".into())];
+            let cell = |column, row, text: &str| GridCell { column, row, text: text.into() };
+            let cells = vec![cell(0, 0, "ok"), cell(9, 1, "beyond")];
             let layer = Layer::Cells { name: "pass".into(), colour: Colour::GREEN, cells };
             Plot::new("t", Axis::names("x", &x), Axis::names("y", &y)).layer(layer)
         };
@@ -302,19 +304,21 @@ mod tests {
     /// A dot whose value is not finite was drawn as a cross and counted as not drawn, too.
     #[test]
     fn a_dot_without_a_place_is_counted_and_one_without_a_value_is_a_cross() {
-        let with = |dot| {
-            let points = vec![(0.0, 0.0, 1.0), (1.0, 1.0, 2.0), dot];
+        let dot = |x, y, value| Dot { x, y, value };
+        let with = |last| {
+            let points = vec![dot(0.0, 0.0, 1.0), dot(1.0, 1.0, 2.0), last];
             let dots = Dots::new("p [Pa]", ColourMap::Sequential, 0.1, points);
             let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
             svg(&figure(plot))
         };
-        assert!(!with((0.5, 0.5, f64::NAN)).contains("not drawn"));
-        assert!(with((f64::NAN, 0.5, 1.0)).contains("not drawn: 1 not finite"));
+        assert!(!with(dot(0.5, 0.5, f64::NAN)).contains("not drawn"));
+        assert!(with(dot(f64::NAN, 0.5, 1.0)).contains("not drawn: 1 not finite"));
     }
 
     #[test]
     fn two_thousand_dots_stay_small() {
-        let points = (0..2000).map(|i| (f64::from(i % 50), f64::from(i / 50), f64::from(i)));
+        let dot = |i: i32| Dot { x: (i % 50).into(), y: (i / 50).into(), value: i.into() };
+        let points = (0..2000).map(dot);
         let dots = Dots::new("p [Pa]", ColourMap::Sequential, 0.0, points.collect());
         let plot = Plot::new("", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
         assert!(svg(&figure(plot)).len() < 30_000);

@@ -7,8 +7,8 @@ use std::io;
 use std::path::PathBuf;
 use touchstone_base::gate::Verdict;
 use touchstone_report::{
-    Axis, Block, Cell, ColourMap, Counts, Dots, Explorer, Figure, Overview, Page, Plot, Section,
-    Series, Subject, Table, TableColumn, VERDICTS, check_page,
+    Axis, Block, Cell, ColourMap, Counts, Dot, Dots, Explorer, Figure, Overview, Page, Plot,
+    Section, Series, Subject, Table, TableColumn, VERDICTS, check_page,
 };
 
 #[test]
@@ -31,7 +31,8 @@ fn figure() -> Figure {
         .layer(Series::line("cubic spline", error(0.3)).cycle(0))
         .layer(Series::line("quintic spline", error(0.5)).cycle(1).labels(["10".into()]));
     let at = |k: i32| 0.05 * f64::from(k);
-    let points = (0..400).map(|k| (at(k % 20), at(k / 20), at(k % 7))).collect();
+    let dot = |k| Dot { x: at(k % 20), y: at(k / 20), value: at(k % 7) };
+    let points = (0..400).map(dot).collect();
     let dots = Dots::new("|u| [m/s]", ColourMap::Sequential, 0.05, points);
     let map = Plot::new("Speed", Axis::linear("x [m]"), Axis::linear("y [m]")).layer(dots);
     Figure::new("figure", "An order with *made-up* errors.").panel(plot).panel(map).columns(2)

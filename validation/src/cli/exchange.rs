@@ -347,11 +347,9 @@ pub fn relate(
             .iter()
             .for_each(|note| output::say(&format!("{}: {note}", folder.display())));
         entry.check(&problem).map_err(refused)?;
-        if let Some((frame, row, what)) =
-            symmetry::far_away((&problem.outline, &entry.results.frames))
-        {
-            let (file, line) = &entry.results.places[frame];
-            return Err(refused(vec![Flaw::of(file, what).at(line + row as u64)]));
+        if let Some(far) = symmetry::far_away((&problem.outline, &entry.results.frames)) {
+            let (file, line) = &entry.results.places[far.frame];
+            return Err(refused(vec![Flaw::of(file, far.words).at(line + far.row as u64)]));
         }
         if let Some(few) = entry.few_digits(&problem) {
             let words = format!(

@@ -6,7 +6,7 @@ use std::mem::discriminant;
 use serde::Serialize;
 use touchstone_base::{
     gate::{Bound, Gate},
-    record::Metric,
+    record::{Metric, name_and_mark},
 };
 use touchstone_harness::gates::GateIndex;
 
@@ -182,8 +182,8 @@ pub fn changes<'a>(
 /// of the case on this metric with any mark (`l2` of `l2@0.1`), if all of them have the same side.
 fn side(case: &GateIndex, metric: &str) -> Option<Bound> {
     let gates = case.judged().iter().flat_map(|planned| &planned.gates);
-    let of_metric =
-        gates.filter(|gate| !gate.control && unmarked(&gate.metric) == unmarked(metric));
+    let of_metric = gates
+        .filter(|gate| !gate.control && name_and_mark(&gate.metric).0 == name_and_mark(metric).0);
     let is_one_sided = |of: &Bound| matches!(of, Bound::Below(_) | Bound::Above(_));
     let mut bounds = of_metric.map(|gate| gate.bound).filter(is_one_sided);
     let first = bounds.next()?;
@@ -198,11 +198,6 @@ fn badness(bound: Bound, value: f64) -> f64 {
         Bound::Within(low, high) => (value - 0.5 * (low + high)).abs(),
         Bound::Equals(expected) => (value - expected).abs(),
     }
-}
-
-/// The name of a metric without the time or place that marks it.
-fn unmarked(metric: &str) -> &str {
-    metric.split_once('@').map_or(metric, |(name, _)| name)
 }
 
 /// The largest difference of two values that counts as none.

@@ -15,7 +15,7 @@ use touchstone_base::{
     files::{self, FileError, OutputFolder},
     gate::Gate,
     lock,
-    record::{Profile, Record, Status},
+    record::{Profile, Record, Status, marked, name_and_mark},
 };
 use touchstone_cases::fluids::channel;
 use touchstone_harness::{
@@ -23,6 +23,8 @@ use touchstone_harness::{
     checkpoint::Checkpoints,
     context::{Context, RunProgress},
     gates::GateIndex,
+    pictures,
+    rules::{DT, DT_OVER_LIMIT, PLANNED_DT, PLANNED_DT_OVER_LIMIT},
     runs::Judged,
     size::Size,
     store::MOST_BYTES,
@@ -348,7 +350,7 @@ fn write(
     }
     for (name, profile) in &record.profiles {
         // Curves at one time are in profile.csv, particles in the frames.
-        if !name.contains('@') && name != "particles" {
+        if name_and_mark(name).1.is_none() && name != pictures::END {
             let file = table_of(name);
             output.write(&file, profile.to_csv().as_bytes())?;
             names.push(file);
@@ -373,7 +375,9 @@ fn details(record: &Record) -> String {
     };
     // A step is shortened to reach the end and the times of samples: it is planned, then used.
     let is_used = |name: &str, number: &Value| {
-        let used = name.strip_suffix(" planned").and_then(|name| numerics.get(name));
+        let mut steps = [(PLANNED_DT, DT), (PLANNED_DT_OVER_LIMIT, DT_OVER_LIMIT)].into_iter();
+        let used =
+            steps.find(|(planned, _)| *planned == name).and_then(|(_, used)| numerics.get(used));
         used.is_some_and(|used| value(used) == value(number))
     };
     let shown = numerics.iter().filter(|(name, number)| !is_used(name, number));
@@ -410,7 +414,7 @@ fn absent(record: &Record) -> String {
 fn metrics(record: &Record) -> String {
     let (mut times, mut of_times, mut single) = (Vec::new(), BTreeMap::new(), Vec::new());
     for (name, metric) in &record.metrics {
-        if let Some((name, time)) = name.split_once('@') {
+        if let (name, Some(time)) = name_and_mark(name) {
             times.push(time);
             of_times.entry(name).or_insert(metric);
         } else {
@@ -422,7 +426,7 @@ fn metrics(record: &Record) -> String {
     times.sort_by(|a, b| number(a).total_cmp(&number(b)).then(a.cmp(b)));
     times.dedup();
     let value = |name: &str, time: &str| {
-        let metric = record.metrics.get(&format!("{name}@{time}"));
+        let metric = record.metrics.get(&marked(name, time));
         metric.map(|metric| touchstone_report::sig(metric.value, 4)).unwrap_or_default()
     };
     // Times of channels are νt/L²; times of other cases are in the units of their formulas.

@@ -187,7 +187,7 @@ impl Nearest {
 /// is that error.
 fn in_unit(studies: &Studies, metric: &str, spec: &RunSpec) -> impl Fn(f64) -> String + use<> {
     let card = studies.first::<Card>().filter(|card| card.metric.name == metric);
-    let unit = card.map(|card| (card.stated)(&spec.settings).unit);
+    let unit = card.map(|card| (card.stated)(spec).unit);
     move |value| match unit {
         None => four_digits(value),
         Some("") => format!("{}\u{a0}%", four_digits(100.0 * value)),
@@ -221,7 +221,7 @@ pub fn error_of(studies: &Studies, record: &Record) -> (String, String) {
             format!("{} was not measured: {reason}", metric.name)
         }
         (Some(card), Some(found)) => {
-            let stated = (card.stated)(&record.run.settings);
+            let stated = (card.stated)(&record.run);
             format!("{}, {}", stated.number(found.value), stated.in_words())
         }
         (None, Some(found)) => in_words(&metric.name, found),

@@ -368,9 +368,10 @@ fn studies(tier: Tier) -> Studies {
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
     let caption = "Where does the fluid go round? Speed of the particles of `consistent` at the end, finest \
                    spacing.";
-    let (texts, size) = (["cavity-picture", "The cavity", caption], [300.0, 270.0]);
+    let heading = pictures::Heading { id: "cavity-picture", title: "The cavity", caption };
     let panel = |r: &Row| vec![r.panel(format!("Re {}", r.group), 1.0 / r.settings.n as f64)];
-    let picture = table.picture(texts, ("speed [U]", ColourMap::Sequential), size, panel);
+    let picture =
+        table.picture(heading, ("speed [U]", ColourMap::Sequential), [300.0, 270.0], panel);
     let speed = Watched::new(Constant::WallSpeed).quick().faults(&[-1.0, 0.5]);
     let coarse = CASE.spec(RECOMMENDED, |s| s.n = 16);
     Studies::judging(table.plan())

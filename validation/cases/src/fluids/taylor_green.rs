@@ -11,7 +11,7 @@ use touchstone_harness::{
     case::{Drawn, Draws, Statement},
     pictures, rules,
     snapshot::{self, Point, Snapshot},
-    studies::{Accuracy, Budgets, CurveOf, CurvePanel, Curves, Picture, Spacing},
+    studies::{Accuracy, Budgets, CurveOf, CurvePanel, Curves, Heading, Picture, Spacing},
     table,
 };
 use touchstone_maths::{
@@ -470,9 +470,10 @@ fn picture(table: &Table) -> Picture {
     let caption = "Where is the velocity wrong, with and without stabilisers? Particles at t = 2 L/U, Re \
                    100, from the disturbed lattice, coloured by the logarithm of the error over the largest \
                    exact speed: −2 is 1 %.";
-    let texts = ["taylor-green-pictures", "Where the velocity is wrong", caption];
+    let heading =
+        Heading { id: "taylor-green-pictures", title: "Where the velocity is wrong", caption };
     let colours = ("log₁₀(error/largest exact speed)", ColourMap::Sequential);
-    let picture = table.picture(texts, colours, [300.0, 270.0], |row| {
+    let picture = table.picture(heading, colours, [300.0, 270.0], |row| {
         let n = row.settings.n;
         vec![row.panel(format!("{}, {n} x {n}", row.variant), 1.0 / n as f64)]
     });

@@ -376,10 +376,11 @@ fn studies(tier: Tier) -> Studies {
     let caption = "Does the drop keep its shape and a smooth pressure? `consistent` at the end, 40 particles \
                    across, pressure over the exact one at the centre of the start; its rows are two \
                    initial spacings apart.";
-    let texts = ["elliptic-drop-picture", "A free drop at the end", caption];
+    let heading =
+        pictures::Heading { id: "elliptic-drop-picture", title: "A free drop at the end", caption };
     let colours = ("p/p(0) [-]", ColourMap::Sequential);
     let picture =
-        table.picture(texts, colours, [360.0, 320.0], |row| vec![row.panel("A t = 0.8", 0.05)]);
+        table.picture(heading, colours, [360.0, 320.0], |row| vec![row.panel("A t = 0.8", 0.05)]);
     Studies::judging(table.plan()).with(picture).with(accuracy)
 }
 

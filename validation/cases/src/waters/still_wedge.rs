@@ -319,10 +319,14 @@ fn studies(tier: Tier) -> Studies {
     let sensitivity = Sensitivity::new(tier, [run], watched);
     let caption = "Where is the pressure of water at rest wrong? Mean over the last quarter of the run, 20 \
                    spacings along the depth.";
-    let texts = ["still-wedge-errors", "Errors of still water over a wedge", caption];
+    let heading = pictures::Heading {
+        id: "still-wedge-errors",
+        title: "Errors of still water over a wedge",
+        caption,
+    };
     let colours = ("p − p_exact [ρ g H]", ColourMap::Diverging);
     let picture =
-        table.picture(texts, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]);
+        table.picture(heading, colours, [360.0, 220.0], |row| vec![row.panel(row.variant, 0.05)]);
     Studies::judging(table.plan()).with(picture).with(accuracy).with(sensitivity)
 }
 

@@ -13,8 +13,8 @@ fn apart(ours: &Solved, other: &Solved) -> Result<(f64, String), NotApplicable> 
         if let Some(few) = of.entry.few_digits(&of.problem) {
             return Err(format!("frames are compared to round-off, which needs all digits: {few}"));
         }
-        if let Some((_, _, far)) = symmetry::far_away((outline, &of.entry.results.frames)) {
-            return Ok((f64::NAN, far));
+        if let Some(far) = symmetry::far_away((outline, &of.entry.results.frames)) {
+            return Ok((f64::NAN, far.words));
         }
         steps = steps.max(of.entry.steps(&of.problem));
     }

@@ -31,14 +31,14 @@ pub fn frames(
     let (times, ascending) = (rows.column("t"), curve.columns[0].0);
     let first = rows.column(ascending);
     let line = |k: usize| rows.first_line + k as u64;
-    let (settings, mut flaws) = (&problem.spec.settings, Vec::new());
+    let mut flaws = Vec::new();
     let particles = &problem.outline.particles;
     let (x, y, moving) = (particles.column("x"), particles.column("y"), problem.moving());
     let from: Vec<Vector2<f64>> =
         moving.iter().map(|id| Vector2::new(x[*id as usize], y[*id as usize])).collect();
     let unread = rows.unread.iter().cloned().collect();
     let mut results = Results { unread, ..Results::default() };
-    let (count, mut k) = ((curve.rows)(settings), 0);
+    let (count, mut k) = ((curve.rows)(&problem.spec), 0);
     while k < times.len() && flaws.len() < MOST_FLAWS {
         let (time, start) = (times[k], k);
         k += times[k..].iter().take_while(|t| **t == time).count().max(1);
@@ -70,7 +70,7 @@ pub fn frames(
         }
         let row = |k: usize| curve.columns.iter().map(|(name, _)| rows.column(name)[k]).collect();
         let at: Vec<Vec<f64>> = (start..k).map(row).collect();
-        let placed = moving.iter().zip((curve.place)(settings, &at, &from));
+        let placed = moving.iter().zip((curve.place)(&problem.spec, &at, &from));
         let placed = placed.map(|(id, [position, velocity])| ForeignParticle {
             id: *id,
             position,

@@ -33,8 +33,8 @@ pub struct Card {
     pub picture: &'static str,
     /// The error, also of the ladders of the case ([`Accuracy::error`]).
     pub metric: MetricName,
-    /// The words for the error of a run with these settings.
-    pub stated: fn(&Value) -> Stated,
+    /// The words for the error of a run.
+    pub stated: fn(&RunSpec) -> Stated,
     /// Further numbers of a run in a sentence, if it has them.
     pub beside: Option<fn(&Record) -> Option<String>>,
     /// The run of the recommended variant and the run of the paper's.
@@ -72,7 +72,7 @@ impl Card {
                 curves.panels.iter().position(shows)
             });
         let mut pictures = studies.of::<Picture>();
-        let picture = pictures.find(|picture| picture.texts[0] == self.picture);
+        let picture = pictures.find(|picture| picture.heading.id == self.picture);
         let place = |of: &Picture| of.panels.iter().position(|panel| is_shown(&panel.spec));
         curves.unwrap_or_else(|| picture.and_then(place))
     }
@@ -80,7 +80,7 @@ impl Card {
     /// The card of a case that a test makes up, which breaks nowhere.
     #[doc(hidden)]
     pub fn made_up(metric: MetricKey, setting: &'static str, runs: Vec<RunSpec>) -> Self {
-        let stated = |_: &Value| Stated {
+        let stated = |_: &RunSpec| Stated {
             name: "made up".into(),
             against: "nothing",
             uncertainty: None,
@@ -108,7 +108,7 @@ impl Studies {
     /// A value of this error, of a run, in its unit.
     pub fn number(&self, record: &Record, value: f64) -> String {
         if let Some(card) = self.first::<Card>() {
-            return (card.stated)(&record.run.settings).number(value);
+            return (card.stated)(&record.run).number(value);
         }
         let metric = self.error().and_then(|metric| record.metrics.get(&metric.name));
         match metric.map_or("-", |metric| &*metric.unit) {
@@ -144,16 +144,16 @@ pub struct Stated {
 impl Stated {
     /// The words for a share against an exact reference. In the name, each `{setting}` is replaced by its
     /// value.
-    pub fn new(settings: &Value, name: &str, against: &'static str) -> Self {
-        let all = settings.as_object().into_iter().flatten();
+    pub fn new(run: &RunSpec, name: &str, against: &'static str) -> Self {
+        let all = run.settings.as_object().into_iter().flatten();
         let name = all.fold(name.to_string(), |name, (setting, _)| {
-            name.replace(&format!("{{{setting}}}"), &Self::setting(settings, setting))
+            name.replace(&format!("{{{setting}}}"), &Self::setting(&run.settings, setting))
         });
         Self { name, against, uncertainty: None, unit: "" }
     }
 
     /// A setting as it is written in the words.
-    pub fn setting(settings: &Value, name: &str) -> String {
+    fn setting(settings: &Value, name: &str) -> String {
         settings[name].as_f64().map_or_else(|| settings[name].to_string(), touchstone_report::exact)
     }
 
@@ -243,7 +243,7 @@ pub fn row(
     let shown = names.map(run_of);
     shown.iter().flatten().next()?;
     let about = match card.zip(shown[0].as_ref()) {
-        Some((card, first)) => (card.stated)(&first.settings).name,
+        Some((card, first)) => (card.stated)(first).name,
         None => case.problem().into(),
     };
     let answer = Answer { case, studies, runs, metric: studies.error()?, shown };
@@ -471,8 +471,8 @@ mod tests {
             title: "Made up",
             picture: "none",
             metric: ERROR.into(),
-            stated: |settings| Stated {
-                name: format!("distance at n = {}", settings["n"]),
+            stated: |run| Stated {
+                name: format!("distance at n = {}", run.settings["n"]),
                 against: "nothing",
                 uncertainty: Some(0.5),
                 unit: "a",
@@ -631,7 +631,7 @@ mod tests {
         let judged = run(spec("good", 3), |r| r.put(ERROR, -0.0576));
         let studies = Studies::default().with(made_up());
         assert_eq!(headline(&studies, &judged.record), Ok("−0.058\u{a0}a".into()));
-        let stated = (made_up().stated)(&judged.record.run.settings).in_words();
+        let stated = (made_up().stated)(&judged.record.run).in_words();
         assert_eq!(stated, "distance at n = 3, against nothing (± 0.50\u{a0}a)");
     }
 }

@@ -5,7 +5,9 @@ use touchstone_base::{
     record::Record,
     spec::RunSpec,
 };
-use touchstone_report::{Axis, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig};
+use touchstone_report::{
+    Axis, BandPoint, Cell, Colour, Dash, Figure, Layer, Plot, Series, Table, sig,
+};
 
 use super::{PointsOf, anchor};
 use crate::{
@@ -19,7 +21,10 @@ use crate::{
 
 /// Points of a curve that are drawn.
 const DRAWN: usize = 160;
-const QUARTERS: [f64; 3] = [0.25, 0.5, 0.75];
+/// Shares of the members below the quartiles and the median.
+const LOWER: f64 = 0.25;
+const MEDIAN: f64 = 0.5;
+const UPPER: f64 = 0.75;
 
 /// The ensembles of a case: runs that differ only by a small disorder of their start. Before their horizon
 /// all members agree; after it each is one sample of a distribution.
@@ -239,9 +244,9 @@ fn distributions(all: &[Numbered]) -> Table {
         .text("resolution", |(made, ..)| made.of.label.clone())
         .text("number", |(_, number, _)| number.name[0])
         .text("unit", |(_, number, _)| number.name[1])
-        .num(["median", ""], quarter(QUARTERS[1]))
-        .num(["lower quartile", ""], quarter(QUARTERS[0]))
-        .num(["upper quartile", ""], quarter(QUARTERS[2]))
+        .num(["median", ""], quarter(MEDIAN))
+        .num(["lower quartile", ""], quarter(LOWER))
+        .num(["upper quartile", ""], quarter(UPPER))
         .of(["least", ""], end(f64::min), show)
         .of(["largest", ""], end(f64::max), show)
         .text("measured", measured)
@@ -264,21 +269,20 @@ fn figure(id: &str, time: &[&str; 2], all: &[(&CompletedEnsemble, Followed)]) ->
 fn panel([time, unit]: &[&str; 2], made: &CompletedEnsemble, followed: &Followed) -> Plot {
     let title = format!("{}, {}", made.of.variant, made.of.label);
     let quantiles = quantiles(&followed.curves);
-    let band = |[low, high]: [usize; 2]| {
-        quantiles.iter().map(|(t, all)| (*t, all[low], all[high])).collect()
-    };
-    let median = quantiles.iter().map(|(t, all)| (*t, all[2])).collect();
+    let range = |of: &Quantiles| BandPoint { x: of.time, lower: of.least, upper: of.largest };
+    let middle = |of: &Quantiles| BandPoint { x: of.time, lower: of.lower, upper: of.upper };
+    let median = quantiles.iter().map(|of| (of.time, of.median)).collect();
     let end = followed.end();
     let measured = followed.of.measured.iter().map(|curve| {
         let until: TimeSeries = curve.iter().filter(|(t, _)| *t <= end).copied().collect();
         Series::line("", until).colour(Colour::BLACK).width(0.8)
     });
-    let least = quantiles.iter().map(|(_, all)| all[0]).fold(f64::NAN, f64::min);
-    let most = quantiles.iter().map(|(_, all)| all[4]).fold(f64::NAN, f64::max);
+    let least = quantiles.iter().map(|of| of.least).fold(f64::NAN, f64::min);
+    let most = quantiles.iter().map(|of| of.largest).fold(f64::NAN, f64::max);
     let (x, y) = (Axis::linear(format!("{time} [{unit}]")), Axis::linear(&followed.of.name));
     let mut plot = Plot::new(title, x, y)
-        .layer(Layer::Band { points: band([0, 4]), colour: Colour::GREY })
-        .layer(Layer::Band { points: band([1, 3]), colour: Colour::BLUE })
+        .layer(Layer::Band { points: quantiles.iter().map(range).collect(), colour: Colour::GREY })
+        .layer(Layer::Band { points: quantiles.iter().map(middle).collect(), colour: Colour::BLUE })
         .layer(Series::line("", median).colour(Colour::BLUE));
     plot = measured.fold(plot, Plot::layer);
     if let Ok(Horizon { time, .. }) = &followed.horizon
@@ -290,9 +294,20 @@ fn panel([time, unit]: &[&str; 2], made: &CompletedEnsemble, followed: &Followed
     plot.without_legend()
 }
 
-/// Least, quartiles, median and largest of the members at each drawn time; none for members sampled at
-/// different times.
-fn quantiles(members: &[TimeSeries]) -> Vec<(f64, [f64; 5])> {
+/// The members of an ensemble at a time.
+struct Quantiles {
+    time: f64,
+    least: f64,
+    /// Lower quartile.
+    lower: f64,
+    median: f64,
+    /// Upper quartile.
+    upper: f64,
+    largest: f64,
+}
+
+/// The members at each drawn time; none for members sampled at different times.
+fn quantiles(members: &[TimeSeries]) -> Vec<Quantiles> {
     let Some(first) = members.first().filter(|f| members.iter().all(|m| m.len() == f.len())) else {
         return Vec::new();
     };
@@ -300,7 +315,14 @@ fn quantiles(members: &[TimeSeries]) -> Vec<(f64, [f64; 5])> {
     let at = |k: usize| {
         let values: Vec<f64> = members.iter().map(|member| member[k].1).collect();
         let of = |share| Quantile::of_sample(&values, share).value;
-        (first[k].0, [0.0, QUARTERS[0], QUARTERS[1], QUARTERS[2], 1.0].map(of))
+        Quantiles {
+            time: first[k].0,
+            least: of(0.0),
+            lower: of(LOWER),
+            median: of(MEDIAN),
+            upper: of(UPPER),
+            largest: of(1.0),
+        }
     };
     (0..first.len()).step_by(every).map(at).collect()
 }
@@ -401,10 +423,10 @@ mod tests {
         let unit = 1e-6 * touchstone_base::functions::exp(16.0);
         for (layer, ends) in plot.layers.iter().zip([[-9.5, 9.5], [-4.75, 4.75]]) {
             let Layer::Band { points, .. } = layer else { panic!("a band") };
-            let (t, low, high) = points.last().expect("points");
-            assert!((t - 8.0).abs() < 0.05);
-            let unit = unit * touchstone_base::functions::exp(2.0 * (t - 8.0));
-            for (found, expected) in [low, high].into_iter().zip(ends) {
+            let BandPoint { x, lower, upper } = points.last().expect("points");
+            assert!((x - 8.0).abs() < 0.05);
+            let unit = unit * touchstone_base::functions::exp(2.0 * (x - 8.0));
+            for (found, expected) in [lower, upper].into_iter().zip(ends) {
                 assert!((found / unit / expected - 1.0).abs() < 1e-9, "{found}, not {expected}");
             }
             assert!((100..=DRAWN).contains(&points.len()), "{} of 801 points", points.len());

@@ -1,7 +1,7 @@
 //! Maps: the outcomes of runs as a function of two settings.
 
 use touchstone_base::{functions::powf, mutation::Disorder, record::Record, spec::RunSpec};
-use touchstone_report::{Axis, Colour, Figure, Layer, Plot};
+use touchstone_report::{Axis, Colour, Figure, GridCell, Layer, Plot};
 
 use crate::{
     runs::{Planned, Runs},
@@ -116,7 +116,7 @@ fn panel(map: &Map, panel: &MapPanel, runs: &Runs) -> Plot {
             let records: Vec<&Record> = specs.iter().filter_map(|spec| runs.record(spec)).collect();
             if !records.is_empty() {
                 let (outcome, text) = (map.outcome)(&records);
-                cells[outcome].push((x, y, text));
+                cells[outcome].push(GridCell { column: x, row: y, text });
             }
         }
     }
@@ -166,8 +166,12 @@ mod tests {
         let names = [&drawn.x, &drawn.y].map(|axis| axis.names.join(" "));
         assert_eq!(names, ["1 2 3", "10 20"]);
         let cells = |cells: &[(usize, usize, &str)]| {
-            let owned = cells.iter().map(|(x, y, text)| (*x, *y, text.to_string()));
-            owned.collect::<Vec<_>>()
+            let cell = |&(column, row, text): &(usize, usize, &str)| GridCell {
+                column,
+                row,
+                text: text.into(),
+            };
+            cells.iter().map(cell).collect::<Vec<_>>()
         };
         let outcomes = drawn.layers.iter().map(|layer| match layer {
             Layer::Cells { name, cells, .. } => (name.as_str(), cells.clone()),

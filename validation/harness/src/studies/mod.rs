@@ -29,7 +29,7 @@ pub use sensitivity::{Blind, Sensitivity, Watched};
 pub use validation::{Comparison, Comparisons};
 
 pub use crate::{
-    pictures::{Film, Picture, PicturePanel},
+    pictures::{Film, Heading, Picture, PicturePanel},
     study::{CustomStudy, Studies, Study},
 };
 

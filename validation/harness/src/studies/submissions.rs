@@ -2,7 +2,7 @@
 
 use touchstone_base::{
     gate::Verdict,
-    record::Record,
+    record::{Record, name_and_mark},
     submission::{Division, OURS, Submission},
 };
 use touchstone_report::{Axis, Cell, Figure, Plot, Series, Shape, percent, plain, seconds};
@@ -305,12 +305,7 @@ fn accuracy_metrics(studies: &Studies) -> Vec<String> {
     let errors = errors.flatten().map(|metric| &metric.name);
     let compared = studies.of::<Comparisons>().flat_map(|of| &of.0).map(|of| &of.metric.name);
     let shown = studies.of::<Card>().map(|of| &of.metric.name);
-    errors.chain(compared).chain(shown).map(|name| base_of(name).to_string()).collect()
-}
-
-/// `l2` of `l2@0.1`.
-fn base_of(metric: &str) -> &str {
-    metric.split('@').next().unwrap_or(metric)
+    errors.chain(compared).chain(shown).map(|name| name_and_mark(name).0.to_string()).collect()
 }
 
 /// The verdict on the accuracy, and the names of other gates that fail.
@@ -319,7 +314,7 @@ fn of_gates(run: &JudgedRun, accuracy: &[String]) -> [String; 2] {
     let fails = |judged: &&&Judged| judged.judgement.verdict.is_failure();
     let (of_error, others): (Vec<&Judged>, Vec<&Judged>) = apply
         .into_iter()
-        .partition(|of| accuracy.iter().any(|name| *name == base_of(&of.gate.metric)));
+        .partition(|of| accuracy.iter().any(|name| *name == name_and_mark(&of.gate.metric).0));
     let verdict = match (of_error.is_empty(), of_error.iter().any(|of| fails(&of))) {
         (true, _) => "–".to_string(),
         (_, true) => Verdict::Fail.to_string(),

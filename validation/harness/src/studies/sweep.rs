@@ -141,7 +141,7 @@ fn table(case: &dyn Case, studies: &Studies, rows: &[SweepRow]) -> Table {
 
 /// The error as the case states it.
 fn error_in_words(studies: &Studies, point: &LadderPoint, record: &Record) -> Cell {
-    let stated = studies.first::<Card>().map(|card| (card.stated)(&record.run.settings));
+    let stated = studies.first::<Card>().map(|card| (card.stated)(&record.run));
     match stated {
         _ if point.error.is_nan() => Cell::text("–"),
         Some(stated) => Cell { value: Some(point.error), ..Cell::text(stated.number(point.error)) },

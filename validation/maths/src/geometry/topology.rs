@@ -153,7 +153,7 @@ fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
     // So that the intervals of a line are nearly in order.
     piece.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
     let mut background = Background { joined: Joined(vec![OUTSIDE]), area: vec![0.0] };
-    let everything = (f64::NEG_INFINITY, f64::INFINITY, OUTSIDE);
+    let everything = Gap { start: f64::NEG_INFINITY, end: f64::INFINITY, region: OUTSIDE };
     let mut above = vec![everything];
     for mut line in scan_lines(piece, 0.5 * BOND * dx, LINE * dx) {
         line.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -165,11 +165,11 @@ fn holes(piece: &mut [Point], dx: f64, least_hole: f64) -> usize {
                 let is_outside = from == f64::NEG_INFINITY;
                 let area = (start - from) * LINE * dx;
                 let region = if is_outside { OUTSIDE } else { background.begin(area) };
-                gaps.push((from, start, region));
+                gaps.push(Gap { start: from, end: start, region });
             }
             from = from.max(end);
         }
-        gaps.push((from, f64::INFINITY, OUTSIDE));
+        gaps.push(Gap { start: from, ..everything });
         background.join_lines(&above, &gaps);
         above = gaps;
     }
@@ -204,6 +204,17 @@ fn scan_lines(piece: &[Point], radius: f64, step: f64) -> Vec<Vec<(f64, f64)>> {
 /// The region outside of everything.
 const OUTSIDE: usize = 0;
 
+/// A part of a line that no disc covers.
+#[derive(Clone, Copy)]
+struct Gap {
+    /// \[m\].
+    start: f64,
+    /// \[m\].
+    end: f64,
+    /// Number of its region of the background.
+    region: usize,
+}
+
 /// Regions of the background, joined as lines connect them. The outside is the first element and so
 /// represents its set.
 struct Background {
@@ -221,14 +232,14 @@ impl Background {
     }
 
     /// Joins the gaps of two lines that overlap.
-    fn join_lines(&mut self, above: &[(f64, f64, usize)], below: &[(f64, f64, usize)]) {
+    fn join_lines(&mut self, above: &[Gap], below: &[Gap]) {
         let (mut i, mut j) = (0, 0);
         while let (Some(a), Some(b)) = (above.get(i), below.get(j)) {
-            let overlap = a.0.max(b.0) < a.1.min(b.1);
-            if overlap && let Some((kept, gone)) = self.joined.join(a.2, b.2) {
+            let overlap = a.start.max(b.start) < a.end.min(b.end);
+            if overlap && let Some((kept, gone)) = self.joined.join(a.region, b.region) {
                 self.area[kept] += self.area[gone];
             }
-            if a.1 < b.1 { i += 1 } else { j += 1 }
+            if a.end < b.end { i += 1 } else { j += 1 }
         }
     }
 

@@ -171,8 +171,8 @@ fn failed(ends: &[f64]) -> usize {
 
 /// Whether a run at the resolution of the map failed.
 pub fn has_broken(record: &Record) -> Option<bool> {
-    let is_coarse = record.run.settings["rows"].as_u64().is_some_and(|rows| rows < 20);
-    (!is_coarse).then(|| failed(&ends(&[record])) > 0)
+    let ChannelSettings { rows, .. } = record.run.settings_as();
+    (rows >= 20).then(|| failed(&ends(&[record])) > 0)
 }
 
 /// Whether more than half failed; a setting that is refused from every start fails too.

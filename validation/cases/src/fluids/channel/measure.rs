@@ -3,7 +3,7 @@
 use touchstone_base::{
     absent::Absent,
     functions::cos,
-    record::{Profile, Record},
+    record::{self, Profile, Record},
     settings,
 };
 use touchstone_harness::snapshot::{Point, Snapshot};
@@ -58,9 +58,12 @@ pub fn compare(setup: &ChannelSetup, fluid: &[Point], tau: f64, record: &mut Rec
     }
 }
 
+/// Name of the profiles without their times.
+pub const PROFILE: &str = "u";
+
 /// Name of the profile at νt/L² = `tau`.
 pub fn profile_at(tau: f64) -> String {
-    format!("u@{tau}")
+    record::marked(PROFILE, tau)
 }
 
 /// The velocity across a channel at all times of a record; none of a record without channel.

@@ -22,7 +22,7 @@ use touchstone_report::Axis;
 
 use super::{
     ChannelSettings, ChannelTable, Flow, Group, ladder, maps,
-    measure::{ALL, L2, L2_WORST, LINF, SHEAR_LOWER, SHEAR_UPPER, V_RMS, profile_at},
+    measure::{ALL, L2, L2_WORST, LINF, PROFILE, SHEAR_LOWER, SHEAR_UPPER, V_RMS, profile_at},
     plan, stiff, waves,
 };
 
@@ -76,9 +76,9 @@ fn profile() -> SubmittedCurve {
         about: "y is the distance from the lower plate, u the velocity along the plates; a line for each row \
                 of the problem, y ascending",
         least: 0,
-        rows: |settings| settings["rows"].as_u64().unwrap_or_default() as usize,
-        place: |settings, at, starts| {
-            let width = settings["width"].as_f64().unwrap_or(f64::NAN);
+        rows: |run| run.settings_as::<ChannelSettings>().rows,
+        place: |run, at, starts| {
+            let ChannelSettings { width, .. } = run.settings_as();
             let place = |start: &Vector2<f64>| {
                 let row = &at[((start.y / width * at.len() as f64) as usize).min(at.len() - 1)];
                 [Vector2::new(start.x, row[0]), Vector2::new(row[1], 0.0)]
@@ -87,7 +87,7 @@ fn profile() -> SubmittedCurve {
         },
         metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, L2_WORST],
         coarsen: None,
-        shown: ("u@", &["y", "u", "u_exact"]),
+        shown: (PROFILE, &["y", "u", "u_exact"]),
     }
 }
 
@@ -113,10 +113,10 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         title,
         picture,
         metric: L2_WORST.into(),
-        stated: |settings| {
+        stated: |run| {
             let name =
                 "velocity at Re {re}, {rows} rows, largest relative rms from νt/L² = 0.1 to {end}";
-            Stated::new(settings, name, "the exact series")
+            Stated::new(run, name, "the exact series")
         },
         beside: None,
         runs: accuracy.finest(&[flow.case().recommended.variant, "seed"]),
@@ -174,7 +174,7 @@ fn curves(flow: Flow) -> Curves {
         name: format!("νt/L² = {tau}"),
         spec: flow.case().spec(variant, |s| s.rows = 20),
         points: Box::new(move |record: &Record| {
-            let settings: ChannelSettings = record.settings_as();
+            let settings: ChannelSettings = record.run.settings_as();
             let [u, exact, y] =
                 ["u", "u_exact", "y"].map(|name| record.column(&profile_at(tau), name));
             let shown = |k: usize| match is_difference {
@@ -260,7 +260,7 @@ const DISORDER: f64 = 1e-6;
 /// Completed, and neither cross-flow nor error is as large as the flow itself.
 pub fn is_stable(record: &Record) -> bool {
     let is_small = |metric: MetricName| record.value(metric).is_some_and(|value| value < 1.0);
-    let settings: ChannelSettings = record.settings_as();
+    let settings: ChannelSettings = record.run.settings_as();
     let mut compared = settings.compared().into_iter();
     record.status == Status::Completed
         && is_small(V_RMS.into())

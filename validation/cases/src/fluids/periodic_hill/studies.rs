@@ -2,7 +2,7 @@
 //! budget, largest stable time step, errors of constants that gates must detect; and for hills only: whether
 //! the start matters.
 
-use touchstone_base::{mutation::Constant, record::Status};
+use touchstone_base::{mutation::Constant, record::Status, spec::RunSpec};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Drawn, Draws, Parameter, Planned, Statement},
@@ -10,8 +10,8 @@ use touchstone_harness::{
     section::Section,
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
-        Curves, CustomStudy, Picture, PicturePanel, Sensitivity, Spacing, Stated, StepLimit,
-        StepLimits, Study, Watched,
+        Curves, CustomStudy, Heading, Picture, PicturePanel, Sensitivity, Spacing, Stated,
+        StepLimit, StepLimits, Study, Watched,
         causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
     },
 };
@@ -70,8 +70,8 @@ pub fn facts() -> Facts {
 }
 
 /// Drive of the flow: the requested flux.
-fn drive(settings: &serde_json::Value) -> Vec<Parameter> {
-    let setting = |name: &str| settings[name].as_f64().unwrap_or(f64::NAN);
+fn drive(run: &RunSpec) -> Vec<Parameter> {
+    let settings: HillSettings = run.settings_as();
     let flux = "the flux of volume through every section, the integral of u over y from the hill to the \
                 lid, that the force keeps: 2.035 U_b H times the setting `flux`, U_b = 1 m/s the mean \
                 velocity over the crest and H = 1 m the height of the hill";
@@ -81,9 +81,9 @@ fn drive(settings: &serde_json::Value) -> Vec<Parameter> {
     let response = "T of our controller: f' = ((u* - u)/T - u')/(T/4), u the mean of the velocity along x \
                     over the fluid, u* that of the flux, looked at every ten steps; 0 keeps the force";
     vec![
-        Parameter { name: "flux", value: setting("flux") * FLUX, unit: "m^2/s", about: flux },
-        Parameter { name: "force", value: setting("force"), unit: "m/s^2", about: force },
-        Parameter { name: "response", value: setting("response"), unit: "s", about: response },
+        Parameter { name: "flux", value: settings.flux * FLUX, unit: "m^2/s", about: flux },
+        Parameter { name: "force", value: settings.force, unit: "m/s^2", about: force },
+        Parameter { name: "response", value: settings.response, unit: "s", about: response },
     ]
 }
 
@@ -124,13 +124,14 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         title: "Periodic hill",
         picture: "periodic-hill-pictures",
         metric: L2_U.into(),
-        stated: |settings| {
+        stated: |run| {
+            let settings: HillSettings = run.settings_as();
             let name =
                 "velocity at ten stations at Re {re} and t = {end} H/U_b{left}, {n} spacings a \
                         hill, rms in U_b"
-                    .replace("{left}", &left_of_start(settings));
-            let uncertainty = settings["re"].as_f64().and_then(reference).map(|of| of.uncertainty);
-            Stated { uncertainty, ..Stated::new(settings, &name, "finite elements") }
+                    .replace("{left}", &left_of_start(&settings));
+            let uncertainty = reference(settings.re).map(|of| of.uncertainty);
+            Stated { uncertainty, ..Stated::new(run, &name, "finite elements") }
         },
         beside: None,
         runs,
@@ -145,11 +146,10 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
 
 /// How far a run from rest is from the steady flow that it is compared with, if that is more than a twentieth
 /// of the flow: transients decay by 0.11 U_b/H at Re 50, and five times as fast at Re 10.
-fn left_of_start(settings: &serde_json::Value) -> String {
-    let [re, end] = ["re", "end"].map(|name| settings[name].as_f64().unwrap_or(f64::NAN));
-    let left = touchstone_base::functions::exp(-5.5 * end / re);
-    match settings["from_reference"].as_bool() {
-        Some(false) if left > 0.05 => {
+fn left_of_start(s: &HillSettings) -> String {
+    let left = touchstone_base::functions::exp(-5.5 * s.end / s.re);
+    match s.from_reference {
+        false if left > 0.05 => {
             format!(" (not steady: about {} of the start from rest is left)", percent(left, 1))
         }
         _ => String::new(),
@@ -161,10 +161,8 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     let spacing = Spacing::count(|s: &mut HillSettings| &mut s.n, "H/dx = {}");
     let variants = ["interface-wall", RECOMMENDED, "modern", "consistent"];
     let mut ladders = table.ladders(&[Group::Ladder], &variants, spacing);
-    let run = ladders[0].levels.first().map(|level| &level.run.spec.settings);
-    let [re, end] =
-        ["re", "end"].map(|name| run.map_or("?".into(), |of| Stated::setting(of, name)));
-    let rest = if re == "10" { ", when 0.3 % of U_b is left of the start" } else { "" };
+    let HillSettings { re, end, .. } = ladders[0].levels[0].run.spec.settings_as();
+    let rest = if re == 10.0 { ", when 0.3 % of U_b is left of the start" } else { "" };
     let about = format!(
         "Flow over periodic hills at Re {re} after {end} H/U_b{rest}, against finite elements at ten \
          stations."
@@ -373,12 +371,13 @@ fn picture(table: &Table) -> Picture {
     let caption = "Where does the flow separate? Particles of the finest run of `carried`, coloured by their \
                    velocity u along the channel. Black lines are the floor and the border of the fluid that \
                    circulates in finite elements.";
-    let texts = ["periodic-hill-pictures", "Where the flow separates", caption];
+    let heading =
+        Heading { id: "periodic-hill-pictures", title: "Where the flow separates", caption };
     let panel = |row: &Row| {
         let HillSettings { re, n, .. } = row.settings;
         let panel = row.panel(format!("Re {re}, {}", name(row)), 1.0 / n as f64);
         vec![PicturePanel { lines: vec![floor(), bubble(re)], ..panel }]
     };
-    let picture = table.picture(texts, ("u [U_b]", ColourMap::Diverging), [640.0, 230.0], panel);
+    let picture = table.picture(heading, ("u [U_b]", ColourMap::Diverging), [640.0, 230.0], panel);
     Picture { range: Some([-1.5, 1.5]), ..picture }
 }

@@ -2,7 +2,7 @@
 
 use Group::{First, Light, Paper, Whole};
 use nalgebra::Vector2;
-use touchstone_base::mutation::Constant;
+use touchstone_base::{mutation::Constant, settings, spec::RunSpec};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Draws, Statement, SubmittedCurve},
@@ -148,13 +148,16 @@ fn path_of_end() -> SubmittedCurve {
         about: "x and y are the displacement of the middle of the free end since the start",
         least: end::LEAST_POINTS,
         rows: |_| 1,
-        place: |settings, at, starts| {
-            let length = settings["length"].as_f64().unwrap_or(f64::NAN);
+        place: |run, at, starts| {
+            let CantileverSettings { length, .. } = run.settings_as();
             let end = Vector2::new(at[0][0], at[0][1]);
             starts.iter().map(|from| [from + end * (from.x / length), Vector2::zeros()]).collect()
         },
         metrics: compared.chain([PATH_RMS]).collect(),
-        coarsen: Some(|settings| settings["n"] = 2.into()),
+        coarsen: Some(|run| {
+            let coarse = CantileverSettings { n: 2, ..run.settings_as() };
+            RunSpec { settings: settings::to_json(&coarse), ..run.clone() }
+        }),
         shown: ("end", &["t", "x", "y"]),
     }
 }

@@ -6,7 +6,7 @@ use touchstone_base::{mutation::Constant, record::Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     case::{Drawn, Draws, Statement, SubmittedCurve},
-    pictures::{self, Film},
+    pictures::{self, Film, Heading},
     studies::{
         Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, CurveOf, CurvePanel, Curves,
         Ladder, Map, MapPanel, Picture, PicturePanel, Sensitivity, Spacing, Stated, StepLimit,
@@ -39,10 +39,8 @@ fn path_and_extents() -> SubmittedCurve {
                 and its extents along that line and across it, from surface to surface",
         least: 0,
         rows: |_| 1,
-        place: |settings, at, starts| {
-            let Ok(settings) = touchstone_base::settings::of_json::<RingSettings>(settings) else {
-                return Vec::new();
-            };
+        place: |run, at, starts| {
+            let settings: RingSettings = run.settings_as();
             let (to, dx) = (settings.to_flight(), settings.dx());
             let (centre, speed) = (Vector2::new(at[0][0], 0.0), Vector2::new(at[0][1], 0.0));
             let extent = Vector2::new(at[0][2], at[0][3]).add_scalar(-dx);
@@ -116,7 +114,7 @@ fn pictures(table: &Table) -> Vec<Picture> {
     let torn = "What does a numerical fracture look like? The right ring after a collision at 0.12 c0 each, \
                 `seed` without artificial stress, spacing 0.2 L. Rubber of this law does not break; the \
                 method does.";
-    let picture = |(group, variant), texts, shares: &[f64], most: f64| {
+    let picture = |(group, variant), heading, shares: &[f64], most: f64| {
         let panel = |row: &Row, share: f64| {
             let RingSettings { spacing, speed, end, .. } = row.settings;
             let panel = row.panel(format!("t = {} L/c0", share * end), spacing);
@@ -128,20 +126,19 @@ fn pictures(table: &Table) -> Vec<Picture> {
             shares.iter().filter(|_| is_shown).map(|share| panel(row, *share)).collect()
         };
         let colours = ("σ₁ [K]", ColourMap::Diverging);
-        let picture = table.picture(texts, colours, [185.0, 170.0], panels);
+        let picture = table.picture(heading, colours, [185.0, 170.0], panels);
         Picture { columns: shares.len(), range: Some([-most, most]), ..picture }
     };
-    let texts = [
-        ["rubber-rings-pictures", "Shape of a ring", whole],
-        ["rubber-rings-pictures-seed", "Shape of a ring, paper's variant", papers],
-        ["rubber-rings-fracture", "Torn rings", torn],
-    ];
+    let heading = |id, title, caption| Heading { id, title, caption };
+    let whole = heading("rubber-rings-pictures", "Shape of a ring", whole);
+    let papers = heading("rubber-rings-pictures-seed", "Shape of a ring, paper's variant", papers);
+    let torn = heading("rubber-rings-fracture", "Torn rings", torn);
     let film = Film {
         caption: "How do rubber rings collide? At 0.059 c0 each, `lagrangian`, spacing 0.1 L, coloured by \
                   the largest principal stress. Black lines in five frames are the faces of the right ring \
                   in finite elements.",
         time: |record, share| {
-            let end = record.run.settings["end"].as_f64().unwrap_or(f64::NAN);
+            let RingSettings { end, .. } = record.run.settings_as();
             format!("t = {:.0} L/c0", share * end)
         },
         view: [[-9.0, 9.0], [-5.0, 5.0]],
@@ -149,11 +146,11 @@ fn pictures(table: &Table) -> Vec<Picture> {
         is_mirrored: true,
         still: 0.3,
     };
-    let recommended = picture((Group::Paper, LAGRANGIAN), texts[0], &PICTURES, 0.09);
+    let recommended = picture((Group::Paper, LAGRANGIAN), whole, &PICTURES, 0.09);
     vec![
         Picture { film: Some(film), ..recommended },
-        picture((Group::Paper, "seed"), texts[1], &PICTURES, 0.09),
-        picture((Group::Unstressed, "seed"), texts[2], &[1.0], 0.07),
+        picture((Group::Paper, "seed"), papers, &PICTURES, 0.09),
+        picture((Group::Unstressed, "seed"), torn, &[1.0], 0.07),
     ]
 }
 
@@ -184,12 +181,12 @@ fn card(accuracy: &Accuracy) -> Card {
         title: "Colliding rubber rings",
         picture: "rubber-rings-pictures",
         metric: HISTORIES.into(),
-        stated: |settings| {
+        stated: |run| {
             let name = "centre, width and height over time at {speed} c0 each, spacing {spacing} L, in \
                         outer diameters";
-            let of: Option<RingSettings> = touchstone_base::settings::of_json(settings).ok();
-            let uncertainty = of.and_then(|of| Some(RingReference::of("seed", &of)?.uncertainty));
-            Stated { uncertainty, ..Stated::new(settings, name, "finite elements") }
+            let uncertainty =
+                RingReference::of("seed", &run.settings_as()).map(|of| of.uncertainty);
+            Stated { uncertainty, ..Stated::new(run, name, "finite elements") }
         },
         beside: None,
         // Both variants with five layers: their ladders end at different spacings.
@@ -379,8 +376,8 @@ fn fate(record: &Record) -> Fate {
 
 /// Whether rings that should be whole are not. Without artificial stress a run of `seed` is a control.
 fn has_broken(record: &Record) -> Option<bool> {
-    let is_control =
-        record.run.settings["xi"].as_f64() == Some(0.0) && record.run.variant == "seed";
+    let settings: RingSettings = record.run.settings_as();
+    let is_control = settings.stabilisation.xi == 0.0 && record.run.variant == "seed";
     // A run that measures the headline alone does not count pieces.
     let is_counted = record.value(PIECES_MOST).is_some() || record.status != Status::Completed;
     (is_counted && !is_control).then(|| fate(record) > Fate::Flat)

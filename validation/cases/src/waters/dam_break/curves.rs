@@ -60,7 +60,7 @@ fn column(tier: Tier) -> Curves {
     let axes = (["time T = t √(2g/a) [-]", "front Z [a]"], 3.6);
     let fronts = panel(of, "front", axes, front, [measured_front, model_front]);
     let fallen = |record: &Record| {
-        let DamSettings { width: a, gravity: g, .. } = record.settings_as();
+        let DamSettings { width: a, gravity: g, .. } = record.run.settings_as();
         height(record, (a / g).sqrt())
     };
     // Its clock is in √(H/g), and H is 2a.
@@ -78,7 +78,8 @@ fn column(tier: Tier) -> Curves {
 fn tank(tier: Tier) -> Curves {
     let of = (tier, Group::Tank);
     let time = "time [√(H/g)]";
-    let from_gate = |record: &Record| front_from(record, record.settings_as::<DamSettings>().width);
+    let from_gate =
+        |record: &Record| front_from(record, record.run.settings_as::<DamSettings>().width);
     // The column is 2 H long.
     let model = MODEL.front.iter().map(|(t, x)| (*t, x - 2.0)).collect();
     let axes = ([time, "front from the gate [H]"], 2.8);

@@ -115,26 +115,26 @@ fn history(record: &Record, profile: &str, name: &str, units: [f64; 2]) -> Point
 
 /// Z over T of a run of the column of Martin & Moyce.
 pub fn front(record: &Record) -> Points {
-    let DamSettings { width: a, gravity: g, .. } = record.settings_as();
+    let DamSettings { width: a, gravity: g, .. } = record.run.settings_as();
     history(record, "series", "front", [(0.5 * a / g).sqrt(), a])
 }
 
 /// The residual height \[H\] over time in a unit \[s\].
 pub fn height(record: &Record, unit: f64) -> Points {
-    let height = record.settings_as::<DamSettings>().height;
+    let height = record.run.settings_as::<DamSettings>().height;
     history(record, "series", "height", [unit, height])
 }
 
 /// The front in the tank \[H\] over time \[(H/g)^(1/2)\], from a place \[m\].
 pub fn front_from(record: &Record, place: f64) -> Points {
-    let s: DamSettings = record.settings_as();
+    let s: DamSettings = record.run.settings_as();
     let front = history(record, "series", "front", [s.unit_time(), 1.0]);
     front.into_iter().map(|(t, x)| (t, (x - place) / s.height)).collect()
 }
 
 /// The level at a probe \[H\] over time \[(H/g)^(1/2)\].
 pub fn depth(record: &Record, probe: usize) -> Points {
-    let s: DamSettings = record.settings_as();
+    let s: DamSettings = record.run.settings_as();
     history(record, "series", &format!("H{}", probe + 1), [s.unit_time(), s.height])
 }
 

@@ -2,7 +2,6 @@
 //! longest stable time steps, and the errors of constants that the gates must detect.
 
 use nalgebra::Vector2;
-use serde_json::Value;
 use touchstone_base::{
     mutation::{Constant, Mutation},
     record::{MetricName, Status},
@@ -14,7 +13,7 @@ use touchstone_harness::{
     composed::SettingChange,
     pictures::Film,
     studies::{
-        Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, Picture, PicturePanel,
+        Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, Heading, Picture, PicturePanel,
         Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
         causes::{NOT_MEASURED, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
     },
@@ -86,10 +85,10 @@ fn card(accuracy: &Accuracy) -> Card {
         title: "Dam break",
         picture: "dam-break-martin-moyce",
         metric: FRONT_AWAY.at(2),
-        stated: |settings| {
+        stated: |run| {
             let front = "front at T = 2 in the tank of Martin & Moyce, a/dx = {n}";
             let in_tank = "front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}";
-            let (name, uncertainty, unit) = match scene(settings) {
+            let (name, uncertainty, unit) = match run.settings_as::<DamSettings>().scene() {
                 Some(Experiment::MartinMoyce) => {
                     (front, 2.0 * vof("martin_moyce", "front_at_1")[1], "a")
                 }
@@ -97,7 +96,7 @@ fn card(accuracy: &Accuracy) -> Card {
                 None => ("front, dx a part of 1/{n} of the column", f64::NAN, "a"),
             };
             let uncertainty = Some(uncertainty).filter(|u| u.is_finite());
-            Stated { uncertainty, unit, ..Stated::new(settings, name, "volume of fluid") }
+            Stated { uncertainty, unit, ..Stated::new(run, name, "volume of fluid") }
         },
         beside: Some(against_the_experiment),
         runs: accuracy.finest(&[DAM_BREAK.recommended.variant, "seed"]),
@@ -110,14 +109,9 @@ fn card(accuracy: &Accuracy) -> Card {
     }
 }
 
-/// The experiment whose scene the settings of a record are.
-fn scene(settings: &Value) -> Option<Experiment> {
-    touchstone_base::settings::of_json::<DamSettings>(settings).ok()?.scene()
-}
-
 /// The distance of the front from the experiment with the tank of the settings.
 fn against_the_experiment(record: &Record) -> Option<String> {
-    let (experiment, spread, unit) = match scene(&record.run.settings)? {
+    let (experiment, spread, unit) = match record.run.settings_as::<DamSettings>().scene()? {
         Experiment::MartinMoyce => ("Martin & Moyce", FRONT_SPREAD, "a"),
         Experiment::Lobovsky => ("Lobovsky et al.", TANK_FRONT_SPREAD, "H"),
     };
@@ -138,9 +132,9 @@ fn against_the_experiment(record: &Record) -> Option<String> {
 fn picture(table: &Table) -> Picture {
     let caption = "What does the jet do at the far wall? `modern` in the tank of Lobovsky et al., coloured \
                    by pressure; colours end at 0 and 1 ρ g H.";
-    let texts = ["dam-break-picture", "Picture of the tank", caption];
+    let heading = Heading { id: "dam-break-picture", title: "Picture of the tank", caption };
     let colours = ("p [ρ g H]", ColourMap::Sequential);
-    let picture = table.picture(texts, colours, [560.0, 230.0], |row| {
+    let picture = table.picture(heading, colours, [560.0, 230.0], |row| {
         let DamSettings { n, end, .. } = row.settings;
         let title = format!("time {} √(H/g), H/dx = {n}", sig(run::PICTURE * end, 3));
         let panel = row.panel(title, 1.0 / n as f64);
@@ -151,7 +145,7 @@ fn picture(table: &Table) -> Picture {
         caption: "How does the dam break? Tank of Lobovsky et al., `modern`, coloured by pressure: the water \
                   rises at the far wall, and its jet plunges back.",
         time: |record, share| {
-            let end = record.run.settings["end"].as_f64().unwrap_or(f64::NAN);
+            let DamSettings { end, .. } = record.run.settings_as();
             format!("t = {:.2} √(H/g)", share * end)
         },
         view: [[0.0, 5.37], [0.0, 2.0]],
@@ -170,8 +164,8 @@ fn front() -> SubmittedCurve {
                 the foremost one plus dx/2, its distance from the face of the column at the start",
         least: 0,
         rows: |_| 1,
-        place: |settings, at, starts| {
-            let width = settings["width"].as_f64().unwrap_or(f64::NAN);
+        place: |run, at, starts| {
+            let DamSettings { width, .. } = run.settings_as();
             let moved = Vector2::new(at[0][0] - width, 0.0);
             starts.iter().map(|start| [start + moved, Vector2::zeros()]).collect()
         },
