@@ -459,12 +459,15 @@ pub struct Judged {
 }
 
 impl Judged {
-    /// Judges a number of a study, which has no unit unless the name of its metric ends with one in brackets.
+    /// Judges a number of a study without unit.
     pub fn new(gate: Gate, value: Option<f64>) -> Self {
+        Self::in_unit("-", gate, value)
+    }
+
+    /// Judges a number of a study in this unit.
+    pub fn in_unit(unit: &str, gate: Gate, value: Option<f64>) -> Self {
         let judgement = gate.judge(value);
-        let bracketed = gate.metric.strip_suffix(']').and_then(|name| name.rsplit_once('['));
-        let unit = bracketed.map_or("-", |(_, unit)| unit).to_string();
-        Self { gate, judgement, unit: Some(unit) }
+        Self { gate, judgement, unit: Some(unit.into()) }
     }
 
     /// Judges the record of a run.

@@ -303,15 +303,4 @@ mod tests {
         assert!(runs.record(&spec).is_some(), "the record is there");
         assert!(runs.completed(&spec).is_none(), "its run did not reach its end");
     }
-
-    #[test]
-    fn the_unit_of_a_number_of_a_study_is_that_of_its_name() {
-        for (metric, unit) in [("ratio", "-"), ("period [2L/c0]", "2L/c0"), ("[a] of b", "-")] {
-            assert_eq!(
-                Judged::new(gate(metric), Some(0.5)).unit.as_deref(),
-                Some(unit),
-                "{metric}"
-            );
-        }
-    }
 }

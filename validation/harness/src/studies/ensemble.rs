@@ -167,11 +167,13 @@ fn evaluate(case: &str, ensembles: &Ensembles, runs: &Runs) -> Section {
         .block(distributions(&numbers));
     section.judged.extend(all.iter().map(complete));
     section.judged.extend(followed.iter().filter_map(|(_, followed)| {
-        followed.of.gate.clone().map(|gate| Judged::new(gate, followed.agree()))
+        let gate = followed.of.gate.clone();
+        gate.map(|gate| Judged::in_unit(ensembles.time[1], gate, followed.agree()))
     }));
     section.judged.extend(numbers.iter().filter_map(|(_, number, values)| {
         let median = Quantile::of_sample(values, 0.5).value;
-        number.gate.clone().map(|gate| Judged::new(gate, Some(median).filter(|m| m.is_finite())))
+        let median = Some(median).filter(|median| median.is_finite());
+        number.gate.clone().map(|gate| Judged::in_unit(number.name[1], gate, median))
     }));
     section
 }

@@ -93,7 +93,7 @@ fn late(curve: &Points) -> Option<f64> {
 
 /// The numbers whose distribution is shown, which are judged in `modern`.
 fn numbers(id: &str, variant: &str, n: usize) -> Vec<MemberNumber> {
-    let known = MEDIANS.iter().find(|(of, ..)| variant == "modern" && *of == n);
+    let known = MEDIANS.iter().find(|of| variant == "modern" && of.n == n);
     let judged =
         |name: &str, median: &str, known| judged(format!("{id}.{name}.median"), median, known);
     let [level, impulse] =
@@ -105,29 +105,55 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<MemberNumber> {
             name: [level, "H"],
             value: Box::new(|record| late(&depth(record, 2))),
             measured: LOBOVSKY.levels[2].iter().filter_map(late).collect(),
-            gate: known.map(|(_, level, _)| judged("H3", of_level, *level)),
+            gate: known.map(|of| judged("H3", of_level, of.level)),
         },
         MemberNumber {
             name: [impulse, "-"],
             value: Box::new(|record| record.value(IMPULSE[2].at(WINDOWS[1]))),
             measured: vec![0.0],
-            gate: known.map(|(.., impulse)| judged("P3", of_impulse, *impulse)),
+            gate: known.map(|of| judged("P3", of_impulse, of.impulse)),
         },
     ]
 }
 
-/// Known values of a median of `modern`: of forty other starts, seeds 21 to 60, with their scatter, and of
-/// twenty with 3 % more and less gravity.
-type KnownMedian = [[f64; 2]; 2];
+/// Known values of a median of `modern`.
+#[derive(Clone, Copy)]
+struct KnownMedian {
+    /// Of forty other starts, seeds 21 to 60.
+    median: f64,
+    /// Scatter of these.
+    scatter: f64,
+    /// Of twenty starts with 3 % more gravity.
+    more: f64,
+    /// Of twenty starts with 3 % less gravity.
+    less: f64,
+}
 
-/// H/dx, and the known values of the level at H3 and of the impulse on P3.
-const MEDIANS: [(usize, KnownMedian, KnownMedian); 2] = [
-    (20, [[0.5150, 0.0108], [0.549, 0.476]], [[0.1284, 0.0046], [0.174, 0.099]]),
-    (30, [[0.5629, 0.0100], [0.526, 0.521]], [[0.1218, 0.0039], [0.153, 0.083]]),
+/// The known medians at H/dx.
+struct KnownMedians {
+    n: usize,
+    /// Of the level at H3.
+    level: KnownMedian,
+    /// Of the impulse on P3.
+    impulse: KnownMedian,
+}
+
+const MEDIANS: [KnownMedians; 2] = [
+    KnownMedians {
+        n: 20,
+        level: KnownMedian { median: 0.5150, scatter: 0.0108, more: 0.549, less: 0.476 },
+        impulse: KnownMedian { median: 0.1284, scatter: 0.0046, more: 0.174, less: 0.099 },
+    },
+    KnownMedians {
+        n: 30,
+        level: KnownMedian { median: 0.5629, scatter: 0.0100, more: 0.526, less: 0.521 },
+        impulse: KnownMedian { median: 0.1218, scatter: 0.0039, more: 0.153, less: 0.083 },
+    },
 ];
 
 /// The gate on a median.
-fn judged(id: String, metric: &str, [[median, scatter], [more, less]]: KnownMedian) -> Gate {
+fn judged(id: String, metric: &str, known: KnownMedian) -> Gate {
+    let KnownMedian { median, scatter, more, less } = known;
     // A median of normal numbers scatters by (π/2)^(1/2) = 1.25 of their mean's.
     let bound = 4.0 * 1.25 * scatter * (1.0_f64 / 20.0 + 1.0 / 40.0).sqrt();
     let because = format!(
