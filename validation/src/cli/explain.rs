@@ -23,6 +23,7 @@ use super::{
 /// A gate, its runs, and its last verdict.
 struct ExplainedGate {
     gate: Gate,
+    case: String,
     tiers: Vec<String>,
     on: String,
     last: Option<Judged>,
@@ -33,8 +34,9 @@ struct ExplainedGate {
 
 impl ExplainedGate {
     /// Not judged yet.
-    fn new(gate: Gate, on: String) -> Self {
-        Self { gate, tiers: Vec::new(), on, last: None, status: None, others: Vec::new() }
+    fn new(gate: Gate, case: &str, on: String) -> Self {
+        let (tiers, others) = (Vec::new(), Vec::new());
+        Self { gate, case: case.into(), tiers, on, last: None, status: None, others }
     }
 }
 
@@ -101,7 +103,11 @@ pub fn in_full(JudgedOf { case, of, judged }: &JudgedOf) -> String {
         Of::Section(section) => (of_study(&section.title, case.name()), None),
     };
     let last = Some(Judged::clone(judged));
-    words(&ExplainedGate { last, status, ..ExplainedGate::new(judged.gate.clone(), on) })
+    words(&ExplainedGate {
+        last,
+        status,
+        ..ExplainedGate::new(judged.gate.clone(), case.name(), on)
+    })
 }
 
 fn of_study(title: &str, case: &str) -> String {
@@ -122,7 +128,7 @@ fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<ExplainedGate> {
                             let tiers = vec![tier_name(tier)];
                             gates.push(ExplainedGate {
                                 tiers,
-                                ..ExplainedGate::new(gate, on.clone())
+                                ..ExplainedGate::new(gate, case.name(), on.clone())
                             });
                         }
                     }
@@ -149,7 +155,7 @@ fn all(session: &Session, verdicts: Option<&Verdicts>) -> Vec<ExplainedGate> {
         let on = of_study(&study.title, &study.case);
         gates.extend(study.judged.iter().map(|judged| ExplainedGate {
             last: Some(judged.clone()),
-            ..ExplainedGate::new(judged.gate.clone(), on.clone())
+            ..ExplainedGate::new(judged.gate.clone(), &study.case, on.clone())
         }));
     }
     gates
@@ -204,7 +210,7 @@ fn unknown(asked: &str, gates: &[ExplainedGate]) -> Failure {
 }
 
 fn words(known: &ExplainedGate) -> String {
-    let ExplainedGate { gate, on, last, others, .. } = known;
+    let ExplainedGate { gate, case, on, last, others, .. } = known;
     let judged_as = |judged: &Judged| {
         let words = output::painted(judged.judgement.verdict, &judged.words());
         format!("{}: {words}", judged::value(&judged.judgement))
@@ -212,7 +218,7 @@ fn words(known: &ExplainedGate) -> String {
     let lines = [
         ("checks", format!("metric {}", gate.metric)),
         ("bound", gate.bound.to_string()),
-        ("evidence", evidence(gate)),
+        ("evidence", evidence(gate, case)),
         ("because", gate.because.clone()),
         ("purpose", purpose(gate)),
         ("judged on", on.clone()),
@@ -228,7 +234,7 @@ fn words(known: &ExplainedGate) -> String {
     text
 }
 
-fn evidence(gate: &Gate) -> String {
+fn evidence(gate: &Gate, case: &str) -> String {
     let words = match gate.evidence {
         Evidence::Analytic => "analytic: an exact solution of the equations",
         Evidence::Invariant => "invariant: a law that holds for every solution",
@@ -236,7 +242,6 @@ fn evidence(gate: &Gate) -> String {
         Evidence::Reference => "reference: an experiment or an independent computation",
         Evidence::Regression => "regression: an earlier result of this program",
     };
-    let case = gate.id.split('.').next().unwrap_or_default();
     let grades = if gate.evidence == Evidence::Reference {
         touchstone_cases::graded(case)
     } else {

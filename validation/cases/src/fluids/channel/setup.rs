@@ -116,12 +116,11 @@ impl Flow {
         if self == Flow::Couette { 0.1 } else { 1.0 }
     }
 
-    /// The exact velocity at height y and time t where V, the width and ν are these.
-    pub fn exact(self, y: f64, t: f64, [v, l, nu]: [f64; 3]) -> f64 {
-        let flow = StartUp { v, l, nu };
+    /// The exact velocity at height y and time t.
+    pub fn exact(self, plates: &StartUp, y: f64, t: f64) -> f64 {
         match self {
-            Flow::Couette => flow.couette(y, t),
-            Flow::Poiseuille => flow.poiseuille(y, t),
+            Flow::Couette => plates.couette(y, t),
+            Flow::Poiseuille => plates.poiseuille(y, t),
         }
     }
 }
@@ -246,7 +245,7 @@ impl ChannelSetup {
             Flow::Couette => self.v,
             Flow::Poiseuille => self.force * l * l / (8.0 * nu),
         };
-        self.flow.exact(y, t, [v, l, nu])
+        self.flow.exact(&StartUp { v, l, nu }, y, t)
     }
 
     /// Particles of the section, `count` rows from height `first` \[m\] up, at rest.

@@ -18,6 +18,7 @@ use touchstone_harness::{
         causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
     },
 };
+use touchstone_maths::exact::StartUp;
 use touchstone_report::Axis;
 
 use super::{
@@ -164,9 +165,10 @@ const SHOWN: [f64; 5] = [0.02, 0.05, 0.1, 0.2, 1.0];
 /// u/V across the channel, and how far it is from the series.
 fn curves(flow: Flow) -> Curves {
     let recommended = flow.case().recommended.variant;
+    let plates = StartUp { v: 1.0, l: 1.0, nu: 1.0 };
     let exact = |tau: f64| {
-        let points =
-            (0..=100).map(|k| f64::from(k) / 100.0).map(|y| (flow.exact(y, tau, [1.0; 3]), y));
+        let heights = (0..=100).map(|k| f64::from(k) / 100.0);
+        let points = heights.map(|y| (flow.exact(&plates, y, tau), y));
         ("exact series".to_string(), points.collect())
     };
     // The velocity of each row, or its difference from the series in % of V.
