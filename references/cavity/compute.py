@@ -6,6 +6,7 @@ walls; the velocity of a wall enters by a point beyond it (Thom). Newton's itera
 """
 
 import csv
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -105,6 +106,30 @@ def published():
         return list(csv.DictReader(file))
 
 
+def uniform():
+    """Prints how far the same differences are off at the places of Ghia et al., without refinement at the walls."""
+    global REFINED
+    REFINED = 0.0
+    with (HERE / "lines.csv").open() as file:
+        known = [row for row in csv.DictReader(file) if row["source"] == "ghia" and row["quantity"] in "uv"]
+    for n in (16, 32, 64, 128):
+        psi = np.zeros((n + 1) ** 2)
+        for re in range(100, 1001, 100):
+            if re > 100 and n == 16:
+                continue
+            x, psi = solve(re, n, psi.ravel())
+            inner = [row for row in known if float(row["re"]) == re and 0 < float(row["place"]) < 1]
+            if not inner or re == 400:
+                continue
+            lines, is_u = middle(x, psi), np.array([row["quantity"] == "u" for row in inner])
+            found = np.array([lines[row["quantity"]](float(row["place"])) for row in inner])
+            exact = np.array([float(row["value"]) for row in inner])
+            u, v = (np.sqrt(np.mean((found - exact)[of] ** 2)) for of in (is_u, ~is_u))
+            strength, back = found @ exact / (exact @ exact) - 1, found[is_u].min() / exact[is_u].min() - 1
+            print(f"Re {re}, n {n}: u_rms {u:.4f} v_rms {v:.4f} strength {strength:+.4f} return {back:+.4f}, "
+                  f"times n^2 {u * n * n:.1f} {v * n * n:.1f} {strength * n * n:.1f} {back * n * n:.1f}", flush=True)
+
+
 def main():
     flows = {}
     for n in GRIDS:
@@ -141,4 +166,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    uniform() if sys.argv[1:] == ["uniform"] else main()

@@ -277,7 +277,7 @@ impl<X: Numbers, P: Physics<Extra = X>> Equations<X> for TypedEquations<P> {
     }
 
     fn fill_images(&mut self, neighbours: &Neighbours, first: usize, motion: f64) {
-        neighbours.fill_images(first, P::Walls::SLIPS, motion, &mut self.columns);
+        fill_images::<P, (P::Forces, P::Drift)>(neighbours, first, motion, &mut self.columns);
     }
 
     fn derive_walls(&mut self, of: &ParticleData<X>, walls: &[State<X>]) {
@@ -319,6 +319,12 @@ impl<P: Physics> Engine<P> {
         walls: &P::Walls,
         mut data: Box<ParticleData<P::Extra>>,
     ) -> Self {
+        const {
+            let is_mirror =
+                ExtrapolationOf::<P>::IS_EMPTY && <P::Walls as Walls<P::Extra>>::Terms::IS_EMPTY;
+            let slips = P::Forces::SLIPS || P::Drift::SLIPS;
+            assert!(is_mirror || !slips, "fluid slips along mirror particles alone");
+        };
         let mut equations = TypedEquations {
             kernel: Smoothing::new(h),
             terms,
@@ -419,7 +425,7 @@ impl<P: Physics> Engine<P> {
             let derived = derived(terms, role, &common, &extra);
             *column = SweptParticle { position, velocity, common, derived };
         }
-        neighbours.fill_images(0, P::Walls::SLIPS, 1.0, &mut columns);
+        fill_images::<P, T>(neighbours, 0, 1.0, &mut columns);
         if T::NORMALISES {
             normalise::<P, T>(kernel, neighbours, &mut columns, &mut Vec::new());
         }
@@ -519,7 +525,7 @@ fn normalise<P: Physics, T: Term<P::Extra>>(
     for lists in [lists, wall_lists] {
         sweep::fill(&sweep, lists, &mut inverses[lists.of.clone()]);
     }
-    give::<P, _, _>(neighbours, columns, inverses, &|column, inverse| {
+    give::<P, T, _>(neighbours, columns, inverses, &|column, inverse| {
         T::set_inverse(&mut column.derived, *inverse);
     });
 }
@@ -534,20 +540,38 @@ fn diverge<P: Physics, T: Term<P::Extra>>(
     let sweep = Sweep { kernel, columns, sum: Divergence };
     divergences.resize(neighbours.lists.of.end, 0.0);
     sweep::fill(&sweep, &neighbours.lists, divergences);
-    give::<P, _, _>(neighbours, columns, divergences, &|column, divergence| {
+    give::<P, T, _>(neighbours, columns, divergences, &|column, divergence| {
         T::set_divergence(&mut column.derived, &column.common, *divergence);
     });
 }
 
 /// Gives the first columns their sums, and refills all images.
-fn give<P: Physics, D: Numbers, S: Sync>(
+fn give<P: Physics, T: Term<P::Extra>, S: Sync>(
     neighbours: &Neighbours,
-    columns: &mut [SweptParticle<D>],
+    columns: &mut [SweptParticle<T::Derived>],
     sums: &[S],
-    set: &(impl Fn(&mut SweptParticle<D>, &S) + Sync),
+    set: &(impl Fn(&mut SweptParticle<T::Derived>, &S) + Sync),
 ) {
     parallel::for_each_pair(columns, sums, neighbours.parallel, set);
-    neighbours.fill_images(0, P::Walls::SLIPS, 1.0, columns);
+    fill_images::<P, T>(neighbours, 0, 1.0, columns);
+}
+
+/// Writes the columns of the images whose sources are particle `first` or a later one. `motion` is the factor
+/// of the walls' own velocity in images: 1, or 0 for differences of velocities.
+fn fill_images<P: Physics, T: Term<P::Extra>>(
+    neighbours: &Neighbours,
+    first: usize,
+    motion: f64,
+    columns: &mut [SweptParticle<T::Derived>],
+) {
+    neighbours.fill_images(first, columns, &|map, source| {
+        let mut image = map.apply(source, P::Walls::SLIPS, motion);
+        if T::SLIPS && !map.walls().is_empty() {
+            let slipping = map.velocity(source, true, motion);
+            T::set_slip(&mut image.derived, slipping - image.velocity);
+        }
+        image
+    });
 }
 
 /// Derives columns of particles.

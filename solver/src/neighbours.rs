@@ -358,24 +358,22 @@ impl Neighbours {
         self.stages.push(start..self.images.len());
     }
 
-    /// Writes the columns of the images whose sources are particle `first` or a later one. `motion` is the
-    /// factor of the walls' own velocity in images: 1, or 0 for differences of velocities.
+    /// Writes the columns of the images whose sources are particle `first` or a later one: `image` from the
+    /// map and the source.
     pub fn fill_images<D: Numbers>(
         &self,
         first: usize,
-        slips: bool,
-        motion: f64,
         columns: &mut [SweptParticle<D>],
+        image: &(impl Fn(&Map, &SweptParticle<D>) -> SweptParticle<D> + Sync),
     ) {
         let real = columns.len() - 1 - self.images.len();
         for stage in &self.stages {
             let (sources, targets) = columns.split_at_mut(real + stage.start);
             let images = &self.images[stage.clone()];
-            parallel::for_each_pair(targets, images, self.parallel, &|target, image| {
-                let source = image.source as usize;
+            parallel::for_each_pair(targets, images, self.parallel, &|target, of| {
+                let source = of.source as usize;
                 if source >= first {
-                    let map = &self.maps[image.map as usize];
-                    *target = map.apply(&sources[source], slips, motion);
+                    *target = image(&self.maps[of.map as usize], &sources[source]);
                 }
             });
         }

@@ -6,8 +6,8 @@ use touchstone_solver::{
     ConsistentContinuity, ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline,
     DensityDiffusion, Domain, ExtrapolatingWall, Extrapolation, FluidPairs, Hydrostatic,
     Integrator, Leapfrog, Linear, NoSlip, Open, Outcome, Particle, PredictorCorrector, Pressure,
-    Scene, ShiftAdvection, Shifting, Simulation, State, Stepper, Tait, Term, Viscosity, Xsph,
-    particles::SweptParticle, physics::Derived,
+    Scene, ShiftAdvection, Shifting, Simulation, SlipAtWalls, State, Stepper, Tait, Term,
+    Viscosity, Xsph, particles::SweptParticle, physics::Derived,
 };
 use touchstone_tests::{assert_small, difference, patch};
 
@@ -46,6 +46,8 @@ fn terms_take_the_memory_of_what_they_need_and_absent_ones_none() {
     assert_eq!(sizes::<ArtificialViscosity<Tait>>(), [8, 16]);
     assert_eq!(sizes::<ArtificialViscosity<Linear>>(), [0, 16]);
     assert_eq!(sizes::<FluidPairs<ArtificialViscosity<Tait>>>(), [16, 16]);
+    // The velocity of a mirror particle where the fluid slips, minus its velocity where it sticks.
+    assert_eq!(sizes::<SlipAtWalls<ConsistentContinuity>>(), [16, 32 + 24]);
     // The divergence of each neighbour.
     assert_eq!(sizes::<AcousticDamper>(), [8, 16]);
     assert_eq!(sizes::<Xsph>(), [0, 16]);

@@ -14,6 +14,7 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
     type Derived = (T::Derived, f64);
     type Sum = T::Sum;
     const NORMALISES: bool = T::NORMALISES;
+    const SLIPS: bool = T::SLIPS;
 
     fn prepare(&mut self, max_speed: f64) {
         self.0.prepare(max_speed);
@@ -26,6 +27,10 @@ impl<X, T: Term<X>> Term<X> for FluidPairs<T> {
     fn set_on_boundary(derived: &mut Self::Derived) {
         T::set_on_boundary(&mut derived.0);
         derived.1 = 0.0;
+    }
+    #[inline(always)]
+    fn set_slip(derived: &mut Self::Derived, difference: Vector2<f64>) {
+        T::set_slip(&mut derived.0, difference);
     }
     #[inline(always)]
     fn set_inverse(derived: &mut Self::Derived, inverse: Symmetric) {

@@ -19,6 +19,7 @@ pub mod moments;
 mod pressure;
 mod shift_advection;
 mod shifting;
+mod slip_at_walls;
 mod split;
 mod tensile_stress;
 mod viscosity;
@@ -39,6 +40,7 @@ pub use jaumann_rate::JaumannRate;
 pub use pressure::Pressure;
 pub use shift_advection::ShiftAdvection;
 pub use shifting::Shifting;
+pub use slip_at_walls::SlipAtWalls;
 pub use split::Split;
 pub use tensile_stress::{
     Axes, ComponentStress, Componentwise, InTension, Principal, PrincipalStress,
@@ -113,6 +115,8 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Whether [`Term::set_divergence`] is read, for which each sweep of forces needs a sweep of divergences
     /// before.
     const DIVERGES: bool = false;
+    /// Whether [`Term::set_slip`] is read, for which the walls must be mirror particles.
+    const SLIPS: bool = false;
 
     /// Receives the largest speed of the scene \[m/s\], before each step.
     fn prepare(&mut self, _max_speed: f64) {}
@@ -125,6 +129,10 @@ pub trait Term<X>: Clone + Send + Sync + 'static {
     /// Changes the derived data of a boundary particle.
     #[inline(always)]
     fn set_on_boundary(_derived: &mut Self::Derived) {}
+    /// Stores the velocity of a mirror particle of [`crate::SlipGhosts`] minus the velocity of this mirror
+    /// particle \[m/s\].
+    #[inline(always)]
+    fn set_slip(_derived: &mut Self::Derived, _difference: Vector2<f64>) {}
     /// Stores the inverse of the [`moments`] of the particle in its derived data.
     #[inline(always)]
     fn set_inverse(_derived: &mut Self::Derived, _inverse: Symmetric) {}
@@ -209,6 +217,7 @@ macro_rules! tuple_of_terms {
             const IS_EMPTY: bool = true $(&& $member::IS_EMPTY)*;
             const NORMALISES: bool = false $(|| $member::NORMALISES)*;
             const DIVERGES: bool = false $(|| $member::DIVERGES)*;
+            const SLIPS: bool = false $(|| $member::SLIPS)*;
 
             fn prepare(&mut self, max_speed: f64) {
                 $(self.$index.prepare(max_speed);)*
@@ -220,6 +229,10 @@ macro_rules! tuple_of_terms {
             #[inline(always)]
             fn set_on_boundary(derived: &mut Self::Derived) {
                 $($member::set_on_boundary(&mut derived.$index);)*
+            }
+            #[inline(always)]
+            fn set_slip(derived: &mut Self::Derived, difference: Vector2<f64>) {
+                $($member::set_slip(&mut derived.$index, difference);)*
             }
             #[inline(always)]
             fn set_inverse(derived: &mut Self::Derived, inverse: Symmetric) {

@@ -103,8 +103,8 @@ impl<X, const SLIPS: bool> Walls<X> for Mirrors<SLIPS> {
 mod tests {
     use super::*;
     use crate::{
-        Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene, Stepper,
-        Tait, Term, Viscosity, WendlandC2, random::random,
+        Compose, Continuity, Domain, EquationOfState, Leapfrog, Particle, Pressure, Scene,
+        SlipAtWalls, Stepper, Tait, Term, Viscosity, WendlandC2, random::random,
     };
 
     type Method<W> = Compose<WendlandC2, Pressure<Tait>, Continuity, W, Leapfrog>;
@@ -134,11 +134,19 @@ mod tests {
     /// The change of kinetic plus compression energy by pressure and continuity, over the change by each; and
     /// the largest |dρ/dt| of particles beyond the reach of all sides.
     fn work_and_rate<W: Walls<()>>(walls: W, particles: Vec<Particle>) -> [f64; 2] {
+        work_and_rate_by(&Continuity, walls, particles)
+    }
+
+    fn work_and_rate_by<T: Term<()>, W: Walls<()>>(
+        continuity: &T,
+        walls: W,
+        particles: Vec<Particle>,
+    ) -> [f64; 2] {
         let (pressure, domain) = (Pressure::new(EOS), Domain::open());
         let scene = Scene::<Method<W>>::new(0.15, domain, particles, pressure, Continuity, walls);
         let mut simulation = scene.build().expect("a scene");
         simulation.advance(0.0, 1.0, &mut ());
-        let [pushed, squeezed] = [simulation.rates(&pressure), simulation.rates(&Continuity)];
+        let [pushed, squeezed] = [simulation.rates(&pressure), simulation.rates(continuity)];
         let (mut sum, mut all, mut fastest) = (0.0f64, 0.0f64, 0.0f64);
         for (k, (mass, p)) in simulation.data().fluid().enumerate() {
             let kinetic = mass * p.velocity.dot(&pushed[k].velocity);
@@ -159,6 +167,9 @@ mod tests {
         assert!(work.abs() < 1e-14, "work of the walls over all work: expected none, not {work:e}");
         let [work, _] = work_and_rate(Ghosts { walls: tank() }, water(None));
         assert!(work.abs() > 1e-3, "images with the opposite velocity do: {work:e}");
+        let (slips, walls) = (SlipAtWalls(Continuity), Ghosts { walls: tank() });
+        let [work, _] = work_and_rate_by(&slips, walls, water(None));
+        assert!(work.abs() < 1e-14, "unless continuity does not see them: {work:e}");
     }
 
     #[test]

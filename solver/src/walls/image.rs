@@ -56,8 +56,25 @@ impl Map {
         slip: bool,
         motion: f64,
     ) -> SweptParticle<S> {
+        let velocity = self.velocity(source, slip, motion);
+        let mut image =
+            SweptParticle { position: self.place(source.position), velocity, ..*source };
+        if self.walls().iter().any(|wall| wall.depth(source.position) < 0.0) {
+            (image.common.mass, image.common.volume) = (0.0, 0.0);
+        }
+        image
+    }
+
+    /// The velocity of the image of a column \[m/s\], see [`Map::apply`].
+    #[inline(always)]
+    pub(crate) fn velocity<S>(
+        &self,
+        source: &SweptParticle<S>,
+        slip: bool,
+        motion: f64,
+    ) -> Vector2<f64> {
         let v = source.velocity;
-        let velocity = match self {
+        match self {
             Self::Mirror(wall) if slip => v - wall.normal * v.dot(&wall.normal) * 2.0,
             Self::Mirror(wall) => {
                 let depth = wall.depth(source.position);
@@ -65,13 +82,7 @@ impl Map {
             }
             Self::Corner(..) if slip => -v,
             Self::Corner(..) | Self::Shift(_) => v,
-        };
-        let mut image =
-            SweptParticle { position: self.place(source.position), velocity, ..*source };
-        if self.walls().iter().any(|wall| wall.depth(source.position) < 0.0) {
-            (image.common.mass, image.common.volume) = (0.0, 0.0);
         }
-        image
     }
 }
 

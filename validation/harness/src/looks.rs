@@ -9,11 +9,12 @@ use Dash::{Dashed, Dotted, Solid};
 
 /// Names with their looks. Variants that are drawn together differ in colour, or, if one is the other with
 /// other walls, in the line.
-const KNOWN: [(&str, Colour, Dash, Shape); 30] = [
+const KNOWN: [(&str, Colour, Dash, Shape); 31] = [
     ("recommended", Colour::BLUE, Solid, Circle),
     ("the paper's", Colour::VERMILLION, Dashed, Square),
     ("modern", Colour::BLUE, Solid, Circle),
     ("curved", Colour::BLUE, Solid, Circle),
+    ("mirrored", Colour::BLUE, Solid, Circle),
     ("lagrangian", Colour::BLUE, Solid, Circle),
     ("seed", Colour::VERMILLION, Dashed, Square),
     ("carried", Colour::GREEN, Solid, Triangle),

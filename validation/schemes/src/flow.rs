@@ -8,8 +8,8 @@ use touchstone_solver::{
     ConsistentPressure, ConsistentViscosity, Continuity, CubicSpline, DensityDiffusion,
     ExtrapolatingWall, FluidPairs, Ghosts, InterfaceWall, Kernel, Leapfrog, NoSlip, Open,
     PredictorCorrector, Pressure, QuinticSpline, Rate, ShiftAdvection, Shifting, SingleSweep,
-    SlipGhosts, Split, SuperSteps, Tait, Term, Viscosity, WendlandC2, Xsph, lane::Lane,
-    particles::Common, terms::Pair,
+    SlipAtWalls, SlipGhosts, Split, SuperSteps, Tait, Term, Viscosity, WendlandC2, Xsph,
+    lane::Lane, particles::Common, terms::Pair,
 };
 
 use crate::{Method, methods, stepped};
@@ -22,6 +22,8 @@ pub type Pairs = (Pressure<Tait>, Viscosity);
 pub type Stabilised = (Continuity, DensityDiffusion, Shifting);
 /// [`Stabilised`] with a continuity that is exact for linear fields.
 pub type ConsistentDrift = (ConsistentContinuity, DensityDiffusion, Shifting);
+/// [`ConsistentDrift`] with fluid that slips along walls of mirror particles.
+type SlippingDrift = (SlipAtWalls<ConsistentContinuity>, DensityDiffusion, Shifting);
 /// The paper's: cubic spline and predictor-corrector.
 pub type Seed<F, D, W = Ghosts> = Compose<CubicSpline, F, D, W, PredictorCorrector>;
 /// Quintic spline and, as a rule, leapfrog.
@@ -117,6 +119,10 @@ methods! { stepped => Method:
     cavity_carried: Modern<Carried, Stabilised, Mean>;
     /// `cavity_carried` with sums that are exact for linear fields.
     cavity_consistent: Modern<Consistent, ConsistentDrift, Mean>;
+
+    /// `cavity_consistent` with mirror particles, along which the fluid slips for the continuity equation
+    /// alone.
+    cavity_mirrored: Modern<Consistent, SlippingDrift>;
 
     /// Vortices without a stabiliser.
     vortices_plain: Modern<Pairs, Continuity, Open>;

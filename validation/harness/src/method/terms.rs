@@ -5,7 +5,7 @@ use touchstone_solver::{
     ConjugateStress, ConsistentContinuity, ConsistentJaumannRate, ConsistentPressure,
     ConsistentViscosity, Continuity, CurvedNoSlip, DensityDiffusion, ExtrapolatingWall, FluidPairs,
     Ghosts, InterfaceWall, JaumannRate, Linear, NoSlip, Open, PlaneWall, Pressure, ShiftAdvection,
-    Shifting, SlipGhosts, Split, Tait, Viscosity, Xsph,
+    Shifting, SlipAtWalls, SlipGhosts, Split, Tait, Viscosity, Xsph,
     terms::{Axes, Hydrostatic, InTension},
 };
 
@@ -108,6 +108,8 @@ from_medium! {
         |m| Self(E::new(m), T::new(m), m.explicit_limit()), "";
     FluidPairs<T> [T: FromMedium] (; T) = |m| Self(T::new(m)),
         "the next term without pairs of a moving particle and a particle of a wall";
+    SlipAtWalls<T> [T: FromMedium] (; T) = |m| Self(T::new(m)),
+        "the next term with the velocity v - 2 (v·n) n of mirror particles in place of their own";
     (A, B) [A: FromMedium, B: FromMedium] (; A, B) = |m| (A::new(m), B::new(m)), "";
     (A, B, C) [A: FromMedium, B: FromMedium, C: FromMedium] (; A, B, C) =
         |m| (A::new(m), B::new(m), C::new(m)), "";
