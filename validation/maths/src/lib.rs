@@ -1,6 +1,7 @@
 //! Exact solutions of the equations, theory of the *discretised* equations, norms between them and a
-//! run, and where particles of walls stand.
+//! run, where particles of walls stand, and a controller.
 
+pub mod control;
 pub mod exact;
 pub mod geometry;
 pub mod metrics;

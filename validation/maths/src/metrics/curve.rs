@@ -1,5 +1,7 @@
 //! Curves of points (t, y), such as the histories of an experiment: values, distances, integrals.
 
+use std::ops::Range;
+
 /// A curve: points in ascending order of the first number.
 pub type Points = Vec<(f64, f64)>;
 
@@ -53,6 +55,49 @@ fn trapezoid(pair: &[(f64, f64)]) -> f64 {
     0.5 * (pair[1].0 - pair[0].0) * (pair[0].1 + pair[1].1)
 }
 
+/// The slope at 0 of the parabola a d + b d² that is fitted to points (d, u).
+pub fn slope_at_zero(points: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (mut d2, mut d3, mut d4, mut du, mut d2u) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (d, u) in points {
+        d2 += d * d;
+        d3 += d * d * d;
+        d4 += d * d * d * d;
+        du += d * u;
+        d2u += d * d * u;
+    }
+    (du * d4 - d2u * d3) / (d2 * d4 - d3 * d3)
+}
+
+/// A curve between two times.
+pub fn during(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> Points {
+    curve.iter().filter(|(t, _)| (from..=to).contains(t)).copied().collect()
+}
+
+/// The most by which values are behind the largest before them, until one reaches an end.
+pub fn fallen_back(values: &[f64], start: f64, end: f64) -> f64 {
+    let (mut farthest, mut most) = (start, 0.0_f64);
+    for value in values {
+        most = most.max(farthest - value);
+        farthest = farthest.max(*value);
+        if farthest >= end {
+            break;
+        }
+    }
+    most
+}
+
+/// The longest stretch of negative values, of at least `least` and the first of equal ones, which does not
+/// reach to the last value.
+pub fn longest_negative(values: &[f64], least: usize) -> Option<Range<usize>> {
+    let mut end = 0;
+    let stretches = values.chunk_by(|a, b| (*a < 0.0) == (*b < 0.0)).map(|stretch| {
+        end += stretch.len();
+        end - stretch.len()..end
+    });
+    let negative = stretches.filter(|s| s.end < values.len() && values[s.start] < 0.0);
+    negative.max_by_key(|s| (s.len(), values.len() - s.start)).filter(|s| s.len() >= least)
+}
+
 /// The mean of the points of a curve between two times; NaN if there are none.
 pub fn mean(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> f64 {
     let inside = curve.iter().filter(|(t, _)| (from..=to).contains(t));
@@ -102,5 +147,28 @@ mod tests {
         assert!(integrals(&ramp).iter().all(|(t, sum)| (sum - 0.5 * t * t).abs() < 1e-9));
         assert!((mean(&ramp, [2.0, 3.0]) - 2.5).abs() < 1e-9 && end_of(&ramp) == 10.0);
         assert_eq!(end_of(&until(&ramp, 2.005)), 2.0);
+    }
+
+    #[test]
+    fn a_parabola_through_0_has_its_slope_there() {
+        let points = (1..9).map(|k| 0.1 * f64::from(k)).map(|d| (d, 3.0 * d - 5.0 * d * d));
+        assert!((slope_at_zero(points) - 3.0).abs() < 1e-11);
+    }
+
+    /// After 1, 4, 3, 6, 2: 4 behind 6, until 6 is the end: 1 behind 4.
+    #[test]
+    fn a_front_falls_back_behind_where_it_has_been() {
+        assert_eq!(fallen_back(&[1.0, 4.0, 3.0, 6.0, 2.0], 0.0, 9.0), 4.0);
+        assert_eq!(fallen_back(&[1.0, 4.0, 3.0, 6.0, 2.0], 0.0, 6.0), 1.0);
+        assert_eq!(fallen_back(&[1.0, 4.0], 1.5, 9.0), 0.5);
+    }
+
+    #[test]
+    fn the_longest_negative_stretch_does_not_reach_the_end() {
+        let values = [-1.0, -1.0, 2.0, -1.0, -3.0, -1.0, 0.0, -1.0, -1.0, -1.0, 4.0, -1.0, -1.0];
+        assert_eq!(longest_negative(&values, 3), Some(3..6));
+        assert_eq!(longest_negative(&values, 4), None);
+        assert_eq!(longest_negative(&values[..9], 3), Some(3..6));
+        assert_eq!(longest_negative(&values[..5], 2), Some(0..2));
     }
 }

@@ -7,7 +7,10 @@ use touchstone_base::{
     settings,
 };
 use touchstone_harness::snapshot::{Point, Snapshot};
-use touchstone_maths::metrics::norms::{l2, linf};
+use touchstone_maths::metrics::{
+    curve::slope_at_zero,
+    norms::{l2, linf},
+};
 use touchstone_solver::EquationOfState;
 
 use super::{ChannelSettings, ChannelSetup};
@@ -132,16 +135,7 @@ fn shear_error(setup: &ChannelSetup, fluid: &[Point], wall: usize, t: f64) -> f6
     let depth = |p: &Point| if wall == 1 { s.width - p.position.y } else { p.position.y };
     let near: Vec<&Point> = fluid.iter().filter(|p| depth(p) < 3.0 * setup.medium.dx).collect();
     let slope = |velocity: &dyn Fn(&Point) -> f64| {
-        let (mut d2, mut d3, mut d4, mut du, mut d2u) = (0.0, 0.0, 0.0, 0.0, 0.0);
-        for p in &near {
-            let (d, u) = (depth(p), velocity(p) - speed);
-            d2 += d * d;
-            d3 += d * d * d;
-            d4 += d * d * d * d;
-            du += d * u;
-            d2u += d * d * u;
-        }
-        (du * d4 - d2u * d3) / (d2 * d4 - d3 * d3)
+        slope_at_zero(near.iter().map(|p| (depth(p), velocity(p) - speed)))
     };
     let error = slope(&|p| p.velocity.x) - slope(&|p| setup.exact(p.position.y, t));
     error * s.width / setup.v

@@ -13,6 +13,7 @@ use touchstone_harness::{
     snapshot::{Point, Snapshot},
 };
 use touchstone_maths::metrics::{
+    curve::longest_negative,
     fitted_field::FittedField,
     norms::{largest, rms},
 };
@@ -241,21 +242,14 @@ fn drags(setup: &HillSetup, wall: &[[f64; 3]]) -> [f64; 3] {
 /// Where the longest stretch of backward flow on the hill starts and where it ends, of at least three places.
 /// One that reaches to the last crest does not count, and one that starts at the first has no start.
 fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
-    let mut end = 0;
-    let stretches = wall.chunk_by(|a, b| (a[0] < 0.0) == (b[0] < 0.0)).map(|stretch| {
-        end += stretch.len();
-        end - stretch.len()..end
-    });
-    let backward = stretches.filter(|s| s.end < wall.len() && wall[s.start][0] < 0.0);
-    let longest = backward
-        .max_by_key(|stretch| (stretch.len(), wall.len() - stretch.start))
-        .filter(|stretch| stretch.len() >= 3);
+    let shear: Vec<f64> = wall.iter().map(|[hill, ..]| *hill).collect();
     let zero = |after: usize| {
         let before = after.checked_sub(1)?;
-        let (a, b) = (wall[before][0], wall[after][0]);
+        let (a, b) = (shear[before], shear[after]);
         Some(along(before) + along(1) * a / (a - b))
     };
-    longest.map_or([None; 2], |stretch| [zero(stretch.start), zero(stretch.end)])
+    let backward = longest_negative(&shear, 3);
+    backward.map_or([None; 2], |stretch| [zero(stretch.start), zero(stretch.end)])
 }
 
 /// Distances from the reference.

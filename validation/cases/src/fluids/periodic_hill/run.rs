@@ -2,13 +2,16 @@
 
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
-use touchstone_base::{functions::exp, record::Status};
+use touchstone_base::record::Status;
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
     series::Series,
     snapshot::{Snapshot, kinetic},
 };
-use touchstone_maths::geometry::{Curve, Hill};
+use touchstone_maths::{
+    control::Controller,
+    geometry::{Curve, Hill},
+};
 use touchstone_schemes::hill::{Driving, HillMethod};
 use touchstone_solver::Role;
 
@@ -147,38 +150,6 @@ fn is_last(time: f64, end: f64, length: f64) -> bool {
     (end - time) / length - 1e-9 < 1.0
 }
 
-/// The force that holds the flux: f' = \[(u* − u)/T − u'\]/t, u the mean velocity along x over the fluid, u*
-/// the one wanted.
-///
-/// As u' = f − d with the drag d of the walls, f follows d within t, and u reaches u* within T. In a steady
-/// state f = d for any d.
-///
-/// With t = T/4 both roots are −2/T: the fastest without overshoot.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub struct Controller {
-    /// u* \[m/s\].
-    wanted: f64,
-    /// T \[s\]; 0 keeps the force.
-    response: f64,
-    /// The force now \[m/s²\].
-    force: f64,
-    /// u at the last look \[m/s\].
-    last: f64,
-}
-
-impl Controller {
-    /// Looks at the mean velocity after `dt` \[s\].
-    fn look(&mut self, mean: f64, dt: f64) {
-        if self.response > 0.0 {
-            let settle = 0.25 * self.response;
-            // Exact for a constant right-hand side: never more than the whole way.
-            let share = 1.0 - exp(-dt / settle);
-            self.force += share * ((self.wanted - mean) / self.response - (mean - self.last) / dt);
-        }
-        self.last = mean;
-    }
-}
-
 /// Holds the flux and samples the flow through time.
 #[derive(Serialize, Deserialize)]
 pub struct Monitor {
@@ -264,7 +235,7 @@ impl Problem for HillSetup {
         let known = mean_velocity(start, area);
         let mean = known.clone().unwrap_or_default();
         let wanted = self.flux() * period / area;
-        let controller = Controller { wanted, response: s.response, force: s.force, last: mean };
+        let controller = Controller::new(wanted, s.response, s.force, mean);
         let mut series = Series::default();
         let force = start.simulation().map(|_| s.force);
         let flux = known.map(|mean| mean * area / period);
@@ -326,28 +297,6 @@ mod tests {
                 "{words}"
             );
         }
-    }
-
-    /// A body with a drag that grows with its speed.
-    #[test]
-    fn the_flux_is_met_and_the_force_is_the_drag() {
-        let (mut speed, dt, rate) = (0.0, 0.02, 0.3);
-        let mut controller = Controller { wanted: 0.8, response: 1.0, force: 0.0, last: 0.0 };
-        let mut largest = 0.0_f64;
-        for _ in 0..2000 {
-            speed += dt * (controller.force - rate * speed);
-            controller.look(speed, dt);
-            largest = largest.max(speed);
-        }
-        assert!((speed - 0.8).abs() < 1e-9 && (controller.force - 0.24).abs() < 1e-9);
-        assert!(largest < 0.82, "{largest}");
-    }
-
-    #[test]
-    fn without_response_the_force_stays() {
-        let mut controller = Controller { wanted: 1.0, response: 0.0, force: 0.3, last: 0.0 };
-        controller.look(0.1, 0.1);
-        assert_eq!(controller.force, 0.3);
     }
 
     /// Clocks that were off by a part of a window passed every test.

@@ -10,7 +10,10 @@ use touchstone_harness::{
     series::Series,
     snapshot::{Point, Snapshot},
 };
-use touchstone_maths::metrics::gauge::{self, Spot, Weight, depth, probe};
+use touchstone_maths::metrics::{
+    curve::fallen_back,
+    gauge::{self, Spot, Weight, depth, probe},
+};
 use touchstone_solver::EquationOfState;
 
 use super::{Dam, metrics};
@@ -183,17 +186,8 @@ impl Samples {
     /// The most by which the front is behind where it has been, until it is two spacings from the far wall,
     /// from which water comes back \[m\].
     fn fallen_back(&self, dam: &Dam) -> f64 {
-        let Dam { settings, tank, medium, .. } = dam;
-        let wall = tank.width() - 2.0 * medium.dx;
-        let (mut farthest, mut most) = (settings.width, 0.0_f64);
-        for front in self.rows.column(1).unwrap_or_default() {
-            most = most.max(farthest - front);
-            farthest = farthest.max(*front);
-            if farthest >= wall {
-                break;
-            }
-        }
-        most
+        let fronts = self.rows.column(1).unwrap_or_default();
+        fallen_back(fronts, dam.settings.width, dam.tank.width() - 2.0 * dam.medium.dx)
     }
 
     /// Metrics that need no reference, and the series.

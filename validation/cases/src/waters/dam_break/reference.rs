@@ -9,7 +9,7 @@ use touchstone_base::{
 };
 use touchstone_harness::snapshot::Snapshot;
 use touchstone_maths::metrics::curve::{
-    Points, best_shift, distance, end_of, integral, mean, squares, until, value,
+    Points, best_shift, distance, during, end_of, integral, mean, squares, until, value,
 };
 
 use super::{
@@ -317,11 +317,6 @@ fn pressures_of_lobovsky(record: &mut Record) {
     }
     let peak = pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
     record.put_or(PEAK, ours.is_finite().then_some(peak), DRY);
-}
-
-/// A curve between two times.
-fn during(curve: &[(f64, f64)], [from, to]: [f64; 2]) -> Points {
-    curve.iter().filter(|(t, _)| (from..=to).contains(t)).copied().collect()
 }
 
 /// rms of a pressure about its mean over [`SMOOTH`], for the times [`RINGS`].
