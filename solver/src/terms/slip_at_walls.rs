@@ -64,8 +64,9 @@ impl<X, T: Term<X>> Term<X> for SlipAtWalls<T> {
 mod tests {
     use super::*;
     use crate::{
-        Compose, ConsistentContinuity, Continuity, Domain, Ghosts, Leapfrog, Open, Particle,
-        PlaneWall, Pressure, QuinticSpline, Scene, Stepper, Tait, random::random, walls::Walls,
+        Compose, ConsistentContinuity, Continuity, DensityDiffusion, Domain, Ghosts, Leapfrog,
+        Open, Particle, PlaneWall, Pressure, QuinticSpline, Scene, Stepper, Tait, random::random,
+        walls::Walls,
     };
 
     const DX: f64 = 0.1;
@@ -152,6 +153,24 @@ mod tests {
             let sticks = largest(rates(&ConsistentContinuity, at_rest(), corner()));
             assert!(sticks > 1.0, "the corner leaks: {sticks}");
         }
+    }
+
+    /// Steps of a scene in which the term is one of several.
+    #[test]
+    fn steps_beside_sliding_walls_keep_the_density_of_fluid_at_rest() {
+        fn change<D: Term<()>>(continuity: D) -> f64 {
+            type Drift<D> = (D, DensityDiffusion);
+            type Method<D> = Compose<QuinticSpline, Pressure<Tait>, Drift<D>, Ghosts, Leapfrog>;
+            let (pressure, fluid) =
+                (Pressure::new(Tait::new(1.0, 10.0)), fluid(0.0, |_| Vector2::zeros()));
+            let (drift, domain) = ((continuity, DensityDiffusion::new(0.1)), Domain::open());
+            let scene = Scene::<Method<D>>::new(DX, domain, fluid, pressure, drift, corner());
+            let mut simulation = scene.build().expect("a scene");
+            simulation.advance(0.01, 0.002, &mut ());
+            largest(simulation.particles().iter().map(|p| p.density - 1.0).collect())
+        }
+        assert_eq!(change(SlipAtWalls(Continuity)), 0.0);
+        assert!(change(Continuity) > 1e-3);
     }
 
     /// Flows without divergence and without a velocity through the walls.
