@@ -47,7 +47,7 @@ pub fn assemble(suite: &Suite, made: &str) -> Page {
             ],
         });
     }
-    let mut sections: Vec<Section> = suite.cases.iter().map(case_section).collect();
+    let mut sections: Vec<Section> = suite.cases.iter().map(|of| case_section(suite, of)).collect();
     sections.extend([probes::section(), reading(suite)]);
     let steps = Section::new("steps", "Time steps and run time");
     sections.push(steps.child(stiffness::section(suite)).child(time::section(suite)));
@@ -328,7 +328,7 @@ fn judged_on(row: &GateRow) -> String {
     }
 }
 
-fn case_section(results: &CaseResults) -> Section {
+fn case_section(suite: &Suite, results: &CaseResults) -> Section {
     let case = results.case;
     let section =
         Section::new(case.name(), title(results)).counts(results.counts()).prose(case.about());
@@ -340,17 +340,29 @@ fn case_section(results: &CaseResults) -> Section {
         grades.map(|(name, grade)| format!("Reference `{name}`: {grade}.")).collect();
     let section = if grades.is_empty() { section } else { section.prose(grades.join(" ")) };
     let section = results.sections.iter().map(study_section).fold(section, Section::child);
-    let variants = case.variants();
-    let is_first = |k: &usize| variants[..*k].iter().all(|of| of.about != variants[*k].about);
-    let alike = |k: usize| {
-        let about = variants[k].about;
-        let names = variants.iter().filter(|of| of.about == about).map(|of| code(of.name));
-        format!("{}: {about}", names.collect::<Vec<_>>().join(", "))
-    };
-    let variants = (0..variants.len()).filter(is_first).map(alike).collect();
+    let variants = variants(suite, case);
     let runs = Section::new(format!("runs-{}", case.name()), "All runs");
     let file = run_file(case, &results.runs.all);
     section.child(runs.block(Block::List(variants)).block(Block::File(file)))
+}
+
+/// The variants of a case with their descriptions: a description that several have is stated once, and of
+/// one that an earlier case on the page states, its place.
+fn variants(suite: &Suite, case: &dyn Case) -> Vec<String> {
+    let earlier = || suite.cases.iter().map(|of| of.case).take_while(|of| of.name() != case.name());
+    let stated = |about: &str| {
+        let case = earlier().find(|of| of.variants().iter().any(|of| of.about == about))?;
+        Some(format!("as in [{0}](#runs-{0})", case.name()))
+    };
+    let mut lines: Vec<(String, Vec<String>)> = Vec::new();
+    for variant in case.variants() {
+        let words = stated(variant.about).unwrap_or_else(|| variant.about.into());
+        match lines.iter_mut().find(|line| line.0 == words) {
+            Some(line) => line.1.push(code(variant.name)),
+            None => lines.push((words, vec![code(variant.name)])),
+        }
+    }
+    lines.into_iter().map(|(words, names)| format!("{}: {words}", names.join(", "))).collect()
 }
 
 /// Sections and figures share a name space; figures are named by their study.

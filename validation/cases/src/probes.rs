@@ -1,9 +1,11 @@
 //! Answers of codes to the questions of `touchstone probe`, as `probe --json` printed them: the documents of
 //! `references/peers/probes`, which the program contains. The name of a document is the code.
 
+use std::cmp::Ordering;
+
 use serde::Deserialize;
 use touchstone_base::{gate::Verdict, pack};
-use touchstone_report::{Cell, Section, Table, TableColumn, plain};
+use touchstone_report::{Block, Cell, DataFile, Section, Table, TableColumn, plain};
 
 /// Packed by the build script.
 const ANSWERS: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/probes"));
@@ -41,6 +43,7 @@ pub fn section() -> Section {
         )
         .block(verdicts(&all))
         .block(texts(&all))
+        .block(file(&all))
 }
 
 /// A question, and the answer of each code that was asked.
@@ -72,25 +75,106 @@ fn verdicts(all: &[(String, Vec<Answered>)]) -> Table {
     questions(all).map(row).fold(table, Table::row)
 }
 
-/// Each answer once, with the codes that gave it.
+/// Answers that differ in their numbers alone.
+struct Group<'a> {
+    first: &'a Answered,
+    /// Names of the codes.
+    codes: Vec<&'a str>,
+    /// The words of each answer.
+    words: Vec<Vec<&'a str>>,
+}
+
+/// The value of a word that is a number, with or without a punctuation mark behind it.
+fn number(word: &str) -> Option<f64> {
+    word.trim_end_matches([',', ';', ':']).parse().ok()
+}
+
+impl<'a> Group<'a> {
+    fn of(code: &'a str, first: &'a Answered) -> Self {
+        Self { first, codes: vec![code], words: vec![first.answer.split(' ').collect()] }
+    }
+
+    /// Whether the answers have one verdict and the same words but for numbers, which a failure states for
+    /// each code.
+    fn is_like(&self, other: &Self) -> bool {
+        let (own, others) = (&self.words[0], &other.words[0]);
+        let is_failure = self.first.verdict == "fail";
+        let is_like =
+            |(a, b): (&&str, &&str)| a == b || !is_failure && number(a).and(number(b)).is_some();
+        self.first.verdict == other.first.verdict
+            && own.len() == others.len()
+            && own.iter().zip(others).all(is_like)
+    }
+
+    /// The answer, with the least and the largest of numbers that differ; of uncertainties the largest.
+    fn answer(&self) -> String {
+        let word = |k: usize| {
+            let mut all: Vec<&str> = self.words.iter().map(|words| words[k]).collect();
+            all.sort_by(|a, b| number(a).partial_cmp(&number(b)).unwrap_or(Ordering::Equal));
+            let (least, most) = (all[0], all[all.len() - 1]);
+            let is_uncertainty = k > 0 && self.words[0][k - 1] == "±";
+            match number(least) == number(most) || is_uncertainty {
+                true => most.to_string(),
+                false => format!("{} to {most}", least.trim_end_matches([',', ';', ':'])),
+            }
+        };
+        (0..self.words[0].len()).map(word).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// The groups of the answers to a question, that of the most codes last.
+fn groups<'a>(answers: &[(&'a str, Option<&'a Answered>)]) -> Vec<Group<'a>> {
+    let mut groups: Vec<Group> = Vec::new();
+    for one in answers.iter().filter_map(|(code, of)| Some(Group::of(code, (*of)?))) {
+        match groups.iter_mut().find(|group| group.is_like(&one)) {
+            Some(group) => {
+                group.codes.extend(one.codes);
+                group.words.extend(one.words);
+            }
+            None => groups.push(one),
+        }
+    }
+    groups.sort_by_key(|group| group.codes.len());
+    groups
+}
+
+/// Answers that differ in their numbers alone, together, with the codes that gave them.
 fn texts(all: &[(String, Vec<Answered>)]) -> Table {
     let columns = ["question", "verdict", "codes", "answer"].map(TableColumn::text);
-    let table = Table::new("Answers, with the codes that gave them", columns.into());
+    let table = Table::new("Answers, with the range of numbers of several codes.", columns.into());
     let rows = |(question, answers): Asked| {
-        let mut rows: Vec<Vec<Cell>> = Vec::new();
-        for (code, of) in answers.iter().filter_map(|(code, of)| Some((code, (*of)?))) {
-            let [id, answer] = [&question.id, &of.answer].map(Cell::text);
-            match rows.iter_mut().find(|row| row[1] == verdict(of) && row[3] == answer) {
-                Some(row) => row[2].text += &format!(", {code}"),
-                None => rows.push(vec![id, verdict(of), Cell::text(*code), answer]),
+        let groups = groups(&answers);
+        let of_group = |(k, group): (usize, &Group)| {
+            let is_last = k + 1 == groups.len() && group.codes.len() > 2;
+            let codes = match (is_last, groups.len()) {
+                (true, 1) => "all".into(),
+                (true, _) => "all others".into(),
+                _ => group.codes.join(", "),
+            };
+            let mut id = Cell::text(&question.id);
+            if k == 0 {
+                id.anchor = anchor(question);
             }
-        }
-        if let Some(first) = rows.first_mut() {
-            first[0].anchor = anchor(question);
-        }
-        rows
+            vec![id, verdict(group.first), Cell::text(codes), Cell::text(group.answer())]
+        };
+        groups.iter().enumerate().map(of_group).collect::<Vec<_>>()
     };
     questions(all).flat_map(rows).fold(table, Table::row)
+}
+
+/// All answers, word by word.
+fn file(all: &[(String, Vec<Answered>)]) -> Block {
+    let rows = all.iter().flat_map(|(code, answers)| answers.iter().map(move |of| (code, of)));
+    let rows = rows.map(|(code, of)| [code, &of.id, &of.verdict, &of.answer]);
+    let lines = [["code", "question", "verdict", "answer"].map(String::from)]
+        .into_iter()
+        .chain(rows.map(|row| row.map(String::from)))
+        .map(|line| line.map(|word| format!("\"{}\"", word.replace('"', "\"\""))).join(","));
+    Block::File(DataFile {
+        title: "All answers (CSV)".into(),
+        name: "answers.csv".into(),
+        csv: lines.collect::<Vec<_>>().join("\n") + "\n",
+    })
 }
 
 /// Where the answers to its question are.
@@ -109,6 +193,35 @@ fn verdict(of: &Answered) -> Cell {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Numbers of several codes become a range; other words and other verdicts stay apart.
+    #[test]
+    fn answers_that_differ_in_their_numbers_are_one() {
+        let of = |verdict: &str, answer: &str| Answered {
+            id: "shear".into(),
+            question: "Is it?".into(),
+            verdict: verdict.into(),
+            answer: answer.into(),
+        };
+        let all = [
+            of("pass", "it is 0.99 ± 0.02 of it, 7 rows"),
+            of("fail", "it is 1.97 ± 0.02 of it, 7 rows"),
+            of("pass", "it is 0.9 ± 0.3 of it, 7 rows"),
+            of("pass", "it is 1.02 ± 0.1 of it, 7 rows"),
+            of("pass", "equal"),
+            of("fail", "it is 2.50 ± 0.02 of it, 7 rows"),
+        ];
+        let answers = ["a", "b", "c", "d", "e", "f"].into_iter().zip(all.iter().map(Some));
+        let groups = groups(&answers.collect::<Vec<_>>());
+        let found: Vec<_> = groups.iter().map(|of| (of.codes.join(" "), of.answer())).collect();
+        let expected = [
+            ("b", "it is 1.97 ± 0.02 of it, 7 rows"),
+            ("e", "equal"),
+            ("f", "it is 2.50 ± 0.02 of it, 7 rows"),
+            ("a c d", "it is 0.9 to 1.02 ± 0.3 of it, 7 rows"),
+        ];
+        assert_eq!(found, expected.map(|(codes, text)| (codes.into(), text.into())));
+    }
 
     /// The documents are complete, and of the same questions.
     #[test]

@@ -4,6 +4,7 @@ use touchstone_harness::{
     case::{self, Case, Rules, RunError},
     columns::TableColumns,
     limits::Mechanism,
+    studies::Card,
     suite::{CaseResults, Suite},
 };
 use touchstone_report::{Cell, Section, Table};
@@ -49,18 +50,15 @@ impl StiffnessRow {
     }
 }
 
-/// Explanation of the columns of [`table`].
+/// Explanation of the limits of [`table`].
 pub const READING: &str = "Limits of the time step at default settings, each over the step that is taken: \
     below 1 the mechanism would forbid the step by itself. Limits of waves, viscosity, artificial \
     viscosity and density diffusion are 2 over the largest rate on the lattice at rest; with the \
     predictor-corrector, sound needs damping as well. Motion is the time h/V, body force (h/F)^(1/2), \
     contact the time in which bodies approach each other by h. *Together* is the limit of all waves, \
-    beyond which a step is refused; for particles that move at most 0.8 of it is advised. *Bound by* names \
-    the stiffest mechanism; super-time-stepping removes the limit of viscosity. The slowest mechanism is \
-    the slowest of the problem (waves, viscosity, motion, force, contact) that acts within the run, else \
-    the run itself. *Slowest/stiffest* is the ratio of their limits, *steps/slowest* the number of steps \
-    over that which the slowest alone would need. *Sweeps* are the pair sweeps for forces and rates, with \
-    the stages of super-time-stepping; sweeps of a damper or a corrected kernel before them are not counted.";
+    beyond which a step is refused; for particles that move at most 0.8 of it is advised. Super-time-stepping \
+    removes the limit of viscosity. The slowest mechanism is the slowest of the problem (waves, viscosity, \
+    motion, force, contact) that acts within the run, else the run itself.";
 
 /// The table of these rows.
 pub fn table(rows: &[StiffnessRow]) -> Table {
@@ -78,23 +76,24 @@ pub fn table(rows: &[StiffnessRow]) -> Table {
         });
     let limit = |value: f64| Cell::num(value, 3);
     let mechanisms = Mechanism::ALL.into_iter().fold(columns, |columns, mechanism| {
-        // Infinite if the scene lacks it.
-        let headroom = move |StiffnessRow { rules, .. }: &StiffnessRow| {
-            rules.limits.alone(mechanism) / rules.dt()
+        let of = move |StiffnessRow { rules, .. }: &StiffnessRow| {
+            // Infinite if the scene lacks it.
+            let cell = Cell::or_dash(rules.limits.alone(mechanism) / rules.dt(), limit);
+            match rules.limits.binding() == mechanism {
+                true => Cell { text: format!("**{}**", cell.text), is_marked: true, ..cell },
+                false => cell,
+            }
         };
-        columns.of([mechanism.name(), ""], headroom, limit)
+        columns.num([mechanism.name(), ""], of)
     });
     mechanisms
         .of(["together", ""], |row| row.rules.dt_limit() / row.rules.dt(), limit)
-        .text("bound by", |row| row.rules.limits.binding().name())
         .num(["slowest/stiffest", ""], |row| Cell::num(row.stiffness(), 3))
         .num(["steps", "1"], |row| Cell::num(row.steps(), 3))
-        .num(["steps/slowest", ""], |row| Cell::num(row.cost(), 3))
-        .num(["sweeps", "1"], |row| Cell::num(row.steps() * row.rules.sweeps(), 3))
         .table("What limits the time step: each limit over the step that is taken.", rows)
 }
 
-/// The table of the recommended variant and the paper's of all cases.
+/// The table of the recommended variant and the paper's of the main cases.
 pub fn section(suite: &Suite) -> Section {
     let of_case = |results: &CaseResults| {
         let recommended = results.case.recommended();
@@ -103,12 +102,14 @@ pub fn section(suite: &Suite) -> Section {
         rows.retain(|row| shown.contains(&Some(row.variant)));
         rows
     };
-    let rows: Vec<StiffnessRow> = suite.cases.iter().flat_map(of_case).collect();
-    let note = "`touchstone stability --theory` prints the table of all variants without any run. Each case \
+    let main = suite.cases.iter().filter(|results| results.studies.first::<Card>().is_some());
+    let rows: Vec<StiffnessRow> = main.flat_map(of_case).collect();
+    let note = "`touchstone stability --theory` prints the limits of all cases and variants without any run. Each case \
                 compares the longest stable step by bisection with *together*; on lattices at rest the two \
                 agree within 3 %, as gates of the case `resting_box` demand.";
     Section::new("stiffness", "What limits the time step")
         .prose(READING)
+        .prose("The limit of the stiffest mechanism is bold, and divides the slowest in *slowest/stiffest*.")
         .block(table(&rows))
         .prose(note)
 }

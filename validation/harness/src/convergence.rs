@@ -14,6 +14,7 @@
 //! - [`Label::NotYet`] otherwise.
 
 use touchstone_base::functions::ln;
+use touchstone_report::sig;
 
 /// Local orders within this fraction of the fitted one count as equal.
 pub const SAME_ORDER: f64 = 0.15;
@@ -76,6 +77,15 @@ pub struct Convergence {
     pub local_orders: Vec<f64>,
     /// Whether to believe the order.
     pub label: Label,
+}
+
+impl Convergence {
+    /// The order with its interval: `1.7 (1.6 … 1.8)`.
+    pub fn in_words(&self) -> String {
+        let [order, low, high] =
+            [self.order, self.interval[0], self.interval[1]].map(|p| sig(p, 2));
+        format!("{order} ({low} … {high})")
+    }
 }
 
 /// Order of the errors of three or more levels in any sequence, with the actual ratios of spacing, of a

@@ -61,11 +61,9 @@ pub fn add(
         .iter()
         .flat_map(|of| of.lines.iter().map(|line| (of.title, line, found(line))))
         .collect();
-    let errors = |(_, line, _): &Row| listed(line.levels.iter().map(|level| level.value), 3);
     let table = TableColumns::<Row>::default()
         .text("refined", |(title, ..)| *title)
         .code("variant", |(_, line, _)| line.name)
-        .text("errors, coarse to fine", errors)
         .order(|(.., found)| found)
         .table(table, &rows);
     let section = section.block(panels.fold(figure, Figure::panel)).block(table);
@@ -118,17 +116,17 @@ impl<'a, T> TableColumns<'a, T> {
         let of = |show: fn(&Convergence) -> String| {
             move |item: &T| found(item).as_ref().map_or("–".into(), show)
         };
-        let order = of(|of| format!("{} ± {}", sig(of.order, 3), sig(of.standard_error, 2)));
+        let order = move |item: &T| match found(item) {
+            Ok(of) => Cell { value: Some(of.order), ..Cell::text(of.in_words()) },
+            Err(_) => Cell::text("–"),
+        };
         let label = move |item: &T| match found(item) {
             Ok(Convergence { label, .. }) => label.name().into(),
             Err(error) => format!("no order: {error}"),
         };
-        self.num(["order ± standard error", "-"], move |item| Cell::text(order(item)))
-            .text("95 % interval", of(|of| of.interval.map(|end| sig(end, 2)).join(" … ")))
-            .text(
-                "local orders, coarse to fine",
-                of(|of| listed(of.local_orders.iter().copied(), 2)),
-            )
+        let local = of(|of| listed(of.local_orders.iter().copied(), 2));
+        self.num(["order (95 %)", "-"], order)
+            .text("local orders, coarse to fine", local)
             .text("label", label)
     }
 }

@@ -161,7 +161,8 @@ impl Picture {
                 dots.points.extend(images);
             }
             let panel = self.panels.iter().find(|panel| panel.profile == name);
-            Some((share, outlined(plot, panel.map_or(&[], |panel| &panel.lines))))
+            let lines = panel.map_or(&[][..], |panel| &panel.lines);
+            Some((share, outlined(plot, lines, Colour::BLACK)))
         };
         let shares = (0..=FRAMES).map(|k| k as f64 / FRAMES as f64);
         let (shares, frames): (Vec<f64>, Vec<Plot>) = shares.filter_map(frame).unzip();
@@ -173,8 +174,8 @@ impl Picture {
 }
 
 /// Adds lines of a reference to a plot.
-fn outlined(plot: Plot, lines: &[Vec<(f64, f64)>]) -> Plot {
-    let line = |line: &Vec<_>| Series::line("", line.clone()).colour(Colour::BLACK).width(1.2);
+fn outlined(plot: Plot, lines: &[Vec<(f64, f64)>], colour: Colour) -> Plot {
+    let line = |line: &Vec<_>| Series::line("", line.clone()).colour(colour).width(1.3);
     lines.iter().map(line).fold(plot, Plot::layer)
 }
 
@@ -185,9 +186,14 @@ impl Study for Picture {
 
     /// The runs that kept their particles.
     fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
+        let view = self.film.as_ref().filter(|film| !film.is_mirrored).map(|film| film.view);
         let panel = |panel: &PicturePanel| {
-            let plot = self.plot(runs.record(&panel.spec)?, panel, &panel.profile)?;
-            Some(outlined(plot, &panel.lines))
+            let mut plot = self.plot(runs.record(&panel.spec)?, panel, &panel.profile)?;
+            if let Some([x, y]) = view {
+                (plot.x, plot.y) = (plot.x.range(x[0], x[1]), plot.y.range(y[0], y[1]));
+            }
+            // Green is neither the colour of a particle nor of a light or dark page.
+            Some(outlined(plot, &panel.lines, Colour::GREEN))
         };
         let Heading { id, title, caption } = self.heading;
         let [width, height] = self.size;

@@ -109,6 +109,12 @@ pub(super) struct Ruler {
 }
 
 impl Ruler {
+    /// Removes all ticks.
+    pub fn clear(&mut self) {
+        self.major.clear();
+        self.minor.clear();
+    }
+
     /// Width of the widest tick label \[CSS pixels\].
     pub fn width(&self) -> f64 {
         font::widest(self.major.iter().map(|(_, label)| label), TICK_EM)

@@ -46,6 +46,9 @@ impl<'a> Scaled<'a> {
     }
 }
 
+/// Texts on cells, which keep their colours on a dark page: not the black that the style sheet turns light.
+const INK: Colour = Colour(1, 1, 1);
+
 /// Draws the cell of a column and a row, with its text.
 pub(super) fn draw_cell(
     canvas: &mut Canvas,
@@ -59,6 +62,6 @@ pub(super) fn draw_cell(
     let cell = Rect { left, top, width: right - left, height: bottom - top }.grown(-1.0);
     canvas.fill(cell, colour);
     let em = fit(text, 11.0, cell.width - 4.0).min(0.8 * cell.height);
-    let ink = if colour.is_dark() { Colour::WHITE } else { Colour::BLACK };
+    let ink = if colour.is_dark() { Colour::WHITE } else { INK };
     canvas.text(text, cell.at((0.5, 0.5)), Type::new(em, Align::Middle).colour(ink));
 }

@@ -60,12 +60,14 @@ pub struct Plot {
     pub layers: Vec<Layer>,
     /// Whether the names of the layers are listed below.
     pub legend: bool,
+    /// Whether it has no texts, ticks and colour bar.
+    pub is_small: bool,
 }
 
 impl Plot {
     /// An empty plot with a legend.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        Self { title: title.into(), x, y, layers: Vec::new(), legend: true }
+        Self { title: title.into(), x, y, layers: Vec::new(), legend: true, is_small: false }
     }
 
     /// Adds a layer.
@@ -85,6 +87,13 @@ impl Plot {
     /// Removes the legend.
     pub fn without_legend(self) -> Self {
         Self { legend: false, ..self }
+    }
+
+    /// A picture without any text, as small as a row of a table.
+    pub fn small(mut self) -> Self {
+        self.title.clear();
+        [&mut self.x, &mut self.y].into_iter().for_each(|axis| axis.label.clear());
+        Self { is_small: true, ..self.without_legend() }
     }
 }
 

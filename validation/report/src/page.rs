@@ -291,19 +291,24 @@ impl Writer {
             _ => format!("q={}", section.title),
         };
         let gates = |status: &str| verdicts_where(&format!("{of}&status={status}"));
-        let content = html! {
+        let counts = html! {
             @if section.counts.worst().is_some() { (section.counts.chips(gates)) }
+        };
+        let content = html! {
             @for block in &section.blocks { (self.block(block)) }
             @for child in &section.children { (self.section(child, level + 1)) }
         };
         match level {
-            2 => html! { section id=(section.id) { h2 { (title) } (content) } },
+            2 => html! {
+                section id=(section.id) { div.head { h2 { (title) } (counts) } (content) }
+            },
             _ => html! {
                 details.study id=(section.id) {
                     summary {
                         @if level == 3 { h3 { (title) } } @else { h4 { (title) } }
                         @if section.counts.worst().is_some() { span.mark { (section.counts.short()) } }
                     }
+                    (counts)
                     (content)
                 }
             },

@@ -14,6 +14,9 @@ use super::legend::{Entry, MARKER};
 const MARK_EM: f64 = 9.0;
 /// Number of points of lines, a few pixels apart, that the label of a point may hide.
 const MARK_HIDES: usize = 2;
+/// Least room for each label of an axis: along x and along y.
+const X_TICK: f64 = 80.0;
+const Y_TICK: f64 = 70.0;
 /// Opacity of bands.
 const BAND: f64 = 0.22;
 
@@ -40,7 +43,7 @@ impl<'a> Prepared<'a> {
         let (xs, ys) = (xs.iter().copied(), ys.iter().copied());
         let (mut x, mut y) = (plot.x.mapping(xs), plot.y.mapping(ys));
         let mut area = Rect::of(size);
-        let dots = plot.dots().map(|dots| {
+        let mut dots = plot.dots().map(|dots| {
             // A dot on the border is completely visible.
             for axis in [&mut x, &mut y] {
                 axis.lo -= 0.5 * dots.diameter;
@@ -55,13 +58,17 @@ impl<'a> Prepared<'a> {
             Layer::Series(series) => Some(series),
             _ => None,
         });
-        let frame = Frame {
+        let mut frame = Frame {
             area,
             x: x_ruler(&plot.x, x, area.width),
-            y: plot.y.ruler(y, (area.height / 42.0) as usize),
+            y: plot.y.ruler(y, (area.height / Y_TICK) as usize),
             title: &plot.title,
             note: String::new(),
         };
+        if plot.is_small {
+            [&mut frame.x, &mut frame.y].into_iter().for_each(Ruler::clear);
+            dots.iter_mut().for_each(|dots| dots.bar.is_shared = true);
+        }
         let mut this = Self { plot, frame, series: series.collect(), marks: Vec::new(), dots };
         this.frame.note = this.dropped();
         this.place_marks();
@@ -313,7 +320,7 @@ fn x_ruler(axis: &Axis, mapping: Mapping, width: f64) -> Ruler {
             pair[1].0 * width - half(&pair[1].1) < pair[0].0 * width + half(&pair[0].1) + 7.0
         })
     };
-    let most = ((width / 52.0) as usize).max(3);
+    let most = ((width / X_TICK) as usize).max(3);
     let found = (2..=most).rev().map(|count| axis.ruler(mapping, count)).find(|r| !overlap(r));
     found.unwrap_or_else(|| axis.ruler(mapping, 2))
 }

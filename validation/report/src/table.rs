@@ -149,6 +149,9 @@ impl Cell {
 /// Cells of a table that is shown at once; one with more of them opens by a click.
 const SHORT: usize = 12;
 
+/// Rows of a table that repeat a text often enough for a sentence in place of a column.
+const MANY: usize = 3;
+
 /// A text up to the end of its first sentence, and the rest.
 pub fn first_sentence(text: &str) -> (&str, &str) {
     let is_end = |at: &usize| {
@@ -228,27 +231,49 @@ impl Table {
             let mut cells = self.rows.iter().filter_map(|row| row.get(k));
             cells.any(|cell| !matches!(&*cell.text, "" | "–") || !cell.remark.is_empty())
         };
-        let shown: Vec<bool> = (0..self.columns.len()).map(has_value).collect();
-        let is_shown = |k: usize| shown.get(k).is_some_and(|shown| *shown);
-        let columns = self.columns.iter().enumerate().filter(|(k, _)| is_shown(*k));
-        let cells = |row: &Vec<Cell>| {
-            row.iter()
-                .enumerate()
-                .filter(|(k, _)| is_shown(*k))
-                .map(|(_, cell)| cell.clone())
-                .collect()
+        self.with_columns(has_value)
+    }
+
+    /// The table without the columns in which many rows have one text, and a sentence with these texts.
+    fn without_equal_columns(&self) -> (Self, String) {
+        let common = |k: usize| {
+            let first = self.rows.first()?.get(k)?;
+            let is_first = |row: &Vec<Cell>| row.get(k) == Some(first);
+            let is_plain = first.status.is_none() && first.anchor.is_empty();
+            (is_plain && self.rows.len() >= MANY && self.rows.iter().all(is_first)).then_some(first)
         };
+        let stated = |(k, column): (usize, &TableColumn)| {
+            let cell = common(k)?;
+            let unit = if ["-", "1"].contains(&&*column.unit) { "" } else { &column.unit };
+            Some(format!("{} {} {unit}", column.head, cell.text).trim_end().to_string())
+        };
+        let stated: Vec<String> = self.columns.iter().enumerate().filter_map(stated).collect();
+        if stated.is_empty() || stated.len() == self.columns.len() {
+            return (self.clone(), String::new());
+        }
+        let words = format!("In all rows: {}.", stated.join("; "));
+        (self.with_columns(|k| common(k).is_none()), words)
+    }
+
+    /// The table of the columns that `is_shown` accepts by their numbers.
+    fn with_columns(&self, is_shown: impl Fn(usize) -> bool) -> Self {
+        fn kept<T: Clone>(all: &[T], is_shown: impl Fn(usize) -> bool) -> Vec<T> {
+            let shown = all.iter().enumerate().filter(|(k, _)| is_shown(*k));
+            shown.map(|(_, one)| one.clone()).collect()
+        }
         Self {
             caption: self.caption.clone(),
-            columns: columns.map(|(_, column)| column.clone()).collect(),
-            rows: self.rows.iter().map(cells).collect(),
+            columns: kept(&self.columns, &is_shown),
+            rows: self.rows.iter().map(|row| kept(row, &is_shown)).collect(),
         }
     }
 
-    /// The table with its caption, without empty columns; behind a click if it is long.
+    /// The table with its caption, without empty columns and with the texts that all rows have in a
+    /// sentence; behind a click if it is long.
     pub(super) fn markup(&self, name: &str) -> Markup {
-        let full = self.without_empty_columns();
-        full.captioned(name)
+        let (table, common) = self.without_empty_columns().without_equal_columns();
+        let caption = format!("{} {common}", self.caption);
+        Self { caption: caption.trim().into(), ..table }.captioned(name)
     }
 
     fn captioned(&self, name: &str) -> Markup {
@@ -353,6 +378,29 @@ mod tests {
         let shown = |table: &Table| table.markup("Table").into_string().matches("<th ").count();
         assert_eq!(shown(&table), 1);
         assert_eq!(shown(&table.row(row(Cell::text("–").because("not measured")))), 2);
+    }
+
+    /// A sentence has the text that all rows of a column have; verdicts and anchors stay in their rows.
+    #[test]
+    fn a_text_of_all_rows_is_stated_once() {
+        let columns = vec![
+            TableColumn::text("run"),
+            TableColumn::num("rows", "1"),
+            TableColumn::num("error", "-"),
+            TableColumn::text("verdict"),
+        ];
+        let row = |k: usize| {
+            let cells = [Cell::count(k as u64), Cell::count(20), Cell::percent(0.03, 2)];
+            [cells.to_vec(), vec![Cell::status(Verdict::Pass)]].concat()
+        };
+        let of = |count: usize| Table {
+            rows: (0..count).map(row).collect(),
+            ..Table::new("Errors", columns.clone())
+        };
+        let html = of(3).markup("Table").into_string();
+        assert!(html.contains("In all rows: rows 20; error 3.0\u{a0}%."), "{html}");
+        assert_eq!(html.matches("<th ").count(), 2, "{html}");
+        assert_eq!(of(2).markup("Table").into_string().matches("<th ").count(), 4);
     }
 
     #[test]

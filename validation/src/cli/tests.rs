@@ -21,11 +21,12 @@ use touchstone_harness::{
     case::{self, Case, Planned, Recommended, RunError, Tier, Variant},
     context::Context,
     gates::GateIndex,
+    looks::look_of,
     make::{self, BatchOptions, BatchResult},
     runs::{Judged, Runs},
     section::Section,
     store::Store,
-    studies::{Card, CustomStudy, Studies},
+    studies::{Accuracy, Card, CustomStudy, Studies},
     suite::{self, Suite},
 };
 use touchstone_report::{Page, check_page};
@@ -806,6 +807,23 @@ fn the_picture_of_a_card_is_of_the_run_that_it_states() {
         let studies = case.studies(tier);
         let Some(card) = studies.first::<Card>() else { continue };
         assert!(card.pictured(&studies).is_some(), "{} in {tier:?}: {}", case.name(), card.picture);
+    }
+}
+
+/// `stiff` had colour, line and marker of `consistent` beside it.
+#[test]
+fn variants_of_one_figure_differ_in_their_looks() {
+    for case in touchstone_cases::CASES {
+        let studies = case.studies(Tier::Full);
+        for accuracy in studies.of::<Accuracy>() {
+            let looks = accuracy.ladders.iter().enumerate();
+            let looks: Vec<_> = looks.map(|(k, of)| look_of(of.variant, k)).collect();
+            for (k, look) in looks.iter().enumerate() {
+                let alike = looks[..k].iter().position(|other| other == look);
+                let name = |k: usize| accuracy.ladders[k].variant;
+                assert_eq!(alike.map(name), None, "{}: as {}", accuracy.id, name(k));
+            }
+        }
     }
 }
 

@@ -430,8 +430,8 @@ fn studies(tier: Tier) -> Studies {
         ..Accuracy::new(&format!("{NAME}-{re}"), U_RMS, "rms error of u on x = L/2 [U]")
     };
     let accuracy = [100.0, 1000.0].map(accuracy).into_iter();
-    let caption = "Where does the fluid go round? Speed of the particles of `mirrored` at the end, finest \
-                   spacing.";
+    let caption = "How fast does the fluid go round? Speed of the particles of `mirrored` at the end, finest \
+                   spacing; it is 0 at walls and in the middle of the vortex.";
     let heading = pictures::Heading { id: "cavity-picture", title: "The cavity", caption };
     let panel = |r: &Row| vec![r.panel(format!("Re {}", r.group), 1.0 / r.settings.n as f64)];
     let picture =

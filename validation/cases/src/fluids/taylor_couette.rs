@@ -269,17 +269,15 @@ fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
          cylinder turns with speed V, the outer one, of twice its radius, rests."
     );
     let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
-    let line = |row: &Row<CylinderSettings, ()>, is_difference: bool| CurveOf {
-        name: row.variant.into(),
-        spec: row.run.spec.clone(),
-        points: Box::new(move |record: &Record| {
+    let line = |row: &Row<CylinderSettings, ()>, is_difference: bool| {
+        CurveOf::new(row.variant, row.run.spec.clone(), move |record: &Record| {
             let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
             let shown = |(r, u): (&f64, &f64)| match is_difference {
                 true => (*r, 100.0 * (u - flow.velocity(*r))),
                 false => (*r, *u),
             };
             r.iter().zip(u).step_by(17).map(shown).collect()
-        }),
+        })
     };
     let lines = |is_difference: bool| {
         let rows = table.rows.iter().filter(|row| row.settings.layers == finest);

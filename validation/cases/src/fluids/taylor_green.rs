@@ -445,10 +445,9 @@ fn histories(tier: Tier, table: &Table) -> Curves {
     let side = if tier == Tier::Quick { 24 } else { 50 };
     let stabilised = table.of(Group::Ladder).filter(|row| row.settings.n == side);
     let shown = stabilised.chain(table.of(Group::Control));
-    let line = |row: &Row| CurveOf {
-        name: format!("{}, {1} x {1}", row.variant, row.settings.n),
-        spec: row.run.spec.clone(),
-        points: Box::new(error),
+    let line = |row: &Row| {
+        let name = format!("{}, {1} x {1}", row.variant, row.settings.n);
+        CurveOf::new(name, row.run.spec.clone(), error)
     };
     let most = most_error(side);
     let (axes, name) =

@@ -297,13 +297,22 @@ fn gate(Row { variant, settings: s, .. }: &Row<BoxSettings, ()>) -> Gate {
     Gate::new(id, metric, bound, Evidence::Theory, because)
 }
 
+/// The ratio of sound to viscosity, and the damping that there is.
+fn scene(s: &BoxSettings) -> String {
+    let damping = [("alpha", s.alpha), ("delta", s.delta)].map(|(name, value)| match value {
+        0.0 => String::new(),
+        value => format!(", {name} = {value}"),
+    });
+    format!("c0 h/nu = {}{}", stiffness(s), damping.concat())
+}
+
 /// The bisection of a row, whose step is the limit of theory.
 fn bisected(row: Row<BoxSettings, ()>) -> StepLimit {
     let Row { settings: s, run, .. } = row;
     let (setting, guess) = ("courant".into(), s.courant);
     let bisect = Bisect { setting, guess, unit: 1.0, resolution: RESOLUTION, end: None };
     StepLimit {
-        scene: format!("c0 h/nu = {}, alpha = {}, delta = {}", stiffness(&s), s.alpha, s.delta),
+        scene: scene(&s),
         spec: run.spec.allow_unstable().bisect(bisect),
         theory: s.courant * h(&s),
         theory_at: s.courant,

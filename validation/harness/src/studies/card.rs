@@ -12,7 +12,7 @@ use touchstone_report::{
 };
 
 use super::{
-    Accuracy, Comparison, Comparisons, CurvePanel, Curves, Ladder, Map, cost,
+    Accuracy, Comparison, Comparisons, CurvePanel, Curves, Ladder, Level, Map, cost,
     validation::ComparisonResult,
 };
 use crate::{
@@ -28,9 +28,11 @@ use crate::{
 pub struct Card {
     /// Name of the problem.
     pub title: &'static str,
-    /// The figure with the picture: its first panel that shows the first of the runs, at any resolution
-    /// ([`Card::pictured`]).
+    /// The study with the picture: the still of its film, or else its first panel that shows the first of the
+    /// runs, at any resolution ([`Card::pictured`]).
     pub picture: &'static str,
+    /// The scene of the picture, if it is not the scene of the runs; otherwise empty.
+    pub pictured_scene: &'static str,
     /// The error, also of the ladders of the case ([`Accuracy::error`]).
     pub metric: MetricName,
     /// The words for the error of a run.
@@ -45,7 +47,7 @@ pub struct Card {
 
 impl Card {
     /// The panel of the figure on the card: the first that shows the first run of the card, at any resolution
-    /// of the ladders of the case.
+    /// of the ladders of the case; with another scene, that shows its variant.
     pub fn pictured(&self, studies: &Studies) -> Option<usize> {
         let wanted = self.runs.first()?;
         let levels = studies.of::<Accuracy>().flat_map(|accuracy| &accuracy.ladders);
@@ -61,9 +63,10 @@ impl Card {
             else {
                 return false;
             };
-            let differ = a.iter().filter(|(name, value)| b.get(*name) != Some(*value));
+            let mut differ = a.iter().filter(|(name, value)| b.get(*name) != Some(*value));
+            let is_other = !self.pictured_scene.is_empty();
             spec.variant == wanted.variant
-                && differ.into_iter().all(|(name, _)| is_resolution(name))
+                && (is_other || differ.all(|(name, _)| is_resolution(name)))
         };
         let curves =
             studies.of::<Curves>().find(|curves| curves.id == self.picture).map(|curves| {
@@ -87,8 +90,8 @@ impl Card {
             unit: "",
         };
         let breaks = Breaks { setting, words: ["", ""], has_broken: |_| Some(false), sign: "" };
-        let (title, picture, metric) = ("Main", "none", metric.into());
-        Card { title, picture, metric, stated, beside: None, runs, breaks }
+        let (title, picture, pictured_scene, metric) = ("Main", "none", "", metric.into());
+        Card { title, picture, pictured_scene, metric, stated, beside: None, runs, breaks }
     }
 }
 
@@ -243,7 +246,10 @@ pub fn row(
     let shown = names.map(run_of);
     shown.iter().flatten().next()?;
     let about = match card.zip(shown[0].as_ref()) {
-        Some((card, first)) => (card.stated)(first).name,
+        Some((card, first)) if card.pictured_scene.is_empty() => (card.stated)(first).name,
+        Some((card, first)) => {
+            format!("{} (picture: {})", (card.stated)(first).name, card.pictured_scene)
+        }
         None => case.problem().into(),
     };
     let answer = Answer { case, studies, runs, metric: studies.error()?, shown };
@@ -251,7 +257,7 @@ pub fn row(
         id: case.name().into(),
         title: card.map_or(case.name().replace('_', " "), |card| card.title.into()),
         about,
-        picture: card.and_then(|card| picture(card, studies, sections)),
+        picture: card.and_then(|card| picture(card, studies, sections, runs)),
         cells: answer.cells(),
     })
 }
@@ -264,11 +270,14 @@ impl Answer<'_> {
             record.value(self.metric.clone()).map(f64::abs)
         };
         let sizes = [size(first), size(second)];
-        let doubt = self.shown.iter().flatten().filter_map(|spec| self.uncertainty(spec));
-        let doubt = doubt.map(|u| u * u).sum::<f64>().sqrt();
-        // Better only if the difference is larger than its expanded uncertainty, k = 2.
-        let wins = |k: usize| match (sizes[k], sizes[1 - k]) {
-            (Some(own), Some(other)) => own + 2.0 * doubt < other,
+        // Better only if the difference is larger than its expanded uncertainty, k = 2, which must be known.
+        let doubt = |k: usize| {
+            let spec = self.shown[k].as_ref()?;
+            self.uncertainty(spec).or(self.reference(spec).is_none().then_some(0.0))
+        };
+        let doubt = doubt(0).zip(doubt(1)).map(|(own, other)| own.hypot(other));
+        let wins = |k: usize| match (sizes[k], sizes[1 - k], doubt) {
+            (Some(own), Some(other), Some(doubt)) => own + 2.0 * doubt < other,
             _ => false,
         };
         let dash = || Cell::text("–");
@@ -305,14 +314,37 @@ impl Answer<'_> {
         self.compared(spec).map(|found| found.uncertainty()).filter(|u| u.is_finite())
     }
 
-    /// The comparison of the error of a run with a reference that has an uncertainty.
+    /// The uncertainty of the reference of a run, if it has one.
+    fn reference(&self, spec: &RunSpec) -> Option<f64> {
+        self.studies.first::<Card>().and_then(|card| (card.stated)(spec).uncertainty)
+    }
+
+    /// The comparison of the error of a run with a reference that has an uncertainty: as the case declares it,
+    /// or else by the levels of its variant up to this run.
     fn compared(&self, spec: &RunSpec) -> Option<ComparisonResult> {
         let is_this = |of: &&Comparison| {
             let finest = of.levels.last().map(|level| level.run.spec.key());
             of.reference > 0.0 && of.metric == *self.metric && finest == Some(spec.key())
         };
-        let compared = self.studies.of::<Comparisons>().flat_map(|of| &of.0).find(is_this);
-        compared.map(|of| ComparisonResult::of(of, self.runs))
+        let declared = self.studies.of::<Comparisons>().flat_map(|of| &of.0).find(is_this);
+        let of_ladder = || {
+            let ladders = self.studies.of::<Accuracy>().filter(|of| of.error == *self.metric);
+            let mut ladders = ladders.flat_map(|of| &of.ladders);
+            let ladder = ladders.find(|ladder| ladder.variant == spec.variant)?;
+            let is_run = |level: &Level| level.run.spec.key() == spec.key();
+            let place = ladder.levels.iter().position(is_run)?;
+            Some(Comparison {
+                what: String::new(),
+                against: "",
+                metric: self.metric.clone(),
+                levels: ladder.levels[..=place].to_vec(),
+                inputs: Vec::new(),
+                reference: self.reference(spec)?,
+                because: "",
+            })
+        };
+        let compared = declared.cloned().or_else(of_ladder);
+        compared.map(|of| ComparisonResult::of(&of, self.runs))
     }
 
     /// The anchor of the errors over resolutions of the case, or of the case.
@@ -382,7 +414,8 @@ impl Answer<'_> {
         let map = self.studies.first::<Map>();
         let target = map.map_or_else(|| self.study(), |map| format!("study-{}", map.id));
         let link = |words: &str, value: f64| {
-            Cell::marked(format!("[{words}{before}{}{after}](#{target})", exact(value)))
+            let value = format!("{before}{}{after}", exact(value)).replace(' ', "\u{a0}");
+            Cell::marked(format!("[{words}{value}](#{target})"))
         };
         match broken_at(card, &spec.variant, self.runs) {
             Some(Broken::At(value)) => link("", value).because(sign),
@@ -445,19 +478,22 @@ fn broken_at(card: &Card, variant: &str, runs: &Runs) -> Option<Broken> {
     least.map(Broken::At).or(not.map(|(low, high)| Broken::NotFrom(low, high)))
 }
 
-/// The panel that shows the first run of the card, as small as a row is.
-fn picture(card: &Card, studies: &Studies, sections: &[Section]) -> Option<Figure> {
+/// The picture of a card, as small as a row is.
+fn picture(card: &Card, studies: &Studies, sections: &[Section], runs: &Runs) -> Option<Figure> {
     let (id, panel) = (card.picture, card.pictured(studies)?);
-    let figures =
-        sections.iter().flat_map(|section| &section.blocks).filter_map(|block| match block {
-            Block::Figure(figure) => Some(figure),
-            _ => None,
-        });
-    let figure = figures.into_iter().find(|figure| figure.id == id)?;
-    let mut plot = figure.panels.get(panel)?.clone().without_legend();
-    plot.title.clear();
-    [&mut plot.x, &mut plot.y].into_iter().for_each(|axis| axis.label.clear());
-    let small = Figure::new(format!("{id}-small"), figure.caption.clone()).panel(plot);
+    let mut films = studies.of::<Picture>().filter(|picture| picture.heading.id == id);
+    let (plot, caption) = match films.find_map(|picture| picture.film(runs)) {
+        Some(film) => (film.frames.get(film.still)?.clone(), film.caption),
+        None => {
+            let mut blocks = sections.iter().flat_map(|section| &section.blocks);
+            let figure = blocks.find_map(|block| match block {
+                Block::Figure(figure) if figure.id == id => Some(figure),
+                _ => None,
+            })?;
+            (figure.panels.get(panel)?.clone(), figure.caption.clone())
+        }
+    };
+    let small = Figure::new(format!("{id}-small"), caption).panel(plot.small());
     Some(small.panel_size(150.0, 90.0))
 }
 
@@ -470,6 +506,7 @@ mod tests {
         Card {
             title: "Made up",
             picture: "none",
+            pictured_scene: "",
             metric: ERROR.into(),
             stated: |run| Stated {
                 name: format!("distance at n = {}", run.settings["n"]),
@@ -572,7 +609,9 @@ mod tests {
         let ladder = Ladder { variant: "good", levels, order: None, refine };
         let accuracy =
             Accuracy { ladders: vec![ladder], ..Accuracy::new("case", ERROR, "Error [-]") };
-        let card = Card { runs: vec![spec("good", 40), spec("bad", 40)], ..made_up() };
+        let shown = vec![spec("good", 40), spec("bad", 40)];
+        let exact = |run: &RunSpec| Stated { uncertainty: None, ..(made_up().stated)(run) };
+        let card = Card { runs: shown, stated: exact, ..made_up() };
         let comparisons = Comparisons(vec![compared]);
         let studies = Studies::default().with(accuracy).with(comparisons).with(card);
         row(&MadeUp, &studies, &[], &runs).expect("a row").cells

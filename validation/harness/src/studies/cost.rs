@@ -301,8 +301,7 @@ pub fn against_run_time(
 /// Error over run time.
 fn timed(id: &str, accuracy: &Accuracy, rows: &[LadderRow]) -> Figure {
     let about = first_sentence(&accuracy.about).0;
-    let caption =
-        format!("Which variant is cheapest for an error? {about} Numbers are resolutions.");
+    let caption = format!("Which variant reaches an error fastest? {about}");
     let axes = ["", "run time on one core [s]", &accuracy.label];
     Figure::new(id, caption).panel(panel(axes, &lines(rows), LadderPoint::median, true))
 }

@@ -60,12 +60,29 @@ pub struct CurveOf {
     pub spec: RunSpec,
     /// Points of a record.
     pub points: PointsOf,
+    /// Whether it is drawn thin and pale, behind others.
+    pub is_pale: bool,
 }
 
 /// Points of a curve from a record.
 pub type PointsOf = Box<dyn Fn(&Record) -> Vec<(f64, f64)> + Send + Sync>;
 
 impl CurveOf {
+    /// A curve of a run.
+    pub fn new(
+        name: impl Into<String>,
+        spec: RunSpec,
+        points: impl Fn(&Record) -> Vec<(f64, f64)> + Send + Sync + 'static,
+    ) -> Self {
+        Self { name: name.into(), spec, points: Box::new(points), is_pale: false }
+    }
+
+    /// The curve drawn thin and pale.
+    #[must_use]
+    pub fn pale(self) -> Self {
+        Self { is_pale: true, ..self }
+    }
+
     /// Two columns of a profile of a run.
     pub fn columns(
         name: impl Into<String>,
@@ -77,7 +94,7 @@ impl CurveOf {
             let [x, y] = [x, y].map(|name| record.column(profile, name).iter().copied());
             x.zip(y).collect()
         };
-        Self { name: name.into(), spec, points: Box::new(points) }
+        Self::new(name, spec, points)
     }
 
     /// The differences of this curve from a reference, which is sampled at the drawn places x, times
@@ -121,7 +138,8 @@ impl Study for Curves {
         let columns = (self.panels.len() as f64).sqrt().ceil() as usize;
         let figure = Figure::new(&self.id, &self.caption).columns(columns.max(1));
         let mut names: Vec<&str> = Vec::new();
-        for line in self.panels.iter().flat_map(|panel| &panel.lines) {
+        let lines = self.panels.iter().flat_map(|panel| &panel.lines);
+        for line in lines.filter(|line| !line.is_pale) {
             if !names.contains(&line.name.as_str()) {
                 names.push(&line.name);
             }
@@ -161,6 +179,9 @@ fn look(name: &str, names: &[&str], symbols: bool) -> Look {
     }
 }
 
+/// Opacity of pale curves.
+const PALE: f64 = 0.35;
+
 /// A name has one look in all panels, by its position among `names`.
 fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     let plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
@@ -170,6 +191,12 @@ fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
     let lines = of.lines.iter().filter_map(|line| {
         let points = (line.points)(runs.record(&line.spec)?);
         let look = look(&line.name, names, of.symbols);
+        let look = match line.is_pale {
+            true => {
+                Look { colour: look.colour.tint(PALE), line: Some(Dash::Solid), width: 0.8, ..look }
+            }
+            false => look,
+        };
         Some(Series { look, ..Series::line(&line.name, points) })
     });
     references.chain(lines).fold(plot, Plot::layer)
@@ -186,7 +213,7 @@ mod tests {
         let points = |record: &touchstone_base::record::Record| {
             vec![(1.0, record.value(ERROR).unwrap_or(f64::NAN))]
         };
-        CurveOf { name: name.into(), spec: spec(variant, n), points: Box::new(points) }
+        CurveOf::new(name, spec(variant, n), points)
     }
 
     fn panel_of(lines: Vec<CurveOf>, references: &[&str], symbols: bool) -> CurvePanel {

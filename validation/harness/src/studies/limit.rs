@@ -79,17 +79,12 @@ impl Study for StepLimits {
     fn evaluate(&self, case: &str, runs: &Runs) -> Option<Section> {
         let caption = format!("Largest stable time step of `{case}` by bisection. {}", self.about);
         let ratio = |value: Option<f64>| Cell::num(value.unwrap_or(f64::NAN), 3);
-        let measured =
-            |limit: &StepLimit| of_theory(limit, runs).unwrap_or(f64::NAN) * limit.theory;
-        let of_default = |limit: &StepLimit| stable(limit, runs).map(|x| x / limit.default_at);
         let table = TableColumns::<StepLimit>::default()
             .code("variant", |limit| limit.spec.variant.clone())
             .text("scene", |limit| limit.scene.clone())
             .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))
-            .num(["measured", "s"], |limit| Cell::sci(measured(limit), 3))
             .num(["measured/theory", "-"], |limit| ratio(of_theory(limit, runs)))
-            .num(["default/theory", "-"], |limit| Cell::num(limit.default_at / limit.theory_at, 3))
-            .num(["measured/default", "-"], |limit| ratio(of_default(limit)))
+            .num(["default/theory", "-"], |limit| ratio(Some(limit.default_at / limit.theory_at)))
             .table(caption, &self.of);
         let mut section = Section::new(&anchor(case, "time-step"), "Largest stable time step");
         let judged =
@@ -119,10 +114,9 @@ mod tests {
     use super::*;
     use crate::studies::tests::{column, evaluate, records, spec, tables};
 
-    /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, 2 of the default, and
-    /// default/theory 0.75. Theory is 4 ms, so 6 ms were measured.
+    /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, and default/theory 0.75.
     #[test]
-    fn a_limit_is_stated_over_theory_and_over_the_default_step() {
+    fn limit_and_default_step_are_stated_over_theory() {
         let bisect =
             Bisect { setting: "n".into(), guess: 1.0, unit: 1.0, resolution: 0.02, end: None };
         let bound = Bound::Within(1.49, 1.51);
@@ -142,12 +136,9 @@ mod tests {
         let runs = records([(limits.of[0].spec.clone(), stable)]);
         let section = evaluate(&limits, runs);
         let table = tables(&section)[0];
-        for (head, expected) in [
-            ("measured", "6.00·10⁻³"),
-            ("measured/theory", "1.50"),
-            ("default/theory", "0.750"),
-            ("measured/default", "2.00"),
-        ] {
+        for (head, expected) in
+            [("theory", "4.00·10⁻³"), ("measured/theory", "1.50"), ("default/theory", "0.750")]
+        {
             assert_eq!(column(table, head)[0], expected, "{head}");
         }
         let verdicts: Vec<(&str, Verdict)> = section

@@ -222,15 +222,10 @@ impl ComparisonResult {
     /// The order of an error against an exact reference with its interval.
     fn order(&self) -> String {
         match &self.exact {
-            Some(Ok(Convergence { order, interval, .. })) => with_interval(*order, *interval),
+            Some(Ok(of)) => of.in_words(),
             _ => "–".into(),
         }
     }
-}
-
-fn with_interval(order: f64, interval: [f64; 2]) -> String {
-    let [order, low, high] = [order, interval[0], interval[1]].map(|order| sig(order, 2));
-    format!("{order} ({low} … {high})")
 }
 
 fn magnitudes(levels: &[ErrorLevel]) -> Vec<ErrorLevel> {
@@ -273,8 +268,8 @@ pub fn numerical(levels: &[ErrorLevel]) -> Numerical {
     let of_all = convergence(&magnitudes(levels), None).ok();
     let tested =
         of_all.filter(|of| of.label.is_one_order() && of.order >= SLOWEST && is_of_one_sign);
-    if let Some(Convergence { order, interval, .. }) = tested {
-        return found(by_order(order), TESTED, Some(with_interval(order, interval)), "");
+    if let Some(of) = tested {
+        return found(by_order(of.order), TESTED, Some(of.in_words()), "");
     }
     match order_of_differences(first / last, [wide, ratio]) {
         Some(order) => found(by_order(order), UNTESTED, Some(sig(order, 2)), " of differences"),
@@ -353,22 +348,28 @@ fn show(value: f64) -> Cell {
 
 fn of_exact(rows: &[Row]) -> Table {
     columns()
-        .text("order (95 %)", |(_, found)| found.order())
         .text("verdict", |(_, found)| found.in_words())
         .table("Errors against exact references.", rows)
 }
 
 fn of_uncertain(rows: &[Row]) -> Table {
+    let mut sources: Vec<String> = Vec::new();
+    for (of, _) in rows {
+        let source = format!("{}, {}", of.against, of.because);
+        if !sources.contains(&source) {
+            sources.push(source);
+        }
+    }
+    let caption = "Differences from uncertain references.";
     columns()
         .of(["U_num", "-"], |(_, found)| found.numerical.expanded, show)
         .of(["u_num", "-"], |(_, found)| found.numerical.standard, show)
         .text("from", |(_, found)| found.numerical.how.clone())
         .of(["u_input", "-"], |(_, found)| found.input, show)
         .of(["u_D", "-"], |(_, found)| found.reference, show)
-        .text("u_input and u_D", |(of, _)| of.because)
         .of(["u_val", "-"], |(_, found)| found.uncertainty(), show)
         .text("verdict", |(_, found)| found.in_words())
-        .table("Differences from uncertain references.", rows)
+        .table(format!("{caption} Uncertainties of {}.", sources.join("; of ")), rows)
 }
 
 /// One line for the card of a case: how many comparisons ended how.

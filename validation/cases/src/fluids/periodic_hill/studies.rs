@@ -123,6 +123,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
     Card {
         title: "Periodic hill",
         picture: "periodic-hill-pictures",
+        pictured_scene: "",
         metric: L2_U.into(),
         stated: |run| {
             let settings: HillSettings = run.settings_as();
@@ -244,7 +245,7 @@ fn profile(row: &Row, reference: &HillReference, is_difference: bool) -> CurvePa
             points.map(|j| (x[j] + scale * (u[j] - subtracted(j)), y[j])).collect()
         };
         let (name, spec) = (format!("{}, {}", row.variant, name(row)), row.run.spec.clone());
-        CurveOf { name, spec, points: Box::new(points) }
+        CurveOf::new(name, spec, points)
     };
     let exact = reference.stations.iter().map(|station| match is_difference {
         true => (String::new(), known(station).iter().map(|(y, _)| (station.x, *y)).collect()),
@@ -369,7 +370,7 @@ fn starts(table: &Table) -> Option<impl Study + use<>> {
 /// circulates.
 fn picture(table: &Table) -> Picture {
     let caption = "Where does the flow separate? Particles of the finest run of `carried`, coloured by their \
-                   velocity u along the channel. Black lines are the floor and the border of the fluid that \
+                   velocity u along the channel. Green lines are the floor and the border of the fluid that \
                    circulates in finite elements.";
     let heading =
         Heading { id: "periodic-hill-pictures", title: "Where the flow separates", caption };

@@ -126,7 +126,9 @@ fn pictures(table: &Table) -> Vec<Picture> {
             shares.iter().filter(|_| is_shown).map(|share| panel(row, *share)).collect()
         };
         let colours = ("σ₁ [K]", ColourMap::Diverging);
-        let picture = table.picture(heading, colours, [185.0, 170.0], panels);
+        // Five panels fit in a row.
+        let size = if shares.len() > 1 { [150.0, 140.0] } else { [240.0, 224.0] };
+        let picture = table.picture(heading, colours, size, panels);
         Picture { columns: shares.len(), range: Some([-most, most]), ..picture }
     };
     let heading = |id, title, caption| Heading { id, title, caption };
@@ -180,6 +182,7 @@ fn card(accuracy: &Accuracy) -> Card {
     Card {
         title: "Colliding rubber rings",
         picture: "rubber-rings-pictures",
+        pictured_scene: "",
         metric: HISTORIES.into(),
         stated: |run| {
             let name = "centre, width and height over time at {speed} c0 each, spacing {spacing} L, in \

@@ -98,11 +98,6 @@ impl Dam {
     }
 }
 
-/// When particles are kept for a picture, as a share of the run: the jet has risen at the far wall.
-pub const PICTURE: f64 = 0.6;
-/// The profile of the particles then, with their pressure.
-pub const PICTURED: &str = "particles@0.6";
-
 /// Time between samples \[h/(c0 + v)\], rounded to whole steps: powers and forces are integrated over them,
 /// and an impact lasts for the time of sound across a few smoothing lengths. With 0.015 (H/g)^(1/2) at any
 /// spacing the impact alone left 1e-3 of the energy unaccounted for, at any step.
@@ -140,17 +135,14 @@ pub struct Watch {
     frames: Vec<usize>,
 }
 
-/// Keeps the particles with their pressure for a picture, and as a frame of the film.
+/// Keeps the particles with their pressure as a frame of the film.
 fn picture(dam: &Dam, now: &Snapshot, frame: usize, record: &mut Record) {
     let Ok(density) = now.density() else { return };
     let (height, unit) = (dam.settings.height, dam.unit_pressure());
     let value = |p: &Point| dam.medium.eos.pressure(density.of(p)) / unit;
     let fluid = now.stored().map(|p| (p.position / height, value(&p)));
     let (share, pressure) = (frame as f64 / pictures::FRAMES as f64, ("p", "rho g H"));
-    match share == PICTURE {
-        true => pictures::keep(record, PICTURED, "H", pressure, fluid),
-        false => pictures::keep_frame(record, share, "H", pressure, fluid),
-    }
+    pictures::keep_frame(record, share, "H", pressure, fluid);
 }
 
 impl Problem for Dam {
