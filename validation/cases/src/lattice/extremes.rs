@@ -79,6 +79,7 @@ const BULLET: &str = "bullet";
 fn variants() -> Compositions<ExtremeSettings> {
     const AT_REST: &[&str] = &["n", "h_over_dx", "steps", "dt", "background"];
     const SHORT: &[&str] = &["distance", "steps", "dt"];
+    const FAST: &[&str] = &["speed", "steps", "dt"];
     let cubic = touchstone_schemes::lattice::cubic;
     let rest = "does round-off heat a lattice at rest? cubic spline";
     // Positive pressure pairs particles of a cubic spline, not of a Wendland function.
@@ -100,14 +101,9 @@ fn variants() -> Compositions<ExtremeSettings> {
         (s.n, s.h_over_dx, s.steps, s.dt, s.background) = (7, 1.5, 10_000, 0.7, 0.05);
     })
     .lacking([COINCIDENT, coincident], (cubic(), ExtremeScene::Stirred), all_but(SHORT), |_| ())
-    .lacking(
-        [BULLET, bullet],
-        (cubic(), ExtremeScene::Blocks),
-        all_but(&["speed", "steps", "dt"]),
-        |s| {
-            (s.steps, s.dt) = (200, 0.3);
-        },
-    )
+    .lacking([BULLET, bullet], (cubic(), ExtremeScene::Blocks), all_but(FAST), |s| {
+        (s.steps, s.dt) = (200, 0.3);
+    })
     .all
 }
 

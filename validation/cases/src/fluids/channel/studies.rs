@@ -191,22 +191,18 @@ fn curves(flow: Flow) -> Curves {
             },
         )
     };
-    let of_difference = |variant: &str| CurvePanel {
-        title: format!("{variant}: computed minus exact"),
-        x: Axis::linear("(u − u_exact)/V [%]"),
-        y: Axis::linear("y/L [-]").range(0.0, 1.0),
-        lines: SHOWN.map(|tau| line(variant, tau, true)).into(),
-        references: vec![(String::new(), vec![(0.0, 0.0), (0.0, 1.0)])],
-        symbols: true,
+    let panel = |title: String, x: &str, lines: Vec<CurveOf>, references| {
+        let (x, y) = (Axis::linear(x), Axis::linear("y/L [-]").range(0.0, 1.0));
+        CurvePanel { title, x, y, lines, references, symbols: true }
     };
-    let velocity = CurvePanel {
-        title: format!("{recommended}: velocity"),
-        x: Axis::linear("u/V [-]"),
-        y: Axis::linear("y/L [-]").range(0.0, 1.0),
-        lines: SHOWN.map(|tau| line(recommended, tau, false)).into(),
-        references: SHOWN.map(exact).into(),
-        symbols: true,
+    let of_difference = |variant: &str| {
+        let lines = SHOWN.map(|tau| line(variant, tau, true)).into();
+        let zero = vec![(String::new(), vec![(0.0, 0.0), (0.0, 1.0)])];
+        panel(format!("{variant}: computed minus exact"), "(u − u_exact)/V [%]", lines, zero)
     };
+    let lines = SHOWN.map(|tau| line(recommended, tau, false)).into();
+    let velocity =
+        panel(format!("{recommended}: velocity"), "u/V [-]", lines, SHOWN.map(exact).into());
     let caption = "Where in the channel is the velocity wrong? Means over rows at Re 0.5, 20 rows, minus the \
                    exact series; mind the scales.";
     let panels = vec![velocity, of_difference(recommended), of_difference("seed")];

@@ -37,7 +37,8 @@ type Table = table::Table<OperatorSettings, Group>;
 const SIDE: usize = 48;
 const DISORDER: f64 = 0.2;
 
-/// The runs of a tier: all kernels on a lattice, and ladders of one kernel in the quick tier.
+/// The runs of a tier: all kernels on a lattice, and ladders of one kernel in the quick tier; runs with a known
+/// answer are judged.
 fn table(tier: Tier) -> Table {
     let mut table = Table::new(&OPERATORS, tier);
     for of in subjects() {
@@ -60,12 +61,6 @@ fn table(tier: Tier) -> Table {
             });
         }
     }
-    table
-}
-
-/// The runs of a tier; runs with a known answer are judged.
-fn judged(tier: Tier) -> Table {
-    let mut table = table(tier);
     table.judge(|row| {
         let exact = "On a lattice a wave stays a wave, and its factor, the symbol of the sum, is known \
                      exactly. Steps of 1e-6 h/c0 change it by less than 1e-5 of itself.";
@@ -183,7 +178,7 @@ impl Group {
 
 /// The orders of the operators.
 pub(super) fn studies(tier: Tier) -> Studies {
-    let table = judged(tier);
+    let table = table(tier);
     let runs = table.plan();
     let section = move |runs: &Runs| section(tier, &table, runs);
     Studies::judging(runs.clone()).with(CustomStudy { runs, section })

@@ -1,7 +1,6 @@
 //! A clamped elastic bar that begins to swing under its own weight, against finite elements.
 
 mod end;
-mod path;
 mod plan;
 
 use std::f64::consts::TAU;
@@ -19,10 +18,9 @@ use crate::solids::solid::{
     self, ElasticBody, Elements, LAGRANGIAN, Path, SolidParameters, SolidScales, SolidSettings,
     TOTAL, Watch, lagrangian,
 };
-use end::{End, EnergySample};
-use path::{
-    AMPLITUDE_X, AMPLITUDE_Y, AVERAGE_X, AVERAGE_Y, FIRST_LEAST_Y, FREQUENCY, HARMONIC_X,
-    HARMONIC_Y, MEAN_X, MEAN_Y,
+use end::{
+    AMPLITUDE_X, AMPLITUDE_Y, AVERAGE_X, AVERAGE_Y, End, EnergySample, FIRST_LEAST_Y, FREQUENCY,
+    HARMONIC_X, HARMONIC_Y, MEAN_X, MEAN_Y,
 };
 
 touchstone_base::settings! {

@@ -13,7 +13,7 @@ use touchstone_harness::{
 use super::{
     ALL, AVERAGE_X_ERROR, AVERAGE_Y_ERROR, BENDING_FREQUENCY_ERROR, BENDING_SAG_ERROR, CANTILEVER,
     COMPARED, CantileverSettings, ENERGY_CHANGE, FIRST_LEAST_Y_ERROR, FIRST_SWING, FREQUENCY_ERROR,
-    HARMONIC_X_ERROR, HARMONIC_Y_ERROR, OF_METHODS, PATH_RMS, SAINT_VENANT, STEPWISE, end, path,
+    HARMONIC_X_ERROR, HARMONIC_Y_ERROR, OF_METHODS, PATH_RMS, SAINT_VENANT, STEPWISE, end,
 };
 use crate::solids::{
     causes::VISCOSITY,
@@ -131,7 +131,7 @@ pub fn facts() -> Facts {
     let held = "Clamped at x = 0: there the displacement is 0 at all times, along x and y. No force acts on \
                 the other faces. Weight acts from t = 0 on, on a bar without stress.";
     Facts {
-        statement: Statement::new(held, &[ALL, path::OF_PATH, &COMPARED.map(|(_, error)| error)]),
+        statement: Statement::new(held, &[ALL, end::OF_PATH, &COMPARED.map(|(_, error)| error)]),
         stepwise: STEPWISE,
         of_methods: OF_METHODS,
         curve: Some(path_of_end()),

@@ -8,18 +8,27 @@ mod measure;
 mod metrics;
 mod plan;
 mod reference;
-mod scene;
 mod studies;
 #[cfg(test)]
 mod tests;
 
-use touchstone_base::record::Status;
+use std::f64::consts::TAU;
+
+use nalgebra::{Rotation2, Vector2};
+use touchstone_base::{functions::rotation, record::Status};
 use touchstone_harness::prelude::*;
+use touchstone_harness::{method::Properties, snapshot::Snapshot};
+use touchstone_maths::geometry::layers;
+use touchstone_solver::{DivergenceBounds, Symmetric};
 
 use crate::{
-    solids::solid::{self, LAGRANGIAN, TOTAL, lagrangian as total},
+    solids::solid::{
+        self, ElasticBody, LAGRANGIAN, Material, SolidParameters, SolidScales, TOTAL,
+        lagrangian as total,
+    },
     stabilisation::Stabilisation,
 };
+use measure::RingHistory;
 
 touchstone_base::settings! {
     /// Settings of the collision of two rings; L is 1 m.
@@ -120,4 +129,102 @@ const MOST_ENERGY_GAINED: f64 = 0.01;
 fn is_stable(record: &Record) -> bool {
     let gained = record.value(metrics::ENERGY_GAINED);
     record.status == Status::Completed && gained.is_some_and(|gained| gained <= MOST_ENERGY_GAINED)
+}
+
+/// The largest number of layers that stay whole with corrected gradients at the paper's speed. Rings of 20
+/// tear at the inner face (docs/limits.md).
+const MOST_CORRECTED: f64 = 10.0;
+
+impl RingSettings {
+    /// Bulk sound speed c₀ \[m/s\].
+    pub fn c0(&self) -> f64 {
+        self.material().sound_speed()
+    }
+
+    /// Layers of particles.
+    fn layers(&self) -> f64 {
+        ((self.outer - self.inner) / self.spacing).round().max(1.0)
+    }
+
+    /// Rotates the line of flight to the x axis.
+    pub fn to_flight(&self) -> Rotation2<f64> {
+        rotation(-self.angle.to_radians())
+    }
+}
+
+impl ElasticBody for RingSettings {
+    type Watch = RingHistory;
+
+    fn common(&self) -> SolidParameters {
+        let shear = self.shear_modulus * self.bulk_modulus;
+        let material = Material { density: self.rho, bulk: self.bulk_modulus, shear };
+        SolidParameters {
+            material,
+            h_over_dx: self.h_over_dx,
+            dt: self.dt,
+            courant: Some(self.courant),
+        }
+    }
+
+    /// Twice the density or twice the speed of sound is no rubber any more.
+    fn scales(&self) -> SolidScales {
+        let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
+        let (density, speed) = (self.rho, self.speed * c0);
+        let most = 2.0 * (self.material().p_wave_speed() + speed);
+        SolidScales {
+            dx,
+            length: 2.0 * self.outer,
+            speed,
+            end: self.end / c0,
+            count: TAU * (self.outer * self.outer - self.inner * self.inner) / (dx * dx),
+            decisive: "end, dt, courant, spacing or outer",
+            meet: true,
+            stops: self.samples,
+            bounds: DivergenceBounds { density: [0.5 * density, 2.0 * density], speed: most },
+            ..SolidScales::default()
+        }
+    }
+
+    fn check(&self) -> Result<(), RunError> {
+        let too_much =
+            |what, value, most, setting| Err(RunError::TooMuch { what, value, most, setting });
+        let widest = self.outer - 2.0 * self.spacing;
+        if self.inner > widest {
+            return too_much("the inner radius", self.inner, widest, "inner, outer or spacing");
+        }
+        if self.outer > self.centre {
+            // The rings would overlap before the first step.
+            return too_much("the outer radius", self.outer, self.centre, "outer or centre");
+        }
+        Ok(())
+    }
+
+    fn unstable(&self, method: &Properties) -> Option<RunError> {
+        (method.is_corrected && self.layers() > MOST_CORRECTED).then(|| RunError::TooMuch {
+            what: "the number of layers of rings with corrected gradients",
+            value: self.layers(),
+            most: MOST_CORRECTED,
+            setting: "spacing, or use --allow-unstable",
+        })
+    }
+
+    /// The ring on the right is the mirror image of the one on the left, in the same order.
+    fn particles(&self) -> Vec<Particle<Symmetric>> {
+        let (dx, v) = (self.dx(), self.speed());
+        let rotation = self.to_flight().inverse();
+        let places = layers([self.inner, self.outer], dx);
+        let ring = |side: f64| {
+            // On the right: the mirror image, to the last bit.
+            places.iter().map(move |(place, volume)| {
+                let place = Vector2::new(side * (self.centre + place.x), place.y);
+                let velocity = Vector2::new(-side * v, 0.0);
+                Particle::fluid(rotation * place, rotation * velocity, self.rho, *volume)
+            })
+        };
+        ring(-1.0).chain(ring(1.0)).collect()
+    }
+
+    fn watch(&self, scene: &Snapshot<Symmetric>, start: &Snapshot<Symmetric>) -> RingHistory {
+        RingHistory::new(self, scene, start)
+    }
 }

@@ -1,11 +1,15 @@
 //! Runs of made-up motion, whose measures are known.
 
+use std::f64::consts::TAU;
+
 use approx::assert_abs_diff_eq;
+use nalgebra::Vector2;
 use touchstone_base::{
     functions::exp,
     record::{MetricName, Record, Status},
 };
 use touchstone_harness::{case::Case, context::Context, snapshot::Snapshot};
+use touchstone_solver::{Particle, Symmetric};
 
 use super::{
     RUBBER_RINGS, RingSettings,
@@ -18,7 +22,7 @@ use super::{
     },
     reference::RingReference,
 };
-use crate::solids::solid::ElasticBody;
+use crate::solids::solid::{self, ElasticBody};
 
 /// Coarse rings that fly at 0.06 c0.
 fn settings() -> RingSettings {
@@ -249,4 +253,34 @@ fn rings_at_half_the_speed_of_sound_keep_their_momentum_or_diverge() {
         Status::Completed => assert!(value(&record, MOMENTUM) < 1e-12),
         status => assert!(matches!(status, Status::Diverged { .. }), "{status:?}"),
     }
+}
+
+#[test]
+fn mass_is_exact_and_rings_are_mirror_images() {
+    let rings = RingSettings::default();
+    let particles = rings.particles();
+    let mass: f64 = particles.iter().map(|p| p.mass).sum();
+    assert!((mass / (TAU * 7.0) - 1.0).abs() < 1e-12, "{mass}");
+    let (left, right) = particles.split_at(particles.len() / 2);
+    for (l, r) in left.iter().zip(right) {
+        assert_eq!((l.position.x, l.position.y), (-r.position.x, r.position.y));
+        assert_eq!((l.velocity.x, l.mass), (-r.velocity.x, r.mass));
+    }
+    let mirrored = |p: &Particle<Symmetric>| {
+        left.iter().any(|q| q.position == Vector2::new(p.position.x, -p.position.y))
+    };
+    assert!(left.iter().all(mirrored));
+    assert_eq!(rings.dx(), 0.1);
+}
+
+#[test]
+fn settings_that_make_no_rings_are_refused() {
+    let refused = |set| {
+        let error = solid::tests::refused(&RUBBER_RINGS, "leapfrog", set);
+        error.unwrap_or_else(|| panic!("{set} is not refused")).to_string()
+    };
+    assert!(refused("centre=3.9").contains("outer radius"));
+    assert!(refused("inner=3.9").contains("inner radius"));
+    assert!(refused("dt=1").contains("theoretical limit"));
+    assert!(refused("dt=1e-12").contains("time steps"));
 }
