@@ -23,8 +23,11 @@ touchstone_base::metrics! {
     WORK_WALLS = "work_walls" ["-"] "energy that walls has added until the end/{}";
 }
 
+/// The energy of a term.
+type WorkOf = fn(&EnergyItems) -> f64;
+
 /// The works of terms, which are columns of the series too.
-const WORKS: [(MetricKey, fn(&EnergyItems) -> f64); 6] = [
+const WORKS: [(MetricKey, WorkOf); 6] = [
     (WORK_VISCOSITY, |of| of.viscosity),
     (WORK_STRESS, |of| of.stress),
     (WORK_DAMPER, |of| of.damper),
