@@ -119,14 +119,16 @@ pub fn floats() -> Question {
             let (from, to) = (fixed(shallow, 2), fixed(deep, 2));
             let moved =
                 format!("from {less} and {more} rows it has risen by {from} and {to} spacings");
-            let floats = deep - shallow > 0.1 * shallow.abs();
-            let words = match floats {
-                true => format!(
+            let has_buoyancy = deep - shallow > 0.1 * shallow.abs();
+            let floats = has_buoyancy && (0.0..SIDE as f64).contains(&draft);
+            let words = match (has_buoyancy, floats) {
+                (false, _) => format!("no buoyancy: {moved}"),
+                (true, false) => format!("a force acts on it at every depth: {moved}"),
+                (true, true) => format!(
                     "no force acts on it with {} of its {SIDE} rows in the water: {}; {moved}",
                     fixed(draft, 1),
                     factor.of("the buoyancy")
                 ),
-                false => format!("no buoyancy: {moved}"),
             };
             let criteria = [
                 Criterion::new(
