@@ -46,10 +46,11 @@ FAULTS = {
     },
     # Unmodified only.
     "touchstone plain": {}, "touchstone seed": {}, "touchstone consistent": {}, "pysph tvf": {}, "pysph edac": {},
-    "jax-sph TVF": {}, "jax-sph SPH": {},
+    "jax-sph TVF": {}, "jax-sph SPH": {}, "lammps-rheo": {},
 }
 # The interpreter and the adapter of each code in Python.
 ADAPTERS = {"pysph": (PYTHON, "pysph_fluid/run.py"), "lammps": (PYTHON, "lammps_sph/run.py"),
+            "lammps-rheo": (PYTHON, "lammps_rheo/probe.py"),
             "jax-sph": (os.environ.get("JAX_PYTHON", sys.executable), "jax_sph/probe.py")}
 # Variants of our own program with a fault: gradients of `seed` are not corrected at free faces.
 VARIANTS = {"rotation-as-strain": "seed", "one-sided-gradient": "seed", "componentwise-stress": "componentwise",
