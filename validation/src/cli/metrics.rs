@@ -178,8 +178,8 @@ pub fn changes<'a>(
     names.into_iter().filter_map(one).collect()
 }
 
-/// The bound that states the better side of a metric that no gate of the run reads: a one-sided bound of gates
-/// of the case on this metric with any mark (`l2` of `l2@0.1`), if all of them have the same side.
+/// The bound that states the better side of a metric that no gate of the run reads: a one-sided bound of
+/// gates of the case on this metric with any mark (`l2` of `l2@0.1`), if all of them have the same side.
 fn side(case: &GateIndex, metric: &str) -> Option<Bound> {
     let gates = case.judged().iter().flat_map(|planned| &planned.gates);
     let of_metric = gates

@@ -19,8 +19,8 @@ pub fn factor(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> Factor {
     Factor { value, uncertainty: (off / square / f64::max(count - 1.0, 1.0)).sqrt() }
 }
 
-/// The factor in the limit of fine spacing, from those of two spacings dx: with an error c dx², g(dx) = g0 − c dx²
-/// gives g0. Its uncertainty is what remains of the fourth order, (g0 − g)² of the finer one.
+/// The factor in the limit of fine spacing, from those of two spacings dx: with an error c dx², g(dx) = g0
+/// − c dx² gives g0. Its uncertainty is what remains of the fourth order, (g0 − g)² of the finer one.
 pub fn limit([coarse, fine]: [Factor; 2], spacings: [f64; 2]) -> Factor {
     let ratio = (spacings[0] / spacings[1]).powi(2);
     let value = fine.value + (fine.value - coarse.value) / (ratio - 1.0);

@@ -13,8 +13,8 @@ const LIGHT: f64 = 0.5;
 /// Rows in the water in the two problems, one less and one more than at rest.
 const DRAFTS: [usize; 2] = [4, 6];
 
-/// Uncertainty of the buoyancy: with the deeper draft the box and the water that moves with it are up to a fifth
-/// heavier, and the draft at rest lies 0.1 rows nearer to this one.
+/// Uncertainty of the buoyancy: with the deeper draft the box and the water that moves with it are up to a
+/// fifth heavier, and the draft at rest lies 0.1 rows nearer to this one.
 const ADDED_MASS: f64 = 0.02;
 
 /// Words for another code.

@@ -68,11 +68,12 @@ fn standing(of: &Solved, factor: f64) -> Result<[f64; 2], NotApplicable> {
     Ok([atan2(density, velocity), hypot(density, velocity)])
 }
 
-/// Uncertainty of a sound speed on fine spacing: usual kernels have the lattice sum c² over 3.6 spacings to 0.1 %.
+/// Uncertainty of a sound speed on fine spacing: usual kernels have the lattice sum c² over 3.6 spacings to
+/// 0.1 %.
 const LATTICE: f64 = 0.001;
 
-/// The factor of the sound speed by the phase of a wave after a period, and its amplitude over that of the start.
-/// The phase of an early time, less than half a turn, gives the whole turns of the late one.
+/// The factor of the sound speed by the phase of a wave after a period, and its amplitude over that of the
+/// start. The phase of an early time, less than half a turn, gives the whole turns of the late one.
 fn period([early, late]: [&Solved; 2]) -> Result<[f64; 2], NotApplicable> {
     let expected =
         |of: &Solved| wave_number(of) * of.problem.outline.medium.eos.sound_speed * of.end().time;

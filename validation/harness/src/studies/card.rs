@@ -319,8 +319,8 @@ impl Answer<'_> {
         self.studies.first::<Card>().and_then(|card| (card.stated)(spec).uncertainty)
     }
 
-    /// The comparison of the error of a run with a reference that has an uncertainty: as the case declares it,
-    /// or else by the levels of its variant up to this run.
+    /// The comparison of the error of a run with a reference that has an uncertainty: as the case declares
+    /// it, or else by the levels of its variant up to this run.
     fn compared(&self, spec: &RunSpec) -> Option<ComparisonResult> {
         let is_this = |of: &&Comparison| {
             let finest = of.levels.last().map(|level| level.run.spec.key());

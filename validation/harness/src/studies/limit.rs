@@ -114,7 +114,8 @@ mod tests {
     use super::*;
     use crate::studies::tests::{column, evaluate, records, spec, tables};
 
-    /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, and default/theory 0.75.
+    /// A limit of x = 1.2 where theory has 0.8 and the default is 0.6: 1.5 of theory, and default/theory
+    /// 0.75.
     #[test]
     fn limit_and_default_step_are_stated_over_theory() {
         let bisect =

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use touchstone_base::functions::sin_cos;
 
-/// Places and volumes \[m²\] of the particles of a ring between two radii, in concentric layers dx apart. Their
-/// numbers are multiples of four, so that the volume is exact, the edge is smooth, and the ring is its own
-/// mirror image to the last bit.
+/// Places and volumes \[m²\] of the particles of a ring between two radii, in concentric layers dx apart.
+/// Their numbers are multiples of four, so that the volume is exact, the edge is smooth, and the ring is
+/// its own mirror image to the last bit.
 pub fn layers([inner, outer]: [f64; 2], dx: f64) -> Vec<(Vector2<f64>, f64)> {
     let mut places = Vec::new();
     for k in 0..((outer - inner) / dx).round() as usize {

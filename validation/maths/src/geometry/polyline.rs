@@ -2,9 +2,9 @@
 
 use nalgebra::Vector2;
 
-/// A row at a depth \[m\] behind a line of straight sides, which has the fluid on its left: a particle on each
-/// vertex, where sides meet on the line that halves their angle, and others between, about dx apart; places
-/// with their spacing.
+/// A row at a depth \[m\] behind a line of straight sides, which has the fluid on its left: a particle on
+/// each vertex, where sides meet on the line that halves their angle, and others between, about dx apart;
+/// places with their spacing.
 pub fn row_behind(vertices: &[Vector2<f64>], depth: f64, dx: f64) -> Vec<(Vector2<f64>, f64)> {
     let normals: Vec<Vector2<f64>> = vertices
         .windows(2)

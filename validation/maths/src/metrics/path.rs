@@ -103,7 +103,8 @@ impl Path {
         })
     }
 
-    /// Mean and amplitude along an axis \[m\]. Where an extreme is at an end of the path, it is the value there.
+    /// Mean and amplitude along an axis \[m\]. Where an extreme is at an end of the path, it is the value
+    /// there.
     pub fn mean_and_amplitude(&self, axis: usize) -> [f64; 2] {
         let all = || self.0.iter().map(|at| at.displacement[axis]);
         let ends = [all().fold(f64::NEG_INFINITY, f64::max), all().fold(f64::INFINITY, f64::min)];

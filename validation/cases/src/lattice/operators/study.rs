@@ -37,8 +37,8 @@ type Table = table::Table<OperatorSettings, Group>;
 const SIDE: usize = 48;
 const DISORDER: f64 = 0.2;
 
-/// The runs of a tier: all kernels on a lattice, and ladders of one kernel in the quick tier; runs with a known
-/// answer are judged.
+/// The runs of a tier: all kernels on a lattice, and ladders of one kernel in the quick tier; runs with a
+/// known answer are judged.
 fn table(tier: Tier) -> Table {
     let mut table = Table::new(&OPERATORS, tier);
     for of in subjects() {
