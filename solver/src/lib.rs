@@ -27,7 +27,7 @@
 //! divergence is the regular result [`Outcome::Diverged`].
 
 pub mod domain;
-pub mod engine;
+mod engine;
 pub mod eos;
 pub mod integrator;
 pub mod inverse;
@@ -37,7 +37,7 @@ pub mod lane;
 mod neighbours;
 pub mod numbers;
 pub mod parallel;
-pub mod particle_data;
+mod particle_data;
 pub mod particles;
 pub mod physics;
 #[cfg(test)]

@@ -30,7 +30,7 @@
 
 pub mod body;
 pub mod law;
-pub mod load;
+mod load;
 pub mod reference;
 pub mod solid;
 

@@ -296,11 +296,6 @@ impl MetricName {
     pub fn formula(&self) -> String {
         self.key.formula.replace("{}", &self.what)
     }
-
-    /// Whether the name of a metric in a record or a gate belongs to this key, at any time or other mark.
-    pub fn is(&self, name: &str) -> bool {
-        is_of(&[self.key], name)
-    }
 }
 
 impl From<MetricKey> for MetricName {

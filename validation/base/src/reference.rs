@@ -7,8 +7,7 @@
 //! ```
 //! use touchstone_base::reference::Reference;
 //! let table = Reference::load("periodic_hill")?.table("profiles")?.clone();
-//! assert_eq!((table.numbers("re")?[1], table.numbers("y")?[1]), (10.0, 1.0152625));
-//! assert_eq!(table.unit("y")?, "H");
+//! assert_eq!(table.select(&[], ["re", "y"])?[1], [10.0, 1.0152625]);
 //! # Ok::<(), touchstone_base::reference::ReferenceError>(())
 //! ```
 
@@ -323,11 +322,6 @@ impl Reference {
 }
 
 impl Table {
-    /// The unit of a column.
-    pub fn unit(&self, column: &str) -> Result<&str, ReferenceError> {
-        Ok(&self.fields[self.position(column)?].unit)
-    }
-
     /// The rows that have these texts in these columns.
     pub fn rows_of(&self, of: &[(&str, &str)]) -> Result<Vec<usize>, ReferenceError> {
         let mut rows: Vec<usize> = (0..self.rows.len()).collect();
@@ -342,11 +336,6 @@ impl Table {
     pub fn texts(&self, column: &str) -> Result<Vec<&str>, ReferenceError> {
         let position = self.position(column)?;
         Ok(self.rows.iter().map(|row| row[position].as_str()).collect())
-    }
-
-    /// A column of numbers without gaps.
-    pub fn numbers(&self, column: &str) -> Result<Vec<f64>, ReferenceError> {
-        Ok(self.select(&[], [column])?.into_flattened())
     }
 
     /// Columns of numbers without gaps, of the rows that have these texts in these columns.
@@ -520,16 +509,16 @@ mod tests {
     }
 
     #[test]
-    fn columns_come_by_name_with_their_units() {
+    fn columns_come_by_name() {
         let reference = load(&package(), TABLE).unwrap();
         let table = reference.table("profile").unwrap();
-        assert_eq!((table.rows.len(), table.unit("u")), (3, Ok("m/s")));
-        assert_eq!(table.numbers("y").unwrap(), [0.1, 0.2, 0.3]);
+        assert_eq!(table.rows.len(), 3);
+        assert_eq!(table.select(&[], ["y"]).unwrap(), [[0.1], [0.2], [0.3]]);
         assert_eq!(table.select(&[("who", "b")], ["u", "y"]).unwrap(), [[-0.86636, 0.2]]);
         assert_eq!(table.texts("who").unwrap(), ["a", "b", "c"]);
         let says = |error: ReferenceError| error.to_string();
         let gap = "row 2, column u of table profile is \"\", which is not a number";
-        assert_eq!(says(table.numbers("u").unwrap_err()), gap);
+        assert_eq!(says(table.select(&[], ["u"]).unwrap_err()), gap);
         let unknown = "table profile has no column \"v\"; there are y, u, who";
         assert_eq!(says(table.texts("v").unwrap_err()), unknown);
         let unknown = "reference sample has no table \"p\"; there are profile";
@@ -652,7 +641,13 @@ mod tests {
     #[test]
     fn the_columns_of_water_fall_and_their_fronts_advance() {
         let numbers = |name: &str, table: &str, column: &str| -> Vec<f64> {
-            Reference::load(name).unwrap().table(table).unwrap().numbers(column).unwrap()
+            Reference::load(name)
+                .unwrap()
+                .table(table)
+                .unwrap()
+                .select(&[], [column])
+                .unwrap()
+                .into_flattened()
         };
         let rises = |values: &[f64]| values.windows(2).all(|w| w[0] < w[1]);
         let (mm, tank) = ("dambreak_martin_moyce", "dambreak_lobovsky");

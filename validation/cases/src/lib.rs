@@ -2,15 +2,15 @@
 
 pub mod fluids;
 pub mod lattice;
-pub mod limitations;
+mod limitations;
 pub mod page;
 pub mod peers;
-pub mod probes;
-pub mod solids;
-pub mod stabilisation;
+mod probes;
+mod solids;
+mod stabilisation;
 pub mod stiffness;
 mod time;
-pub mod waters;
+mod waters;
 
 use touchstone_base::reference::Reference;
 use touchstone_harness::case::{Case, RunError};

@@ -67,7 +67,7 @@ impl Bar {
             let from = bar.at((0.5, step as f64 / STEPS as f64));
             canvas.line(from, bar.at((0.5, 1.0)), self.colour(step), WIDTH);
         }
-        canvas.frame(bar, Colour::BLACK, 1.0);
+        canvas.frame(bar);
         let Ruler { major, label, .. } = &self.values;
         for (x, y) in major.iter().map(|(unit, _)| bar.at((1.0, *unit))) {
             canvas.line((x, y), (x + 4.0, y), Colour::BLACK, 1.0);

@@ -135,8 +135,8 @@ impl<'a> Canvas<'a> {
     }
 
     /// The outline of a rectangle.
-    pub fn frame(&mut self, rect: Rect, colour: Colour, width: f64) {
-        self.outline(&rect.corners(), colour, width);
+    pub fn frame(&mut self, rect: Rect) {
+        self.outline(&rect.corners(), Colour::BLACK, 1.0);
     }
 
     /// The outline of a polygon.

@@ -278,7 +278,7 @@ impl<'a> Prepared<'a> {
             canvas.text(mark.text, at, Type::new(MARK_EM, Align::Start).colour(mark.colour));
         }
         canvas.series("");
-        canvas.frame(area, Colour::BLACK, 1.0);
+        canvas.frame(area);
         if let Some(bar) = self.own_bar() {
             bar.draw(canvas, area);
         }

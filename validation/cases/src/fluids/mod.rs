@@ -1,10 +1,10 @@
 //! Viscous flows.
 
-pub mod cavity;
+pub(crate) mod cavity;
 pub mod channel;
-pub mod manufactured;
-pub mod periodic_hill;
-pub mod slip_channel;
-pub mod taylor_couette;
-pub mod taylor_green;
+pub(crate) mod manufactured;
+pub(crate) mod periodic_hill;
+pub(crate) mod slip_channel;
+pub(crate) mod taylor_couette;
+pub(crate) mod taylor_green;
 mod unit_flow;

@@ -1,9 +1,9 @@
 //! Particles on a lattice: waves, stability limits of the time step, extreme settings.
 
-pub mod extremes;
-pub mod operators;
-pub mod resting_box;
-pub mod wave;
+pub(crate) mod extremes;
+pub(crate) mod operators;
+pub(crate) mod resting_box;
+pub(crate) mod wave;
 
 use nalgebra::Vector2;
 use touchstone_harness::prelude::*;

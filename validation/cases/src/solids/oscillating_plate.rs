@@ -442,11 +442,11 @@ fn facts() -> Facts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solids::solid::PathPoint;
     use approx::assert_relative_eq;
     use touchstone_base::functions::sin;
     use touchstone_base::record::Status;
     use touchstone_harness::{case::Case, context::Context};
+    use touchstone_maths::metrics::path::PathPoint;
 
     /// A tip at a sin(2 pi t/T), at times that do not divide the period.
     fn swing(s: &PlateSettings, periods: f64) -> Record {

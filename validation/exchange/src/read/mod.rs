@@ -4,7 +4,7 @@
 #[cfg(feature = "vtk")]
 mod binary;
 mod columns;
-pub mod curve;
+pub(crate) mod curve;
 mod dump;
 mod table;
 #[cfg(feature = "vtk")]

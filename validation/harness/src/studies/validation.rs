@@ -123,20 +123,17 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// All, each with its name for programs and the one under which it is counted.
-    const NAMES: [(Self, &str, &str); 7] = [
-        (Self::Converges, "converges", "converging to the exact solution"),
-        (Self::Stops, "stops", "stopping at an error"),
-        (Self::NotDistinguishable, "not-distinguishable", "not distinguishable from the reference"),
-        (Self::ModelError, "model-error", "with an error beyond the uncertainty"),
-        (Self::TooUncertain, "too-uncertain", "too uncertain"),
-        (Self::LadderDoesNotTell, "ladder-does-not-tell", "where the ladder does not tell"),
-        (Self::Unknown, "unknown", "without a run"),
-    ];
-
     /// The name for programs.
     pub fn name(self) -> &'static str {
-        Self::NAMES.into_iter().find(|of| of.0 == self).map_or("unknown", |of| of.1)
+        match self {
+            Self::Converges => "converges",
+            Self::Stops => "stops",
+            Self::NotDistinguishable => "not-distinguishable",
+            Self::ModelError => "model-error",
+            Self::TooUncertain => "too-uncertain",
+            Self::LadderDoesNotTell => "ladder-does-not-tell",
+            Self::Unknown => "unknown",
+        }
     }
 }
 
@@ -372,17 +369,6 @@ fn of_uncertain(rows: &[Row]) -> Table {
         .table(format!("{caption} Uncertainties of {}.", sources.join("; of ")), rows)
 }
 
-/// One line for the card of a case: how many comparisons ended how.
-pub fn line(comparisons: &[Comparison], runs: &Runs) -> Option<String> {
-    let said: Vec<Conclusion> =
-        comparisons.iter().map(|of| ComparisonResult::of(of, runs).conclusion()).collect();
-    let counted = Conclusion::NAMES.into_iter().filter_map(|(of, _, name)| {
-        let count = said.iter().filter(|said| **said == of).count();
-        (count > 0).then(|| format!("{count} {name}"))
-    });
-    (!said.is_empty()).then(|| counted.collect::<Vec<_>>().join(", "))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -556,14 +542,10 @@ mod tests {
         assert_eq!(column(uncertain, "E"), ["22 %"]);
         assert_eq!(column(uncertain, "u_input"), ["5.0 %"]);
         assert_eq!(column(exact, "verdict"), ["stops at 20 %"]);
-        let said = line(&all, &runs).expect("a line");
-        assert_eq!(said, "1 stopping at an error, 1 with an error beyond the uncertainty");
-        assert_eq!(line(&[], &runs), None);
     }
 
-    /// Each verdict is counted under its own name.
     #[test]
-    fn the_card_counts_each_verdict_under_its_own_name() {
+    fn each_ladder_has_its_conclusion() {
         let uncertain =
             |variant, ns: &[usize]| Comparison { reference: 0.01, ..comparison(variant, ns) };
         let (ladder, law) = ([10, 14, 20], |n: f64| 1.0 / (n * n));
@@ -578,20 +560,19 @@ mod tests {
         ];
         let made = runs(all.concat());
         let compared = [
-            comparison("law", &ladder),
-            comparison("floor", &ladder),
-            uncertain("law", &ladder),
-            uncertain("floor", &ladder),
-            uncertain("slow", &ladder),
-            uncertain("noise", &ladder),
-            uncertain("none", &ladder),
-            uncertain("missing", &ladder),
+            (comparison("law", &ladder), Conclusion::Converges),
+            (comparison("floor", &ladder), Conclusion::Stops),
+            (uncertain("law", &ladder), Conclusion::NotDistinguishable),
+            (uncertain("floor", &ladder), Conclusion::ModelError),
+            (uncertain("slow", &ladder), Conclusion::TooUncertain),
+            (uncertain("noise", &ladder), Conclusion::LadderDoesNotTell),
+            (uncertain("none", &ladder), Conclusion::Unknown),
+            (uncertain("missing", &ladder), Conclusion::Unknown),
         ];
-        let expected = "\
-            1 converging to the exact solution, 1 stopping at an error, 1 not distinguishable from the \
-            reference, 1 with an error beyond the uncertainty, 1 too uncertain, 1 where the ladder \
-            does not tell, 2 without a run";
-        let runs = whole(Comparisons(compared.to_vec()).runs(), made);
-        assert_eq!(line(&compared, &runs).as_deref(), Some(expected));
+        let all = compared.iter().map(|(of, _)| of.clone()).collect();
+        let runs = whole(Comparisons(all).runs(), made);
+        for (of, expected) in &compared {
+            assert_eq!(ComparisonResult::of(of, &runs).conclusion(), *expected);
+        }
     }
 }

@@ -1,13 +1,13 @@
 //! Exact solutions of the continuous equations, the references of runs.
 
-pub mod elliptic_drop;
+mod elliptic_drop;
 pub mod hydrostatic;
 pub mod impact;
 pub mod manufactured;
 pub mod plane_wave;
-pub mod start_up;
-pub mod taylor_couette;
-pub mod taylor_green;
+mod start_up;
+mod taylor_couette;
+mod taylor_green;
 pub mod thin_plate;
 
 pub use elliptic_drop::EllipticDrop;

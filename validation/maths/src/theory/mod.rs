@@ -6,7 +6,7 @@ pub mod faces;
 pub mod lagrangian;
 pub mod lattice;
 pub mod steps;
-pub mod super_steps;
+mod super_steps;
 pub mod time_step;
 
 pub use time_step::Stepping;

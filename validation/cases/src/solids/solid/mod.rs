@@ -15,15 +15,16 @@ pub use energy::{ElasticEnergy, angular_momentum};
 pub use lagrangian::{LAGRANGIAN, TOTAL};
 pub use material::{limits, medium_of};
 pub use problem::{
-    ElasticBody, SolidParameters, SolidScales, Watch, clamp, leave_out, medium, no_variants,
-    variants,
+    ElasticBody, SolidParameters, SolidScales, Watch, leave_out, no_variants, variants,
 };
+#[cfg(test)]
+pub use problem::{clamp, medium};
 pub use touchstone_maths::{
     geometry::corners,
     metrics::{
         elastic::{Material, norm_squared},
         norms::largest,
-        path::{Path, PathPoint},
+        path::Path,
     },
 };
 
