@@ -45,7 +45,6 @@ pub mod runner;
 pub mod runs;
 pub mod sealed;
 pub mod section;
-pub mod series;
 pub mod size;
 pub mod snapshot;
 pub mod store;

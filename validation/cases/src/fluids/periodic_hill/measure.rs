@@ -9,7 +9,6 @@ use touchstone_base::{
 };
 use touchstone_harness::{
     pictures,
-    series::Series,
     snapshot::{Point, Snapshot},
 };
 use touchstone_maths::metrics::{
@@ -76,6 +75,15 @@ const OF_FIELD: &[MetricKey] = &[
 /// Metrics that compare with the reference.
 const COMPARED: [MetricKey; 5] = [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REATTACHMENT_ERROR];
 
+/// What drives the flow, and the flow that it drives.
+#[derive(Clone, Serialize, Deserialize)]
+pub struct Drive {
+    /// Body force \[m/s²\].
+    pub force: Result<f64, Absent>,
+    /// Flux of volume \[m²/s\].
+    pub flux: Result<f64, Absent>,
+}
+
 /// Sums over samples of the last part of the run.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Window {
@@ -83,8 +91,8 @@ pub struct Window {
     sections: Vec<[f64; 2]>,
     /// Shear stress on the hill and on the lid, pressure on the hill.
     wall: Vec<[f64; 3]>,
-    /// Force and flux of every stretch.
-    pub forces: Series<2>,
+    /// Of every stretch.
+    pub drives: Vec<Drive>,
     samples: usize,
     /// Why there are no samples of the field.
     absent: Option<Absent>,
@@ -169,11 +177,12 @@ pub fn mean_velocity(now: &Snapshot, area: f64) -> Result<f64, Absent> {
 /// Metrics and profiles.
 pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Record) {
     let (sections, wall) = (window.mean(&window.sections), window.mean(&window.wall));
-    let mean = |k: usize| {
-        let column = window.forces.column(k)?;
-        Ok(column.iter().sum::<f64>() / column.len() as f64)
+    let mean = |of: fn(&Drive) -> &Result<f64, Absent>| {
+        let all: Vec<f64> =
+            window.drives.iter().map(|drive| of(drive).clone()).collect::<Result<_, _>>()?;
+        Ok::<f64, Absent>(all.iter().sum::<f64>() / all.len() as f64)
     };
-    let (force, flux): (Result<f64, Absent>, Result<f64, Absent>) = (mean(0), mean(1));
+    let (force, flux) = (mean(|drive| &drive.force), mean(|drive| &drive.flux));
     record.put_or_absent(FORCE, force.clone());
     let relative = |value: f64| (setup.flux() != 0.0).then_some(value);
     let none = "the flux wanted is 0, so no error relative to it exists";
@@ -387,7 +396,8 @@ mod tests {
         let mut window = Window::default();
         window.add(&setup, points, &|r2| simulation.weight(r2));
         for ripple in [-1e-3, 1e-3] {
-            window.forces.push([Ok(force * (1.0 + ripple)), Ok(flux * (1.0 + 2.0 * ripple))]);
+            let (force, flux) = (Ok(force * (1.0 + ripple)), Ok(flux * (1.0 + 2.0 * ripple)));
+            window.drives.push(Drive { force, flux });
         }
         let area = setup.area();
         let mut record = Record::new("periodic_hill", "carried", serde_json::Value::Null, 1);

@@ -4,10 +4,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::record::Status;
 use touchstone_harness::prelude::*;
-use touchstone_harness::{
-    series::Series,
-    snapshot::{Snapshot, kinetic},
-};
+use touchstone_harness::snapshot::{Snapshot, kinetic};
 use touchstone_maths::{
     control::Controller,
     geometry::{Curve, Hill},
@@ -17,7 +14,7 @@ use touchstone_solver::Role;
 
 use super::{
     HillSettings,
-    measure::{Window, mean_velocity, measure, particles},
+    measure::{Drive, Window, mean_velocity, measure, particles},
     reference::{HillReference, KNOWN_SETTINGS},
 };
 use crate::fluids::unit_flow::{FlowScales, UnitFlow};
@@ -150,13 +147,22 @@ fn is_last(time: f64, end: f64, length: f64) -> bool {
     (end - time) / length - 1e-9 < 1.0
 }
 
+/// The flow at a time.
+#[derive(Serialize, Deserialize)]
+struct FlowSample {
+    /// \[s\].
+    time: f64,
+    drive: Drive,
+    /// Kinetic energy \[J/m\].
+    kinetic: f64,
+}
+
 /// Holds the flux and samples the flow through time.
 #[derive(Serialize, Deserialize)]
 pub struct Monitor {
     controller: Controller,
     window: Window,
-    /// t, force, flux, kinetic energy.
-    series: Series<4>,
+    series: Vec<FlowSample>,
     /// Area of the fluid \[m²\].
     area: f64,
     /// Time between looks \[s\].
@@ -173,15 +179,16 @@ impl Monitor {
         let flux = mean.map(|mean| mean * self.area / setup.hill.period());
         // The force of another code is not known.
         let force = now.simulation().map(|_| self.controller.force);
+        let drive = Drive { force, flux };
         let HillSettings { end, average, .. } = setup.settings;
         if is_last(time, end, average * end) {
-            self.window.forces.push([force.clone(), flux.clone()]);
+            self.window.drives.push(drive.clone());
             if is_first([time, self.stretch], average * end / SAMPLES) {
                 self.window.sample(setup, now);
             }
         }
         if is_first([time, self.stretch], ENTRY) {
-            self.series.push([Ok(time), force, flux, Ok(kinetic(now.stored()))]);
+            self.series.push(FlowSample { time, drive, kinetic: kinetic(now.stored()) });
         }
     }
 }
@@ -236,10 +243,10 @@ impl Problem for HillSetup {
         let mean = known.clone().unwrap_or_default();
         let wanted = self.flux() * period / area;
         let controller = Controller::new(wanted, s.response, s.force, mean);
-        let mut series = Series::default();
         let force = start.simulation().map(|_| s.force);
         let flux = known.map(|mean| mean * area / period);
-        series.push([Ok(0.0), force, flux, Ok(kinetic(start.stored()))]);
+        let (drive, kinetic) = (Drive { force, flux }, kinetic(start.stored()));
+        let series = vec![FlowSample { time: 0.0, drive, kinetic }];
         let (window, stretch) = (Window::default(), s.end / self.stretches());
         Monitor { controller, window, series, area, stretch, mean }
     }
@@ -265,9 +272,16 @@ impl Problem for HillSetup {
             measure(self, &window, area, record);
             particles(self, end, OptionalOutput::of(&record.run).particles, record);
         }
-        let (force, flux) = (("force", "U_b^2/H"), ("flux", "U_b H"));
-        let columns = [("t", "H/U_b"), force, flux, ("kinetic energy", "rho U_b^2 H^2")];
-        record.profiles.insert("series".into(), series.profile(&columns));
+        let series = Profile::of_known(
+            &series,
+            &[
+                ("t", "H/U_b", &|at| Ok(at.time)),
+                ("force", "U_b^2/H", &|at| at.drive.force.clone()),
+                ("flux", "U_b H", &|at| at.drive.flux.clone()),
+                ("kinetic energy", "rho U_b^2 H^2", &|at| Ok(at.kinetic)),
+            ],
+        );
+        record.profiles.insert("series".into(), series);
     }
 }
 

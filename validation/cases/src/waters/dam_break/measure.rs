@@ -6,10 +6,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
 use touchstone_harness::prelude::*;
-use touchstone_harness::{
-    series::Series,
-    snapshot::{Point, Snapshot},
-};
+use touchstone_harness::snapshot::{Point, Snapshot};
 use touchstone_maths::metrics::{
     curve::fallen_back,
     gauge::{self, Spot, Weight, depth, probe},
@@ -96,13 +93,27 @@ fn centre(water: &Snapshot) -> f64 {
     moment / mass
 }
 
+/// The water at a time.
+#[derive(Serialize, Deserialize)]
+struct TankSample {
+    /// \[s\].
+    time: f64,
+    /// Place of the front \[m\].
+    front: f64,
+    /// Residual height \[m\].
+    height: Result<f64, Absent>,
+    /// Levels at H1 to H4 \[m\].
+    levels: [Result<f64, Absent>; 4],
+    /// Potential energy \[M g H/2\].
+    potential: f64,
+}
+
 /// Samples of a run.
 #[derive(Serialize, Deserialize)]
 pub struct Samples {
     /// x of the foremost particle at the start, and the floor under the water then \[m\].
     start: [f64; 2],
-    /// t \[s\], front, residual height, levels at H1 to H4 \[m\], potential energy \[M g H/2\].
-    rows: Series<8>,
+    series: Vec<TankSample>,
     /// Height of the centre of mass at the start/(H/2) - 1.
     released: f64,
     /// Particles outside: the most at any time, and at the last.
@@ -125,8 +136,8 @@ impl Samples {
     /// None yet.
     pub fn new() -> Self {
         let ([start, outside], [released, fastest]) = ([[f64::NAN; 2]; 2], [f64::NAN; 2]);
-        let (rows, spilled) = (Series::default(), BTreeSet::new());
-        Self { start, rows, released, outside, fastest, spilled }
+        let (series, spilled) = (Vec::new(), BTreeSet::new());
+        Self { start, series, released, outside, fastest, spilled }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
@@ -151,9 +162,9 @@ impl Samples {
         };
         // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
         let front = s.width + found.foremost - first;
-        let [height, h1, h2, h3, h4] = probes.map(depth_at);
-        let potential = (centre - floor) / half;
-        self.rows.push([Ok(now.time()), Ok(front), height, h1, h2, h3, h4, Ok(potential)]);
+        let [height, levels @ ..] = probes.map(depth_at);
+        let (time, potential) = (now.time(), (centre - floor) / half);
+        self.series.push(TankSample { time, front, height, levels, potential });
         self.look_at_walls(dam, now, &found);
     }
 
@@ -186,8 +197,8 @@ impl Samples {
     /// The most by which the front is behind where it has been, until it is two spacings from the far wall,
     /// from which water comes back \[m\].
     fn fallen_back(&self, dam: &Dam) -> f64 {
-        let fronts = self.rows.column(1).unwrap_or_default();
-        fallen_back(fronts, dam.settings.width, dam.tank.width() - 2.0 * dam.medium.dx)
+        let fronts: Vec<f64> = self.series.iter().map(|at| at.front).collect();
+        fallen_back(&fronts, dam.settings.width, dam.tank.width() - 2.0 * dam.medium.dx)
     }
 
     /// Metrics that need no reference, and the series.
@@ -200,11 +211,20 @@ impl Samples {
         record.put(metrics::RELEASED, self.released);
         record.put(metrics::FRONT_BACK, self.fallen_back(dam) / dam.settings.width);
         record.put(metrics::MACH, self.fastest / dam.medium.eos.sound_speed);
-        let [front, height, one, two, three, four] =
-            ["front", "height", "H1", "H2", "H3", "H4"].map(|name| (name, "m"));
-        let potential = ("potential", "M g H/2");
-        let columns = [("t", "s"), front, height, one, two, three, four, potential];
-        record.profiles.insert("series".into(), self.rows.profile(&columns));
+        let series = Profile::of_known(
+            &self.series,
+            &[
+                ("t", "s", &|at| Ok(at.time)),
+                ("front", "m", &|at| Ok(at.front)),
+                ("height", "m", &|at| at.height.clone()),
+                ("H1", "m", &|at| at.levels[0].clone()),
+                ("H2", "m", &|at| at.levels[1].clone()),
+                ("H3", "m", &|at| at.levels[2].clone()),
+                ("H4", "m", &|at| at.levels[3].clone()),
+                ("potential", "M g H/2", &|at| Ok(at.potential)),
+            ],
+        );
+        record.profiles.insert("series".into(), series);
     }
 }
 
@@ -280,11 +300,18 @@ mod tests {
     impl Samples {
         /// Samples with these t, front, residual height, levels \[s, m\] and potential energy \[M g H/2\].
         pub fn made_up(rows: impl Iterator<Item = [f64; 8]>) -> Self {
-            Self { rows: rows.collect::<Vec<_>>().into(), ..Self::new() }
+            let sample = |[time, front, height, levels @ .., potential]: [f64; 8]| {
+                let (height, levels) = (Ok(height), levels.map(Ok));
+                TankSample { time, front, height, levels, potential }
+            };
+            Self { series: rows.map(sample).collect(), ..Self::new() }
         }
 
         fn row(&self, row: usize) -> [f64; 8] {
-            std::array::from_fn(|k| self.rows.column(k).expect("a column")[row])
+            let TankSample { time, front, height, levels, potential } = &self.series[row];
+            let known = |of: &Result<f64, Absent>| of.clone().expect("densities");
+            let [h1, h2, h3, h4] = levels.each_ref().map(known);
+            [*time, *front, known(height), h1, h2, h3, h4, *potential]
         }
     }
 
