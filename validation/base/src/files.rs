@@ -11,7 +11,9 @@
 //! use touchstone_base::{files::OutputFolder, record::Profile};
 //! let folder = OutputFolder::create("out".as_ref())?;
 //! let rows = [(2.5e-5, 1.2e-4)];
-//! let profile = Profile::of(&rows, &[("y", "m", &|(y, _)| *y), ("u", "m/s", &|(_, u)| *u)]);
+//! let profile = Profile::default()
+//!     .put(&rows, "y", "m", |(y, _)| *y)
+//!     .put(&rows, "u", "m/s", |(_, u)| *u);
 //! folder.write("profile.csv", profile.to_csv().as_bytes())?;
 //! # Ok(())
 //! # }

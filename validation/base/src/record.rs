@@ -408,28 +408,24 @@ pub struct ProfileColumn {
     pub values: Vec<f64>,
 }
 
-/// Name, unit and value in a row of a column.
-pub type ColumnOf<'a, R> = (&'a str, &'a str, &'a dyn Fn(&R) -> f64);
-
-/// Name, unit and value in a row of a column that a row may lack.
-pub type KnownColumnOf<'a, R> = (&'a str, &'a str, &'a dyn Fn(&R) -> Result<f64, Absent>);
-
 impl Profile {
-    /// A column for each entry, from rows.
-    pub fn of<R>(rows: &[R], columns: &[ColumnOf<R>]) -> Self {
-        columns.iter().fold(Self::default(), |profile, (name, unit, value)| {
-            profile.with(name, unit, rows.iter().map(value).collect())
-        })
+    /// Adds a column of this name and unit from rows.
+    pub fn put<R>(self, rows: &[R], name: &str, unit: &str, value: impl Fn(&R) -> f64) -> Self {
+        self.with(name, unit, rows.iter().map(value).collect())
     }
 
-    /// A column for each entry whose values are known in all rows.
-    pub fn of_known<R>(rows: &[R], columns: &[KnownColumnOf<R>]) -> Self {
-        columns.iter().fold(Self::default(), |profile, (name, unit, value)| {
-            match rows.iter().map(value).collect() {
-                Ok(values) => profile.with(name, unit, values),
-                Err(_) => profile,
-            }
-        })
+    /// Adds a column of this name and unit, if its value is known in all rows.
+    pub fn put_known<R>(
+        self,
+        rows: &[R],
+        name: &str,
+        unit: &str,
+        value: impl Fn(&R) -> Result<f64, Absent>,
+    ) -> Self {
+        match rows.iter().map(value).collect() {
+            Ok(values) => self.with(name, unit, values),
+            Err(_) => self,
+        }
     }
 
     /// Adds a column.

@@ -86,14 +86,10 @@ pub fn keep(
     particles: impl Iterator<Item = (Vector2<f64>, f64)>,
 ) {
     let (rows, (name, value_unit)): (Vec<_>, _) = (particles.collect(), value);
-    let kept = Profile::of(
-        &rows,
-        &[
-            ("x", unit, &|(x, _)| x.x),
-            ("y", unit, &|(x, _)| x.y),
-            (name, value_unit, &|(_, value)| *value),
-        ],
-    );
+    let kept = Profile::default()
+        .put(&rows, "x", unit, |(x, _)| x.x)
+        .put(&rows, "y", unit, |(x, _)| x.y)
+        .put(&rows, name, value_unit, |(_, value)| *value);
     record.profiles.insert(profile.into(), kept);
 }
 

@@ -103,14 +103,12 @@ fn table(jobs: &[Job], sizes: &[Option<Size>]) -> Profile {
     type Row<'a> = (usize, (&'a Job, &'a Option<Size>));
     let rows: Vec<Row> = jobs.iter().zip(sizes).enumerate().collect();
     let known = |size: &Option<Size>, of: &dyn Fn(&Size) -> f64| size.as_ref().map_or(f64::NAN, of);
-    Profile::of(
-        &rows,
-        &[
-            ("index", "-", &|(index, _)| *index as f64),
-            ("time", "s", &|(_, (job, size))| known(size, &|size| time(&job.planned.spec, size))),
-            ("memory", "MB", &|(_, (_, size))| known(size, &|size| 1e-6 * size.bytes())),
-        ],
-    )
+    Profile::default()
+        .put(&rows, "index", "-", |(index, _)| *index as f64)
+        .put(&rows, "time", "s", |(_, (job, size))| {
+            known(size, &|size| time(&job.planned.spec, size))
+        })
+        .put(&rows, "memory", "MB", |(_, (_, size))| known(size, &|size| 1e-6 * size.bytes()))
 }
 
 /// Total cost of all runs, the longest and the largest run, and the number of refused runs.

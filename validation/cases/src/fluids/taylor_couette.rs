@@ -156,14 +156,10 @@ fn measure(flow: &TaylorCouette, fluid: &[Point], record: &mut Record) {
     record.put(L2, l2(&around, &exact));
     record.put(RADIAL_RMS, square.sqrt() / flow.speed);
     record.put(OUTSIDE, outside as f64);
-    let velocity = Profile::of(
-        &fluid,
-        &[
-            ("r", "inner radius", &|f| f.radius / flow.inner),
-            ("u", "V", &|f| f.around / flow.speed),
-            ("u_exact", "V", &|f| flow.velocity(f.radius) / flow.speed),
-        ],
-    );
+    let velocity = Profile::default()
+        .put(&fluid, "r", "inner radius", |f| f.radius / flow.inner)
+        .put(&fluid, "u", "V", |f| f.around / flow.speed)
+        .put(&fluid, "u_exact", "V", |f| flow.velocity(f.radius) / flow.speed);
     record.profiles.insert("velocity".into(), velocity);
 }
 

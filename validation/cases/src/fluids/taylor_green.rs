@@ -234,9 +234,11 @@ impl Problem for VortexSetup {
         }
         // The exact flow may have decayed to 0.
         errors.retain(|[_, error]| error.is_finite());
-        let series = Profile::of(
+        let series = Profile::default().put(&errors, "t", "L/U", |[time, _]| *time).put(
             &errors,
-            &[("t", "L/U", &|[time, _]| *time), ("error", "-", &|[_, error]| *error)],
+            "error",
+            "-",
+            |[_, error]| *error,
         );
         record.profiles.insert("series".into(), series);
     }

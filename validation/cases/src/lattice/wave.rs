@@ -352,15 +352,11 @@ impl Problem for Wave {
             Polarisation::Shear => WaveAmplitudes { across: s.amplitude, ..none },
         };
         let rows: Vec<_> = once(&start).chain(&series).enumerate().collect();
-        let profile = Profile::of(
-            &rows,
-            &[
-                ("t", "s", &|(step, _)| *step as f64 * self.rules.dt()),
-                ("p", "rho c0^2", &|(_, of)| of.pressure),
-                ("v_along", "c0", &|(_, of)| of.along),
-                ("v_across", "c0", &|(_, of)| of.across),
-            ],
-        );
+        let profile = Profile::default()
+            .put(&rows, "t", "s", |(step, _)| *step as f64 * self.rules.dt())
+            .put(&rows, "p", "rho c0^2", |(_, of)| of.pressure)
+            .put(&rows, "v_along", "c0", |(_, of)| of.along)
+            .put(&rows, "v_across", "c0", |(_, of)| of.across);
         record.profiles.insert("amplitudes".into(), profile);
         // Of every step, not of the last one.
         let all: Vec<f64> = series.iter().flat_map(WaveAmplitudes::all).collect();

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::{erfc, exp},
-    record::{ColumnOf, MetricKey},
+    record::MetricKey,
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
@@ -325,15 +325,17 @@ impl Watch<BarSettings> for Motion {
         let change = after.and_then(|after| Ok(after.total() / self.energy.clone()? - 1.0));
         record.put_or_absent(ENERGY_CHANGE, change);
         // Bars that collide have no momentum together, and so no centre of it; a pulse has one side.
-        let columns: &[ColumnOf<MotionSample>] = match s.collide {
-            true => &[
-                ("t", "s", &|at| at.time),
-                ("left mean velocity", "m/s", &|at| at.left),
-                ("right mean velocity", "m/s", &|at| at.right),
-            ],
-            false => &[("t", "s", &|at| at.time), ("centre of velocity", "m", &|at| at.centre)],
+        let motion = Profile::default().put(&self.series, "t", "s", |at| at.time);
+        let motion = match s.collide {
+            true => motion.put(&self.series, "left mean velocity", "m/s", |at| at.left).put(
+                &self.series,
+                "right mean velocity",
+                "m/s",
+                |at| at.right,
+            ),
+            false => motion.put(&self.series, "centre of velocity", "m", |at| at.centre),
         };
-        record.profiles.insert("motion".into(), Profile::of(&self.series, columns));
+        record.profiles.insert("motion".into(), motion);
     }
 }
 

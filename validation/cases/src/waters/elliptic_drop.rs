@@ -207,16 +207,12 @@ impl DropHistory {
         record.put(VELOCITY_RMS, (self.velocity / samples.len() as f64).sqrt());
         record.put(MOMENTUM_ERROR, self.momentum);
         record.put(CENTRE_ERROR, self.centre);
-        let series = Profile::of(
-            samples,
-            &[
-                ("t", "s", &|at| at.time),
-                ("a", "m", &|at| at.axes[0]),
-                ("b", "m", &|at| at.axes[1]),
-                ("a_exact", "m", &|at| at.exact[0]),
-                ("b_exact", "m", &|at| at.exact[1]),
-            ],
-        );
+        let series = Profile::default()
+            .put(samples, "t", "s", |at| at.time)
+            .put(samples, "a", "m", |at| at.axes[0])
+            .put(samples, "b", "m", |at| at.axes[1])
+            .put(samples, "a_exact", "m", |at| at.exact[0])
+            .put(samples, "b_exact", "m", |at| at.exact[1]);
         record.profiles.insert("series".into(), series);
     }
 }

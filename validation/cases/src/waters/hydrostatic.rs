@@ -330,16 +330,12 @@ impl ColumnHistory {
             record.put(OUTSIDE, self.outside);
             record.put(SPREAD, self.spread);
         }
-        let history = Profile::of_known(
-            &self.samples,
-            &[
-                ("t", "4 H/c0", &|at| Ok(at.time)),
-                ("p_l2", "-", &|at| at.pressure.clone()),
-                ("level_drift", "H", &|at| Ok(at.level)),
-                ("gap", "dx", &|at| Ok(at.gap)),
-                ("kinetic", "M g H", &|at| Ok(at.kinetic)),
-            ],
-        );
+        let history = Profile::default()
+            .put(&self.samples, "t", "4 H/c0", |at| at.time)
+            .put_known(&self.samples, "p_l2", "-", |at| at.pressure.clone())
+            .put(&self.samples, "level_drift", "H", |at| at.level)
+            .put(&self.samples, "gap", "dx", |at| at.gap)
+            .put(&self.samples, "kinetic", "M g H", |at| at.kinetic);
         record.profiles.insert("history".into(), history);
     }
 }

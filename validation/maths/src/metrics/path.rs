@@ -55,14 +55,10 @@ impl Path {
 
     /// A profile with these names of both displacements.
     pub fn profile(&self, [x, y]: [&str; 2]) -> Profile {
-        Profile::of(
-            &self.0,
-            &[
-                ("t", "s", &|at| at.time),
-                (x, "m", &|at| at.displacement.x),
-                (y, "m", &|at| at.displacement.y),
-            ],
-        )
+        Profile::default()
+            .put(&self.0, "t", "s", |at| at.time)
+            .put(&self.0, x, "m", |at| at.displacement.x)
+            .put(&self.0, y, "m", |at| at.displacement.y)
     }
 
     /// Where the place is at a time \[s\], between two points; `None` before the first and after the last.

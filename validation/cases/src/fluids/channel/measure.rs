@@ -117,14 +117,10 @@ fn row_profile(setup: &ChannelSetup, fluid: &[Point], t: f64) -> Profile {
         row.iter().map(of).sum::<f64>() / row.len() as f64
     };
     let rows: Vec<&[Point]> = fluid.chunks(setup.columns).collect();
-    Profile::of(
-        &rows,
-        &[
-            ("y", "m", &|row| mean(row, &|p| p.position.y)),
-            ("u", "m/s", &|row| mean(row, &|p| p.velocity.x)),
-            ("u_exact", "m/s", &|row| mean(row, &|p| setup.exact(p.position.y, t))),
-        ],
-    )
+    Profile::default()
+        .put(&rows, "y", "m", |row| mean(row, &|p| p.position.y))
+        .put(&rows, "u", "m/s", |row| mean(row, &|p| p.velocity.x))
+        .put(&rows, "u_exact", "m/s", |row| mean(row, &|p| setup.exact(p.position.y, t)))
 }
 
 /// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within 3 dx of
@@ -173,9 +169,11 @@ pub fn last_of_mode(setup: &ChannelSetup, series: &[[f64; 2]], end: f64) -> Opti
     }
     let all = series.iter().map(|[t, amplitude]| [since_end(*t), *amplitude]);
     let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
-    Some(Profile::of(
+    Some(Profile::default().put(&rows, "t", "L/c0", |[t, _]| *t).put(
         &rows,
-        &[("t", "L/c0", &|[t, _]| *t), ("amplitude", "rho V^2", &|[_, amplitude]| *amplitude)],
+        "amplitude",
+        "rho V^2",
+        |[_, amplitude]| *amplitude,
     ))
 }
 

@@ -208,26 +208,18 @@ pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Recor
     compare(setup, &sections, record);
     let stations: Vec<_> =
         places(setup).iter().zip(&sections).map(|([x, y], [u, v])| [*x, *y, *u, *v]).collect();
-    let stations = Profile::of(
-        &stations,
-        &[
-            ("x", "H", &|[x, ..]| *x),
-            ("y", "H", &|[_, y, ..]| *y),
-            ("u", "U_b", &|[.., u, _]| *u),
-            ("v", "U_b", &|[.., v]| *v),
-        ],
-    );
+    let stations = Profile::default()
+        .put(&stations, "x", "H", |[x, ..]| *x)
+        .put(&stations, "y", "H", |[_, y, ..]| *y)
+        .put(&stations, "u", "U_b", |[.., u, _]| *u)
+        .put(&stations, "v", "U_b", |[.., v]| *v);
     record.profiles.insert("stations".into(), stations);
     let wall: Vec<_> = (0..).zip(&wall).collect();
-    let wall = Profile::of(
-        &wall,
-        &[
-            ("x", "H", &|(k, _)| along(*k)),
-            ("hill shear", "rho U_b^2", &|(_, [hill, ..])| *hill),
-            ("lid shear", "rho U_b^2", &|(_, [_, lid, _])| *lid),
-            ("pressure", "rho U_b^2", &|(_, [.., pressure])| *pressure),
-        ],
-    );
+    let wall = Profile::default()
+        .put(&wall, "x", "H", |(k, _)| along(*k))
+        .put(&wall, "hill shear", "rho U_b^2", |(_, [hill, ..])| *hill)
+        .put(&wall, "lid shear", "rho U_b^2", |(_, [_, lid, _])| *lid)
+        .put(&wall, "pressure", "rho U_b^2", |(_, [.., pressure])| *pressure);
     record.profiles.insert("wall".into(), wall);
 }
 

@@ -272,15 +272,11 @@ impl Problem for HillSetup {
             measure(self, &window, area, record);
             particles(self, end, OptionalOutput::of(&record.run).particles, record);
         }
-        let series = Profile::of_known(
-            &series,
-            &[
-                ("t", "H/U_b", &|at| Ok(at.time)),
-                ("force", "U_b^2/H", &|at| at.drive.force.clone()),
-                ("flux", "U_b H", &|at| at.drive.flux.clone()),
-                ("kinetic energy", "rho U_b^2 H^2", &|at| Ok(at.kinetic)),
-            ],
-        );
+        let series = Profile::default()
+            .put(&series, "t", "H/U_b", |at| at.time)
+            .put_known(&series, "force", "U_b^2/H", |at| at.drive.force.clone())
+            .put_known(&series, "flux", "U_b H", |at| at.drive.flux.clone())
+            .put(&series, "kinetic energy", "rho U_b^2 H^2", |at| at.kinetic);
         record.profiles.insert("series".into(), series);
     }
 }

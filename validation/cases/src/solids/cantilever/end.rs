@@ -138,14 +138,10 @@ impl Watch<CantileverSettings> for End {
         let changes = changes.collect::<Result<Vec<f64>, Absent>>();
         let change = changes.map(|all| all.into_iter().fold(0.0, most) / kinetic);
         record.put_or_absent(ENERGY_CHANGE, change);
-        let energies = Profile::of_known(
-            &self.energies,
-            &[
-                ("t", "s", &|of| Ok(of.time)),
-                ("kinetic", "J/m", &|of| Ok(of.kinetic)),
-                ("change", "J/m", &|of| of.change.clone()),
-            ],
-        );
+        let energies = Profile::default()
+            .put(&self.energies, "t", "s", |of| of.time)
+            .put(&self.energies, "kinetic", "J/m", |of| of.kinetic)
+            .put_known(&self.energies, "change", "J/m", |of| of.change.clone());
         record.profiles.insert("energy".into(), energies);
         let path = self.path;
         record.profiles.insert("end".into(), path.profile(["x", "y"]));

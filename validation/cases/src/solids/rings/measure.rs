@@ -193,22 +193,18 @@ impl RingHistory {
 
     /// The series, with the energies if they are known.
     fn profile(&self) -> Profile {
-        Profile::of_known(
-            &self.samples,
-            &[
-                ("t", "L/c0", &|at| Ok(at.time)),
-                ("x_c", "L", &|at| Ok(at.place)),
-                ("v_c", "c0", &|at| Ok(at.velocity)),
-                ("width", "L", &|at| Ok(at.extents.x)),
-                ("height", "L", &|at| Ok(at.extents.y)),
-                ("pieces", "1", &|at| Ok(at.pieces)),
-                ("kinetic", "J/m", &|at| at.energies[0].clone()),
-                ("compression", "J/m", &|at| at.energies[1].clone()),
-                ("shear", "J/m", &|at| at.energies[2].clone()),
-                ("holes", "1", &|at| Ok(at.holes)),
-                ("stretch", "dx", &|at| Ok(at.stretch)),
-            ],
-        )
+        Profile::default()
+            .put(&self.samples, "t", "L/c0", |at| at.time)
+            .put(&self.samples, "x_c", "L", |at| at.place)
+            .put(&self.samples, "v_c", "c0", |at| at.velocity)
+            .put(&self.samples, "width", "L", |at| at.extents.x)
+            .put(&self.samples, "height", "L", |at| at.extents.y)
+            .put(&self.samples, "pieces", "1", |at| at.pieces)
+            .put_known(&self.samples, "kinetic", "J/m", |at| at.energies[0].clone())
+            .put_known(&self.samples, "compression", "J/m", |at| at.energies[1].clone())
+            .put_known(&self.samples, "shear", "J/m", |at| at.energies[2].clone())
+            .put(&self.samples, "holes", "1", |at| at.holes)
+            .put(&self.samples, "stretch", "dx", |at| at.stretch)
     }
 
     /// The sum of the energies of each sample \[J/m\].

@@ -211,19 +211,15 @@ impl Samples {
         record.put(metrics::RELEASED, self.released);
         record.put(metrics::FRONT_BACK, self.fallen_back(dam) / dam.settings.width);
         record.put(metrics::MACH, self.fastest / dam.medium.eos.sound_speed);
-        let series = Profile::of_known(
-            &self.series,
-            &[
-                ("t", "s", &|at| Ok(at.time)),
-                ("front", "m", &|at| Ok(at.front)),
-                ("height", "m", &|at| at.height.clone()),
-                ("H1", "m", &|at| at.levels[0].clone()),
-                ("H2", "m", &|at| at.levels[1].clone()),
-                ("H3", "m", &|at| at.levels[2].clone()),
-                ("H4", "m", &|at| at.levels[3].clone()),
-                ("potential", "M g H/2", &|at| Ok(at.potential)),
-            ],
-        );
+        let series = Profile::default()
+            .put(&self.series, "t", "s", |at| at.time)
+            .put(&self.series, "front", "m", |at| at.front)
+            .put_known(&self.series, "height", "m", |at| at.height.clone())
+            .put_known(&self.series, "H1", "m", |at| at.levels[0].clone())
+            .put_known(&self.series, "H2", "m", |at| at.levels[1].clone())
+            .put_known(&self.series, "H3", "m", |at| at.levels[2].clone())
+            .put_known(&self.series, "H4", "m", |at| at.levels[3].clone())
+            .put(&self.series, "potential", "M g H/2", |at| at.potential);
         record.profiles.insert("series".into(), series);
     }
 }
@@ -278,7 +274,7 @@ impl Gauge {
         let block = |(time, _): &(f64, Vec<f64>)| (time / (BLOCK * unit)).floor();
         let blocks: Vec<_> = self.rows.chunk_by(|a, b| block(a) == block(b)).collect();
         let middle = |rows: &&[_]| (block(&rows[0]) + 0.5) * (BLOCK * unit) / unit;
-        let mut means = Profile::of(&blocks, &[("t", "(H/g)^(1/2)", &middle)]);
+        let mut means = Profile::default().put(&blocks, "t", "(H/g)^(1/2)", &middle);
         for (k, name) in ["P1", "P2", "P3", "P4"].into_iter().enumerate() {
             let mean = |rows: &&[(f64, Vec<f64>)]| {
                 rows.iter().map(|(_, p)| p[k]).sum::<f64>() / rows.len() as f64 / scale

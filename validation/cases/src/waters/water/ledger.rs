@@ -143,15 +143,11 @@ impl Ledger {
         }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
         let works = self.samples.last().map(|of| of.works).unwrap_or_default();
-        let mut series = Profile::of(
-            &self.samples,
-            &[
-                ("t", "s", &|of| of.time),
-                ("kinetic", "J/m", &|of| of.energy.kinetic),
-                ("potential", "J/m", &|of| of.energy.potential),
-                ("compression", "J/m", &|of| of.energy.compression),
-            ],
-        );
+        let mut series = Profile::default()
+            .put(&self.samples, "t", "s", |of| of.time)
+            .put(&self.samples, "kinetic", "J/m", |of| of.energy.kinetic)
+            .put(&self.samples, "potential", "J/m", |of| of.energy.potential)
+            .put(&self.samples, "compression", "J/m", |of| of.energy.compression);
         for (metric, work) in WORKS {
             record.put(metric.of(of_what), work(&works) / scale);
             let column = self.samples.iter().map(|of| work(&of.works)).collect();
