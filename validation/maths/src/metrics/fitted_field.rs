@@ -3,30 +3,43 @@
 use nalgebra::{Matrix3, Vector2, Vector3};
 use touchstone_solver::inverse::{Inverse, of_three};
 
+/// A particle of a field.
+#[derive(Clone, Copy, Debug)]
+pub struct FieldPoint {
+    /// \[m\].
+    pub position: Vector2<f64>,
+    /// \[m²\].
+    pub volume: f64,
+    /// \[m/s\].
+    pub velocity: Vector2<f64>,
+    /// \[Pa\].
+    pub pressure: f64,
+}
+
 /// Velocity and pressure at any point: a linear field fitted to the particles in reach, walls included, with
 /// the weights V W (moving least squares).
 pub struct FittedField<'a> {
     /// W \[1/m²\] of r² \[m²\], and where it ends \[m\].
     weight: &'a dyn Fn(f64) -> f64,
     reach: f64,
-    /// x, y, V, u, v, p in the order of x, in bands as high as the kernel reaches.
-    bands: Vec<Vec<[f64; 6]>>,
+    /// Particles in the order of x, in bands as high as the kernel reaches.
+    bands: Vec<Vec<FieldPoint>>,
 }
 
 impl<'a> FittedField<'a> {
-    /// The field of these points, x, y, V, u, v, p each \[m, m², m/s, Pa\], with the kernel W \[1/m²\] of r²
-    /// \[m²\] and its support \[m\], for places up to the height `lid` \[m\].
+    /// The field of these particles, with the kernel W \[1/m²\] of r² \[m²\] and its support \[m\], for places
+    /// up to the height `lid` \[m\].
     pub fn new(
         (weight, reach): (&'a dyn Fn(f64) -> f64, f64),
-        mut points: Vec<[f64; 6]>,
+        mut points: Vec<FieldPoint>,
         lid: f64,
     ) -> Self {
-        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        points.sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         let mut field = Self { weight, reach, bands: Vec::new() };
         // One band more than the lid needs: particles farther out are in the first and the last.
         field.bands.resize(field.band(lid) + 2, Vec::new());
         for point in points {
-            let band = field.band(point[1]).min(field.bands.len() - 1);
+            let band = field.band(point.position.y).min(field.bands.len() - 1);
             field.bands[band].push(point);
         }
         field
@@ -38,12 +51,12 @@ impl<'a> FittedField<'a> {
     }
 
     /// Particles that may be in reach of a place.
-    fn near(&self, x: f64, y: f64) -> impl Iterator<Item = &[f64; 6]> {
-        let (reach, band, last) = (self.reach, self.band(y), self.bands.len() - 1);
+    fn near(&self, place: Vector2<f64>) -> impl Iterator<Item = &FieldPoint> {
+        let (reach, band, last) = (self.reach, self.band(place.y), self.bands.len() - 1);
         let bands = &self.bands[band.saturating_sub(1).min(last)..=(band + 1).min(last)];
         bands.iter().flat_map(move |band| {
-            let first = band.partition_point(|p| p[0] < x - reach);
-            band[first..].iter().take_while(move |p| p[0] <= x + reach)
+            let first = band.partition_point(|p| p.position.x < place.x - reach);
+            band[first..].iter().take_while(move |p| p.position.x <= place.x + reach)
         })
     }
 
@@ -53,15 +66,15 @@ impl<'a> FittedField<'a> {
     fn fit<const N: usize>(
         &self,
         place: Vector2<f64>,
-        basis: impl Fn(&[f64; 6], Vector2<f64>) -> Vector3<f64>,
-        values: impl Fn(&[f64; 6]) -> [f64; N],
+        basis: impl Fn(&FieldPoint, Vector2<f64>) -> Vector3<f64>,
+        values: impl Fn(&FieldPoint) -> [f64; N],
     ) -> [f64; N] {
         let (mut moments, mut sums) = (Matrix3::zeros(), [Vector3::zeros(); N]);
-        for p in self.near(place.x, place.y) {
-            let r = Vector2::new(p[0] - place.x, p[1] - place.y);
+        for p in self.near(place) {
+            let r = p.position - place;
             let r2 = r.norm_squared();
             if r2 < self.reach * self.reach {
-                let (weight, basis) = (p[2] * (self.weight)(r2), basis(p, r));
+                let (weight, basis) = (p.volume * (self.weight)(r2), basis(p, r));
                 moments += basis * basis.transpose() * weight;
                 for (sum, value) in sums.iter_mut().zip(values(p)) {
                     *sum += basis * (weight * value);
@@ -75,10 +88,11 @@ impl<'a> FittedField<'a> {
         }
     }
 
-    /// u, v, p at a place.
-    pub fn at(&self, x: f64, y: f64) -> [f64; 3] {
+    /// Velocity \[m/s\] and pressure \[Pa\] at a place.
+    pub fn at(&self, place: Vector2<f64>) -> (Vector2<f64>, f64) {
         let linear = |_: &_, r: Vector2<f64>| Vector3::new(1.0, r.x / self.reach, r.y / self.reach);
-        self.fit(Vector2::new(x, y), linear, |p| [p[3], p[4], p[5]])
+        let [u, v, p] = self.fit(place, linear, |p| [p.velocity.x, p.velocity.y, p.pressure]);
+        (Vector2::new(u, v), p)
     }
 
     /// The derivative along `g` of the velocity in the direction `along` at a point of a wall where the
@@ -89,15 +103,15 @@ impl<'a> FittedField<'a> {
     pub fn slope_at(
         &self,
         place: Vector2<f64>,
-        g: impl Fn(&[f64; 6]) -> f64,
+        g: impl Fn(Vector2<f64>) -> f64,
         along: Vector2<f64>,
     ) -> f64 {
         // Particles behind the wall have no part in it.
-        let basis = |p: &_, r: Vector2<f64>| {
-            let g = (g(p) / self.reach).max(0.0);
+        let basis = |p: &FieldPoint, r: Vector2<f64>| {
+            let g = (g(p.position) / self.reach).max(0.0);
             Vector3::new(g, g * r.x / self.reach, g * g)
         };
-        let [slope] = self.fit(place, basis, |p| [Vector2::new(p[3], p[4]).dot(&along)]);
+        let [slope] = self.fit(place, basis, |p| [p.velocity.dot(&along)]);
         slope / self.reach
     }
 }
@@ -125,14 +139,14 @@ mod tests {
         {
             let mut moved = || 0.4 * dx * (random.uniform() - 0.5);
             let (s, g) = (place.x + moved(), place.y + moved());
-            let v = along * u(s, g);
-            let p = along * s + across * (g + 0.5 * c * s * s) + Vector2::new(0.0, 2.0);
-            points.push([p.x, p.y, dx * dx, v.x, v.y, 0.0]);
+            let velocity = along * u(s, g);
+            let position = along * s + across * (g + 0.5 * c * s * s) + Vector2::new(0.0, 2.0);
+            points.push(FieldPoint { position, volume: dx * dx, velocity, pressure: 0.0 });
         }
         let weight = |r2: f64| kernel.w(r2);
         let field = FittedField::new((&weight, kernel.support()), points, 4.0);
-        let above = |p: &[f64; 6]| {
-            let p = Vector2::new(p[0], p[1] - 2.0);
+        let above = |place: Vector2<f64>| {
+            let p = place - Vector2::new(0.0, 2.0);
             p.dot(&across) - 0.5 * c * p.dot(&along).powi(2)
         };
         let off = |k: i32| {
@@ -165,22 +179,22 @@ mod tests {
     fn a_field_misses_no_particle_in_reach() {
         let (kernel, lid, mut random) = (Smoothing::<QuinticSpline>::new(0.1), 3.0, Random::new(7));
         let mut number = |low: f64, high: f64| low + (high - low) * random.uniform();
-        let points: Vec<[f64; 6]> = (0..6000)
-            .map(|_| {
-                let [x, y] = [number(0.0, 2.0), number(-0.4, lid + 0.4)];
-                [x, y, 0.01, number(-1.0, 1.0), number(-1.0, 1.0), number(-1.0, 1.0)]
-            })
-            .collect();
+        let point = |_| {
+            let position = Vector2::new(number(0.0, 2.0), number(-0.4, lid + 0.4));
+            let velocity = Vector2::new(number(-1.0, 1.0), number(-1.0, 1.0));
+            FieldPoint { position, volume: 0.01, velocity, pressure: number(-1.0, 1.0) }
+        };
+        let points: Vec<FieldPoint> = (0..6000).map(point).collect();
         let weight = |r2: f64| kernel.w(r2);
         let reach = kernel.support();
         let field = FittedField::new((&weight, reach), points.clone(), lid);
         assert!(field.bands.len() > 10);
         let mut all = FittedField { weight: &weight, reach, bands: vec![points] };
-        all.bands[0].sort_by(|a, b| a[0].total_cmp(&b[0]));
+        all.bands[0].sort_by(|a, b| a.position.x.total_cmp(&b.position.x));
         for y in [-0.05, 0.0, 1e-9, 0.299, 0.3, 0.301, 1.5, lid - 0.1, lid, lid + 0.05] {
-            for (some, every) in field.at(1.0, y).into_iter().zip(all.at(1.0, y)) {
-                assert!((some - every).abs() < 1e-10, "{some} {every} at {y}");
-            }
+            let [some, every] = [&field, &all].map(|field| field.at(Vector2::new(1.0, y)));
+            assert!((some.0 - every.0).amax() < 1e-10, "{some:?} {every:?} at {y}");
+            assert!((some.1 - every.1).abs() < 1e-10, "{some:?} {every:?} at {y}");
         }
     }
 }

@@ -13,7 +13,7 @@ use touchstone_harness::{
 };
 use touchstone_maths::metrics::{
     curve::longest_negative,
-    fitted_field::FittedField,
+    fitted_field::{FieldPoint, FittedField},
     norms::{largest, rms},
 };
 use touchstone_solver::EquationOfState;
@@ -127,9 +127,11 @@ impl Window {
     /// Adds a sample.
     pub fn sample(&mut self, setup: &HillSetup, now: &Snapshot) {
         let eos = setup.flow.medium.eos;
-        let point = |c: &touchstone_solver::particles::SweptParticle| {
-            let p = eos.pressure(c.common.density) - eos.background;
-            [c.position.x, c.position.y, c.common.volume, c.velocity.x, c.velocity.y, p]
+        let point = |c: &touchstone_solver::particles::SweptParticle| FieldPoint {
+            position: c.position,
+            volume: c.common.volume,
+            velocity: c.velocity,
+            pressure: eos.pressure(c.common.density) - eos.background,
         };
         let added = now.sums(|s| {
             let points = s.plain_columns().iter().map(point).collect();
@@ -138,11 +140,11 @@ impl Window {
         self.absent = added.err().or(self.absent.take());
     }
 
-    /// Adds a sample of these particles, x, y, V, u, v, p each, with the weight of a squared distance.
-    fn add(&mut self, setup: &HillSetup, points: Vec<[f64; 6]>, weight: &dyn Fn(f64) -> f64) {
+    /// Adds a sample of these particles, with the weight of a squared distance.
+    fn add(&mut self, setup: &HillSetup, points: Vec<FieldPoint>, weight: &dyn Fn(f64) -> f64) {
         let field = FittedField::new((weight, setup.flow.support), points, setup.hill.lid());
-        let sections = places(setup).into_iter().map(|[x, y]| field.at(x, y));
-        add(&mut self.sections, sections.map(|[u, v, _]| [u, v]));
+        let sections = places(setup).into_iter().map(|place| field.at(place.into()).0.into());
+        add(&mut self.sections, sections);
         self.samples += 1;
         add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
     }
@@ -158,10 +160,10 @@ fn wall(setup: &HillSetup, field: &FittedField, x: f64) -> [f64; 3] {
     let (floor, slope) = (setup.floor(x), setup.slope(x));
     let length = hypot(1.0, slope);
     let tangent = Vector2::new(1.0, slope) / length;
-    let above = |p: &[f64; 6]| p[1] - setup.floor(p[0]);
-    let hill = field.slope_at(Vector2::new(x, floor), above, tangent) * length;
-    let top = field.slope_at(Vector2::new(x, lid), |p| lid - p[1], Vector2::x());
-    [nu * hill, nu * top, field.at(x, floor)[2]]
+    let (foot, above) = (Vector2::new(x, floor), |at: Vector2<f64>| at.y - setup.floor(at.x));
+    let hill = field.slope_at(foot, above, tangent) * length;
+    let top = field.slope_at(Vector2::new(x, lid), |at| lid - at.y, Vector2::x());
+    [nu * hill, nu * top, field.at(foot).1]
 }
 
 /// Mean velocity along x over the fluid's area \[m/s\].
@@ -376,13 +378,14 @@ mod tests {
     /// The record of windows that hold the made-up flow, with this force and this flux.
     fn measured(force: f64, flux: f64) -> (HillSetup, f64, Record) {
         let (setup, simulation) = scene(|s| s.n = 40);
-        let mut points: Vec<[f64; 6]> = Vec::new();
+        let mut points = Vec::new();
         for particle in simulation.particles() {
             // With the images behind the ends of the period, as a simulation has them.
             for x in [-9.0, 0.0, 9.0].map(|by| particle.position.x + by) {
                 let (y, volume) = (particle.position.y, particle.mass / particle.density);
-                let [u, v, p] = made_up(&setup, x, y);
-                points.push([x, y, volume, u, v, p]);
+                let [u, v, pressure] = made_up(&setup, x, y);
+                let (position, velocity) = (Vector2::new(x, y), Vector2::new(u, v));
+                points.push(FieldPoint { position, volume, velocity, pressure });
             }
         }
         let mut window = Window::default();
