@@ -274,7 +274,7 @@ impl Gauge {
         let block = |(time, _): &(f64, Vec<f64>)| (time / (BLOCK * unit)).floor();
         let blocks: Vec<_> = self.rows.chunk_by(|a, b| block(a) == block(b)).collect();
         let middle = |rows: &&[_]| (block(&rows[0]) + 0.5) * (BLOCK * unit) / unit;
-        let mut means = Profile::default().put(&blocks, "t", "(H/g)^(1/2)", &middle);
+        let mut means = Profile::default().put(&blocks, "t", "(H/g)^(1/2)", middle);
         for (k, name) in ["P1", "P2", "P3", "P4"].into_iter().enumerate() {
             let mean = |rows: &&[(f64, Vec<f64>)]| {
                 rows.iter().map(|(_, p)| p[k]).sum::<f64>() / rows.len() as f64 / scale
