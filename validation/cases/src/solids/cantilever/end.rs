@@ -186,11 +186,11 @@ fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solids::solid::PathPoint;
     use approx::assert_relative_eq;
     use std::f64::consts::TAU;
     use touchstone_base::functions::{cos, sin};
     use touchstone_harness::method::Parts;
+    use touchstone_maths::metrics::path::PathPoint;
 
     /// −0.06 (1 − cos 2πft), with a second harmonic along the bar.
     fn swing(frequency: f64, end: f64) -> Path {
