@@ -26,7 +26,7 @@ pub mod gates;
 mod horizon;
 pub mod jobs;
 pub mod limits;
-mod looks;
+pub mod looks;
 pub mod make;
 pub mod medium;
 pub mod method;
