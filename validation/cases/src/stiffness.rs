@@ -51,15 +51,14 @@ impl StiffnessRow {
 }
 
 /// Explanation of the limits of [`table`].
-pub const READING: &str = "Limits of the time step at default settings, each over the step that is taken: \
+const READING: &str = "Limits of the time step at default settings, each over the step that is taken: \
     below 1 the mechanism would forbid the step by itself. Limits of waves, viscosity, artificial \
     viscosity and density diffusion are 2 over the largest rate on the lattice at rest; with the \
     predictor-corrector, sound needs damping as well. Motion is the time h/V, body force (h/F)^(1/2), \
     contact the time in which bodies approach each other by h. *Together* is the limit of all waves, \
     beyond which a step is refused; for particles that move at most 0.8 of it is advised. \
     Super-time-stepping removes the limit of viscosity. The slowest mechanism is the slowest of the \
-    problem (waves, viscosity, \
-    motion, force, contact) that acts within the run, else the run itself.";
+    problem (waves, viscosity, motion, force, contact) that acts within the run, else the run itself.";
 
 /// The table of these rows.
 pub fn table(rows: &[StiffnessRow]) -> Table {
@@ -105,10 +104,9 @@ pub fn section(suite: &Suite) -> Section {
     };
     let main = suite.cases.iter().filter(|results| results.studies.first::<Card>().is_some());
     let rows: Vec<StiffnessRow> = main.flat_map(of_case).collect();
-    let note = "`touchstone stability --theory` prints the limits of all cases and variants without any run. \
-                Each case compares the longest stable step by bisection with *together*; on lattices at \
-                rest the two \
-                agree within 3 %, as gates of the case `resting_box` demand.";
+    let note = "`touchstone stability --theory` prints the limits of all cases and variants without any \
+                run. Each case compares the longest stable step by bisection with *together*; on lattices at \
+                rest the two agree within 3 %, as gates of the case `resting_box` demand.";
     Section::new("stiffness", "What limits the time step")
         .prose(READING)
         .prose("The limit of the stiffest mechanism is bold, and divides the slowest in *slowest/stiffest*.")
