@@ -275,7 +275,7 @@ impl Answer<'_> {
             let spec = self.shown[k].as_ref()?;
             self.uncertainty(spec).or(self.reference(spec).is_none().then_some(0.0))
         };
-        let doubt = doubt(0).zip(doubt(1)).map(|(own, other)| own.hypot(other));
+        let doubt = doubt(0).zip(doubt(1)).map(|(own, other)| (own * own + other * other).sqrt());
         let wins = |k: usize| match (sizes[k], sizes[1 - k], doubt) {
             (Some(own), Some(other), Some(doubt)) => own + 2.0 * doubt < other,
             _ => false,
