@@ -170,5 +170,6 @@ mod tests {
         assert_eq!(longest_negative(&values, 4), None);
         assert_eq!(longest_negative(&values[..9], 3), Some(3..6));
         assert_eq!(longest_negative(&values[..5], 2), Some(0..2));
+        assert_eq!(longest_negative(&[-1.0, -1.0, 2.0, -1.0, -1.0, -1.0], 2), Some(0..2));
     }
 }
