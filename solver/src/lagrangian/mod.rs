@@ -30,7 +30,7 @@
 
 pub mod body;
 pub mod law;
-mod load;
+pub mod load;
 pub mod reference;
 pub mod solid;
 
