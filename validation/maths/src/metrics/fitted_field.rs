@@ -27,8 +27,8 @@ pub struct FittedField<'a> {
 }
 
 impl<'a> FittedField<'a> {
-    /// The field of these particles, with the kernel W \[1/m²\] of r² \[m²\] and its support \[m\], for places
-    /// up to the height `lid` \[m\].
+    /// The field of these particles, with the kernel W \[1/m²\] of r² \[m²\] and its support \[m\], for
+    /// places up to the height `lid` \[m\].
     pub fn new(
         (weight, reach): (&'a dyn Fn(f64) -> f64, f64),
         mut points: Vec<FieldPoint>,
