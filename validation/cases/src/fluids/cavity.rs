@@ -88,7 +88,7 @@ pub static CASE: Composed<Cavity> = Composed {
     recommended: Recommended {
         variant: RECOMMENDED,
         because: "its errors at Re 100 are the smallest at every spacing and fall with the second order; \
-                  return flow error -5.7 %<!-- cavity.mirrored; n=16; return --> with 16 spacings a side, \
+                  return flow error −5.7 %<!-- cavity.mirrored; n=16; return --> with 16 spacings a side, \
                   at Re 1000 more than that of `consistent` below 45 spacings",
         papers: Some("seed"),
     },
