@@ -142,7 +142,7 @@ mod tests {
         check(ConsistentContinuity);
     }
 
-    /// The walls pulled fluid at rest apart at one end and compressed it at the other.
+    /// With 2U − v, sliding walls pull fluid at rest apart at one end and compress it at the other.
     #[test]
     fn fluid_at_rest_beside_sliding_walls_keeps_its_density() {
         for disorder in [0.0, 0.8] {

@@ -410,17 +410,8 @@ fn run_file(case: &dyn Case, runs: &[JudgedRun]) -> DataFile {
             status: record.status.to_string(),
         }
     };
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    let whole = runs.iter().map(line).try_for_each(|line| csv.serialize(line));
-    let csv = csv.into_inner().unwrap_or_default();
-    DataFile {
-        title: match whole {
-            Ok(()) => format!("{} (CSV)", counted(runs.len(), "run", "runs")),
-            Err(error) => format!("No file of runs: {error}"),
-        },
-        name: format!("{}-runs.csv", case.name()),
-        csv: String::from_utf8(csv).unwrap_or_default(),
-    }
+    let title = format!("{} (CSV)", counted(runs.len(), "run", "runs"));
+    DataFile::of_rows(title, format!("{}-runs.csv", case.name()), runs.iter().map(line))
 }
 
 /// Settings that differ from the defaults of the variant, as `key=value`, and the use of the run.

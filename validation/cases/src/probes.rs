@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use touchstone_base::{gate::Verdict, pack};
 use touchstone_report::{Block, Cell, DataFile, Section, Table, TableColumn, plain};
 
@@ -162,19 +162,25 @@ fn texts(all: &[(String, Vec<Answered>)]) -> Table {
     questions(all).flat_map(rows).fold(table, Table::row)
 }
 
+/// An answer as a line of a file.
+#[derive(Serialize)]
+struct Line {
+    code: String,
+    question: String,
+    verdict: String,
+    answer: String,
+}
+
 /// All answers, word by word.
 fn file(all: &[(String, Vec<Answered>)]) -> Block {
     let rows = all.iter().flat_map(|(code, answers)| answers.iter().map(move |of| (code, of)));
-    let rows = rows.map(|(code, of)| [code, &of.id, &of.verdict, &of.answer]);
-    let lines = [["code", "question", "verdict", "answer"].map(String::from)]
-        .into_iter()
-        .chain(rows.map(|row| row.map(String::from)))
-        .map(|line| line.map(|word| format!("\"{}\"", word.replace('"', "\"\""))).join(","));
-    Block::File(DataFile {
-        title: "All answers (CSV)".into(),
-        name: "answers.csv".into(),
-        csv: lines.collect::<Vec<_>>().join("\n") + "\n",
-    })
+    let line = |(code, of): (&String, &Answered)| Line {
+        code: code.clone(),
+        question: of.id.clone(),
+        verdict: of.verdict.clone(),
+        answer: of.answer.clone(),
+    };
+    Block::File(DataFile::of_rows("All answers (CSV)".into(), "answers.csv".into(), rows.map(line)))
 }
 
 /// Where the answers to its question are.

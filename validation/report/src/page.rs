@@ -11,6 +11,7 @@ use super::render::{self, Parts};
 use super::table::{Table, class, first_sentence, mark};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
+use serde::Serialize;
 use std::io;
 use std::path::Path;
 use touchstone_base::{files::OutputFolder, text::base64};
@@ -131,6 +132,18 @@ pub struct DataFile {
 }
 
 impl DataFile {
+    /// A line for each row below the names of its fields. If a row has a field that is neither a number nor a
+    /// text, the title states the error.
+    pub fn of_rows(title: String, name: String, rows: impl Iterator<Item: Serialize>) -> Self {
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        let title = match { rows }.try_for_each(|row| csv.serialize(row)) {
+            Ok(()) => title,
+            Err(error) => format!("No file: {error}"),
+        };
+        let csv = csv.into_inner().unwrap_or_default();
+        Self { title, name, csv: String::from_utf8(csv).unwrap_or_default() }
+    }
+
     fn markup(&self) -> Markup {
         let address = format!("data:text/csv;base64,{}", base64(self.csv.as_bytes()));
         html! { p { a href=(address) download=(self.name) { (self.title) } } }
@@ -424,8 +437,16 @@ mod tests {
 
     #[test]
     fn a_file_is_part_of_the_page() {
-        let [title, name, csv] = ["2 runs (CSV)", "a-runs.csv", "a,b\n1,2\n"].map(String::from);
-        let html = DataFile { title, name, csv }.markup().into_string();
+        #[derive(Serialize)]
+        struct Row {
+            a: u8,
+            b: &'static str,
+        }
+        let [title, name] = ["2 runs (CSV)", "a-runs.csv"].map(String::from);
+        let file =
+            |b| DataFile::of_rows(title.clone(), name.clone(), [Row { a: 1, b }].into_iter());
+        assert_eq!(file("x, \"y\"").csv, "a,b\n1,\"x, \"\"y\"\"\"\n");
+        let html = file("2").markup().into_string();
         let link = "<a href=\"data:text/csv;base64,YSxiCjEsMgo=\" download=\"a-runs.csv\">";
         assert!(html.contains(link), "{html}");
     }
