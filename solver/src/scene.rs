@@ -265,9 +265,6 @@ pub fn lattice(
     columns: usize,
     rows: usize,
 ) -> impl Iterator<Item = Vector2<f64>> {
-    let mut points = Vec::with_capacity(columns * rows);
-    for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
-        points.push(first + Vector2::new(i as f64 * dx, j as f64 * dx));
-    }
-    points.into_iter()
+    let place = move |(i, j)| first + Vector2::new(i as f64, j as f64) * dx;
+    (0..rows).flat_map(move |j| (0..columns).map(move |i| (i, j))).map(place)
 }

@@ -24,6 +24,7 @@ use touchstone_base::{
     spec::RunSpec,
 };
 use touchstone_harness::case::{Case, Tier, spec};
+use touchstone_harness::problem::Steps;
 use touchstone_harness::runner::Context;
 use touchstone_harness::size::Size;
 
@@ -1122,6 +1123,9 @@ fn the_ends_of_every_range_are_refused_or_run() {
     assert!(begun > 200 && refusals > 50, "{begun} runs, {refusals} refusals");
 }
 
+/// Runs that are estimated to take more memory are not drawn \[bytes\].
+const MOST_BYTES: f64 = 5e8;
+
 /// Any settings are refused with words or run; the runs are stopped after a few steps.
 #[test]
 fn no_settings_make_a_run_panic() {
@@ -1147,10 +1151,16 @@ fn no_settings_make_a_run_panic() {
                     sleep(Duration::from_millis(5));
                     stop.store(true, Ordering::Relaxed);
                 });
-                case.run(&RunSpec { allow_unstable, ..spec }, &context)
+                case.run(&spec, &context)
             })
         };
-        match spec(case, variant, &set).and_then(run) {
+        let size = |spec: &RunSpec| case.pose(spec)?.size(spec, Steps::All, false);
+        let spec = spec(case, variant, &set).map(|spec| RunSpec { allow_unstable, ..spec });
+        let bytes = spec.as_ref().map_or(0.0, |spec| size(spec).map_or(0.0, |size| size.bytes()));
+        if bytes > MOST_BYTES {
+            return Ok(()); // a machine of tests may not have the 4 GB of the largest run
+        }
+        match spec.and_then(run) {
             Err(error) => prop_assert!(error.to_string().len() > 10),
             Ok(record) => {
                 begun[index].fetch_add(1, Ordering::Relaxed);

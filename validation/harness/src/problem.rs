@@ -412,6 +412,7 @@ impl<P: Problem> Posed for P {
             dt: brief.rules.dt(),
             least: brief.least_steps,
             sweeps: size.sweeps,
+            storage: size.storage,
             times: &times,
             pressure: &pressure(&brief.medium),
             after_step: calls.after_step.iter().map(|(name, _)| *name).chain(every_step).collect(),
@@ -534,7 +535,7 @@ trait Parted: Problem {
         let reach = method.support * brief.medium.h / brief.medium.dx;
         let size = Size::new([rules.end / dt, brief.particles], reach);
         let sweeps = if brief.is_limited { rules.sweeps() } else { size.sweeps };
-        let size = Size { sweeps, samples: brief.samples, ..size };
+        let size = Size { sweeps, samples: brief.samples, storage: method.storage, ..size };
         let size = check_size(size, steps.most(), brief.decisive, allow_long)?;
         Ok((brief, size))
     }

@@ -20,7 +20,7 @@ use crate::{
     error::RunError,
     frames::{self, Frames},
     profile::{self, Profiler},
-    size::Size,
+    size::{Size, Storage},
 };
 
 /// Wall time after which it is shown again how far a run is.
@@ -97,6 +97,8 @@ pub(crate) struct Schedule<'a> {
     pub least: usize,
     /// Pair sweeps a step, for the estimate of the cost.
     pub sweeps: f64,
+    /// Memory of a particle.
+    pub storage: Storage,
     /// Times of interest, ascending, the end last \[s\].
     pub times: &'a [f64],
     /// The pressure \[Pa\] of a density \[kg/m³\], which frames show.
@@ -125,7 +127,7 @@ impl Schedule<'_> {
         let size = Size::of(simulation, steps);
         // The receiver of particles keeps them, finally as text.
         let told = context.at_times.map_or(0.0, |_| size.particles * self.times.len() as f64);
-        let size = Size { sweeps: self.sweeps, samples: told, ..size };
+        let size = Size { sweeps: self.sweeps, samples: told, storage: self.storage, ..size };
         let settings = "the end, the time step or the spacing";
         check_size(size, f64::INFINITY, settings, context.allow_long)?;
         if let Some(tell) = context.estimate {
@@ -474,7 +476,8 @@ mod tests {
     ) -> (Ended, Box<dyn Stepper<()>>) {
         let after_step = watchers.iter().map(|(name, _)| *name).collect();
         let pressure = &|density| density - 1.0;
-        let schedule = Schedule { dt, least: 1, sweeps: 2.0, times, pressure, after_step, at };
+        let (sweeps, storage) = (2.0, Storage::LISTS);
+        let schedule = Schedule { dt, least: 1, sweeps, storage, times, pressure, after_step, at };
         let mut run = Observed { wave: wave(), watchers };
         (schedule.run(&mut run, context).unwrap(), run.wave)
     }

@@ -11,14 +11,26 @@ use touchstone_solver::{Numbers, Stepper};
 /// estimated time is within 0.5 and 1.9 for 90 % of the runs of the full tier of 0.05 s or more, and within
 /// 0.3 and 4.5 for all, on a processor with AVX-512; the ratio of the sums is 0.81.
 const STEP: [f64; 2] = [1e-7, 2.5e-9];
-/// Memory of one particle \[bytes\], and of each of its neighbours: within a factor of two.
-const MEMORY: [f64; 2] = [400.0, 0.75];
 /// Memory of the stored data of one step, including its text in the record \[bytes\].
 const SAMPLE: f64 = 200.0;
 /// Processor time above which a run is refused \[s\].
 pub const MOST_SECONDS: f64 = 24.0 * 3600.0;
 /// Memory above which a run is refused \[bytes\].
 pub const MOST_BYTES: f64 = 4e9;
+
+/// Memory of a particle \[bytes\], within a factor of two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Storage {
+    /// Itself.
+    pub particle: f64,
+    /// Each of its neighbours.
+    pub neighbour: f64,
+}
+
+impl Storage {
+    /// Of schemes: eight particles share a list of neighbours.
+    pub const LISTS: Self = Self { particle: 400.0, neighbour: 0.75 };
+}
 
 /// The cost of a run, estimated before its first step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +47,16 @@ pub struct Size {
     pub sweeps: f64,
     /// Steps of which the record keeps something.
     pub samples: f64,
+    /// Memory of a particle.
+    pub storage: Storage,
 }
 
 impl Size {
     /// The cost of these steps of these particles, with a kernel that reaches over `reach` spacings.
     pub fn new([steps, particles]: [f64; 2], reach: f64) -> Self {
         let (summed, neighbours) = (particles, PI * reach * reach);
-        Self { steps, particles, summed, neighbours, sweeps: 2.0, samples: 0.0 }
+        let storage = Storage::LISTS;
+        Self { steps, particles, summed, neighbours, sweeps: 2.0, samples: 0.0, storage }
     }
 
     /// The cost of these steps of a simulation, with the reach of its kernel.
@@ -67,7 +82,8 @@ impl Size {
 
     /// Memory \[bytes\].
     pub fn bytes(&self) -> f64 {
-        self.particles * (MEMORY[0] + MEMORY[1] * self.neighbours) + SAMPLE * self.samples
+        let Storage { particle, neighbour } = self.storage;
+        self.particles * (particle + neighbour * self.neighbours) + SAMPLE * self.samples
     }
 
     /// Whether it exceeds the limit of a run without explicit permission.

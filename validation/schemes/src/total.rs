@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use nalgebra::Vector2;
 use touchstone_base::lock;
 use touchstone_harness::method::{Medium, Parts, Properties, mutate};
+use touchstone_harness::size::Storage;
 use touchstone_maths::theory::bending;
 use touchstone_maths::theory::lagrangian::{HOURGLASS, fastest_of_block};
 use touchstone_solver::lagrangian::{
@@ -29,6 +30,9 @@ pub const H_OVER_DX: f64 = 1.0;
 /// is compressed, so that no compression is wrong; but the frequencies of compressed matter grow as its
 /// density, and at five times the density no usual step is stable.
 const DENSITIES: [f64; 2] = [0.2, 5.0];
+
+/// Memory \[bytes\]: of a neighbour its number, its weight and two products, and lists while they are made.
+const STORAGE: Storage = Storage { particle: 600.0, neighbour: 33.0 };
 
 /// The parts of the method by name.
 type Named = Compose<WendlandC2, (), (), Ghosts, Leapfrog, Symmetric>;
@@ -63,6 +67,7 @@ fn bodies<L: Law>() -> Method {
     (properties.integrator, properties.walls) = ("velocity Verlet", "planes that hold");
     properties.law = Some(L::ENERGY);
     properties.limit = Some(step_limit);
+    properties.storage = STORAGE;
     properties.uses.clear();
     properties.terms = vec![
         "sums over the neighbours of the configuration without stress; ∂x/∂X exact for linear fields; forces \

@@ -120,7 +120,8 @@ fn pose(method: &Method, s: &CylinderSettings) -> Result<Simple, RunError> {
     let Cylinders { medium, rules, flow, .. } = cylinders;
     let numbers = rules.numbers([s.h_over_dx, medium.dx]);
     let numbers = [&numbers[..], &[("V [m/s]", flow.speed)]].concat();
-    let area = std::f64::consts::PI * (flow.outer * flow.outer - flow.inner * flow.inner);
+    let walls = method.properties.support * medium.h; // behind both cylinders
+    let area = std::f64::consts::PI * ((flow.outer + walls).powi(2) - (flow.inner - walls).powi(2));
     let size = (area / (medium.dx * medium.dx), DECISIVE);
     let scene = move || Ok(Parts::new(medium, Domain::open(), cylinders.particles(&m)));
     let at_end = move |end: &Snapshot, record: &mut Record| {

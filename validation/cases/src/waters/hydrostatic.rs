@@ -205,8 +205,9 @@ impl Problem for WaterColumn {
     fn brief(&self) -> Brief {
         let HydrostaticSettings { rows, columns, h_over_dx, .. } = self.settings;
         let (particles, decisive) = (rows as f64 * columns as f64, "end, courant, rows or columns");
-        Brief::new(self.medium, self.rules, particles, decisive)
-            .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]))
+        let brief = Brief::new(self.medium, self.rules, particles, decisive)
+            .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]));
+        Brief { samples: self.rules.end / self.period, ..brief }
     }
 
     /// Once a period and at the end.

@@ -107,6 +107,11 @@ impl Still {
         let (medium, rules) = s.water.medium(m, scales);
         Self { settings: s.clone(), method: m.clone(), medium, rules }
     }
+
+    /// Times of measurement, in the last quarter of the run.
+    fn samples(&self) -> f64 {
+        (0.25 * SAMPLES * self.settings.end).ceil().max(1.0)
+    }
 }
 
 /// Sides, floor and wedge, the water on the left.
@@ -233,12 +238,13 @@ impl Problem for Still {
     fn brief(&self) -> Brief {
         let dx = self.medium.dx;
         let decisive = "end, courant, c0 or n";
-        Brief::new(self.medium, self.rules, 2.0 * HALF / (dx * dx), decisive)
-            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, dx]))
+        let brief = Brief::new(self.medium, self.rules, 2.0 * HALF / (dx * dx), decisive)
+            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, dx]));
+        Brief { samples: self.samples(), ..brief }
     }
 
     fn times(&self) -> Vec<f64> {
-        let count = (0.25 * SAMPLES * self.settings.end).ceil().max(1.0);
+        let count = self.samples();
         let time = |k: usize| self.rules.end * (0.75 + 0.25 * k as f64 / count);
         (1..=count as usize).map(time).collect()
     }

@@ -11,6 +11,7 @@ use super::terms::{Boundary, FirstRow, FromMedium};
 use crate::{
     limits::TimeStepLimits,
     medium::{Medium, MediumSetting},
+    size::Storage,
 };
 
 /// A scheme whose terms and walls can be constructed from a medium.
@@ -45,6 +46,8 @@ pub struct Properties {
     pub theory: time_step::Integrator,
     /// The largest stable step in a medium at rest \[s\], for a method whose waves do not follow from terms.
     pub limit: Option<fn(&Medium) -> f64>,
+    /// Memory of a particle.
+    pub storage: Storage,
     /// The settings that only its terms and walls read.
     pub uses: Vec<MediumSetting>,
     /// Its terms as equations.
@@ -77,6 +80,7 @@ impl Properties {
             support: S::Kernel::SUPPORT,
             theory: S::Integrator::THEORY,
             limit: None,
+            storage: Storage::LISTS,
             uses,
             terms,
             weight: |h, r2| Smoothing::<S::Kernel>::new(h).w(r2),

@@ -1,7 +1,7 @@
 //! An open rectangular tank: a bottom, two sides, and no lid.
 
 use nalgebra::Vector2;
-use touchstone_solver::{PlaneWall, Role, lattice};
+use touchstone_solver::{PlaneWall, Role};
 
 /// The inside of a tank, from its lower left corner at the origin.
 ///
@@ -30,9 +30,12 @@ impl Tank {
         let (mut walls, mut behind_them) = (Vec::new(), Vec::new());
         let behind = (support / self.dx - 1e-9).floor() as i32;
         let (columns, rows) = (self.columns as i32, self.rows as i32);
-        for (i, j) in
-            (-behind..=rows).flat_map(|j| (-behind..=columns + behind).map(move |i| (i, j)))
-        {
+        // Rows of the inside end at the sides: their middles are water, and may be a million times the walls.
+        let row = |j: i32| {
+            let [left, right] = if j > 0 { [0, columns] } else { [columns, columns + 1] };
+            (-behind..=left).chain(right..=columns + behind).map(move |i| (i, j))
+        };
+        for (i, j) in (-behind..=rows).flat_map(row) {
             let (across, up) = (0..=columns, 0..=rows);
             let is_inside = across.contains(&i) && up.contains(&j);
             let is_surface = is_inside && (i == 0 || i == columns || j == 0);
@@ -52,8 +55,13 @@ impl Tank {
     pub fn rows_behind(&self, support: f64) -> Vec<Vector2<f64>> {
         let behind = (support / self.dx + 0.5 - 1e-9).floor() as usize;
         let first = Vector2::repeat((0.5 - behind as f64) * self.dx);
-        let all = lattice(first, self.dx, self.columns + 2 * behind, self.rows + behind);
-        all.filter(|p| !(p.y > 0.0 && p.x > 0.0 && p.x < self.width())).collect()
+        let (inside, all) = (behind + self.columns, 2 * behind + self.columns);
+        let row = |j: usize| {
+            let left = if j < behind { inside } else { behind };
+            (0..left).chain(inside..all).map(move |i| (i, j))
+        };
+        let place = |(i, j)| first + Vector2::new(i as f64, j as f64) * self.dx;
+        (0..self.rows + behind).flat_map(row).map(place).collect()
     }
 
     /// Walls that mirror the fluid: bottom, left and right side, of infinite height.
@@ -103,6 +111,14 @@ mod tests {
                 .all(|(p, role)| { *role == Role::Interface && on_wall(p) && p.y >= 0.0 })
         );
         assert!(behind.iter().all(|(_, role)| *role == Role::Wall));
+    }
+
+    /// The inside of this tank has 10^10 places, 160 GB.
+    #[test]
+    fn walls_of_a_large_tank_take_no_memory_for_its_inside() {
+        let tank = Tank { columns: 100_000, rows: 100_000, ..TANK };
+        assert_eq!(tank.rows_behind(0.31).len(), 3 * (100_006 + 2 * 100_000));
+        assert_eq!(tank.interface_walls(0.21).len(), 2 * 100_005 + 100_005 + 6 * 100_000);
     }
 
     #[test]

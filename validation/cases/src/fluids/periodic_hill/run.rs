@@ -210,7 +210,7 @@ impl Problem for HillSetup {
     }
 
     fn brief(&self) -> Brief {
-        self.flow.brief()
+        Brief { samples: self.stretches(), ..self.flow.brief() }
     }
 
     fn times(&self) -> Vec<f64> {
