@@ -45,10 +45,13 @@ pub(super) fn panel(panel: &Prepared, area: Rect, columns: &mut Columns) -> Valu
             Some(json!({ "name": series.name, "x": x, "y": y, "names": series.names }))
         }
         Layer::Dots(Dots { points, label, .. }) => {
-            let x = columns.numbers(points.iter().map(|p| p.x), plot.x.scale);
-            let y = columns.numbers(points.iter().map(|p| p.y), plot.y.scale);
-            let values = columns.numbers(points.iter().map(|p| p.value), Scale::Linear);
-            Some(json!({ "name": label, "x": x, "y": y, "values": values }))
+            let each = points.len().div_ceil(MOST_DOTS).max(1);
+            let points = points.iter().step_by(each);
+            let x = columns.numbers(points.clone().map(|p| p.x), plot.x.scale);
+            let y = columns.numbers(points.clone().map(|p| p.y), plot.y.scale);
+            let values = columns.numbers(points.map(|p| p.value), Scale::Linear);
+            let some = if each > 1 { format!(", 1 of {each} particles") } else { String::new() };
+            Some(json!({ "name": format!("{label}{some}"), "x": x, "y": y, "values": values }))
         }
         Layer::Cells { name, cells, .. } => {
             let of = |names: &[String], k: usize| json!(names.get(k).cloned().unwrap_or_default());
@@ -77,6 +80,10 @@ pub(super) fn json(panels: Vec<Value>, columns: Columns) -> String {
     text.replace('&', "\\u0026").replace('<', "\\u003c").replace('>', "\\u003e")
 }
 
+/// Of more particles in a panel only some have a value: they are nearer to each other than the reach of the
+/// pointer, and the records have all of them.
+const MOST_DOTS: usize = 2_000;
+
 /// Points beyond which a column is drawn, not read: its numbers have the digits that the drawing shows.
 const MANY: usize = 40;
 
@@ -104,6 +111,22 @@ mod tests {
     use super::super::render::parts;
     use super::*;
     use crate::{Axis, ColourMap, Dot, Figure, GridCell, Plot, Series};
+
+    /// A panel of many particles has some of them, and says how many.
+    #[test]
+    fn a_panel_of_many_particles_names_its_share() {
+        for (count, kept, name) in [(2000, 2000, "u"), (2001, 1001, "u, 1 of 2 particles")] {
+            let dot = |k: i32| Dot { x: f64::from(k), y: 0.0, value: 1.0 };
+            let dots = Dots::new("u", ColourMap::Sequential, 1.0, (0..count).map(dot).collect());
+            let plot = Plot::new("", Axis::linear("x"), Axis::linear("y")).layer(dots);
+            let data = parts(&Figure::new("f", "").panel(plot), "aloud").data;
+            let data: Value = serde_json::from_str(&data).expect("JSON");
+            let series = &data["panels"][0]["series"][0];
+            let x = series["x"].as_u64().expect("a column") as usize;
+            assert_eq!(data["columns"][x].as_array().map(Vec::len), Some(kept));
+            assert_eq!(series["name"], name);
+        }
+    }
 
     /// The data that the script reads: values with five digits, gaps, and names of points.
     #[test]

@@ -30,6 +30,13 @@ pub static FOLDS: Cause = Cause::new(
     "More particles through the thickness.",
 );
 
+/// Creases of few particles.
+pub static CREASES: Cause = Cause::new(
+    "Fast rings fold until the inner face of the fold creases, and the strain of a crease grows as the \
+     spacing falls.",
+    "Contact of a body with itself, which would close a crease; untried.",
+);
+
 /// Bodies that touch are one.
 pub static ONE_LATTICE: Cause = Cause::new(
     "Two bodies on one lattice are one body to the equations, so their contact can pull as well as push.",
