@@ -132,8 +132,8 @@ const NOTHING_DISSIPATES: &str = "Nothing dissipates. Contacts that open and clo
 const INSIDE_OUT: &str = "Neighbours stay, so a total Lagrangian body fails by being turned inside out: its \
     least volume falls to 0. At 0.5 a fold is as thin as half a spacing.";
 
-const CREASED: &str = "At 0.2 c0 the least volume is 0.65, 0.63, 0.56, 0.53, 0.47 and 0.37 with 4, 5, 6, 8, 10 \
-    and 12 layers, at 0.16 c0 0.75 to 0.61; the particle is at the inner face of the fold. The bound: the \
+const CREASED: &str = "At 0.2 c0 the least volume is 0.65, 0.63, 0.56, 0.53, 0.47 and 0.37 with 4, 5, 6, 8, \
+    10 and 12 layers, at 0.16 c0 0.75 to 0.61; the particle is at the inner face of the fold. The bound: the \
     density at which a run counts as diverged.";
 
 /// Gates on rings that stay whole: no piece comes off, and each stays closed around its hole. A ring that is
