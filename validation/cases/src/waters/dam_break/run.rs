@@ -155,9 +155,13 @@ impl Problem for Dam {
     }
 
     fn brief(&self) -> Brief {
-        let Self { counts: [columns, rows], tank, medium, .. } = self;
-        let all = (columns * rows + 8 * (tank.columns + 2 * tank.rows)) as f64;
-        let unstable = (self.method.properties.walls == Ghosts::NAME).then(|| {
+        let Self { tank, medium, .. } = self;
+        let of = &self.method.properties;
+        let reach = (of.support * medium.h / medium.dx).ceil();
+        let behind = if of.first_row == FirstRow::Nowhere { 0.0 } else { reach };
+        let [columns, rows] = self.counts.map(|count| count as f64);
+        let all = columns * rows + behind * (tank.columns as f64 + 2.0 * tank.rows as f64);
+        let unstable = (of.walls == Ghosts::NAME).then(|| {
             let allowed = "--allow-unstable: particles of a stretched layer sink through mirrors to which \
                            water sticks; ghosts-slip puts them back";
             let (value, allowed) = (Ghosts::NAME.into(), allowed.into());
