@@ -3,9 +3,10 @@
 //!
 //! Each case has two snapshots, tables whose cells are separated by `|`. `case` holds the metrics of each
 //! variant, a row a metric and a column a run, which are compared to 1e-6 of themselves and a floor for those
-//! that are round-off; and the names of numerics and profiles. `work.case` holds steps, pair interactions
-//! and right-hand sides, which are compared exactly. A change that costs work and moves no metric changes
-//! the second alone, and is not accepted together with a change of results. No snapshot holds seconds.
+//! that are round-off; the names of numerics; and the mean of each column of a profile. `work.case` holds
+//! steps, pair interactions and right-hand sides, which are compared exactly. A change that costs work and
+//! moves no metric changes the second alone, and is not accepted together with a change of results. No
+//! snapshot holds seconds.
 //! `settings.case` holds settings and variants.
 
 use std::{
@@ -244,8 +245,8 @@ fn number(value: f64) -> String {
     format!("{:?}", format!("{value:.8e}").parse().unwrap_or(value))
 }
 
-/// The metrics of the runs of a variant: a row a metric, a column a run; and the names of numerics and
-/// profiles.
+/// The metrics of the runs of a variant: a row a metric, a column a run; the names of numerics; and of the
+/// profiles of the first run each column with its mean over all profiles that have these columns.
 fn results(variant: &str, of: &[(&Run, &Record)]) -> String {
     let names: BTreeMap<&String, &String> = of
         .iter()
@@ -261,21 +262,35 @@ fn results(variant: &str, of: &[(&Run, &Record)]) -> String {
         rows.push(std::iter::once(format!("{name} [{unit}]")).chain(values).collect());
     }
     let record = of[0].1;
-    let mut profiles: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    let mut profiles: BTreeMap<Vec<String>, Vec<(&str, &Profile)>> = BTreeMap::new();
     for (name, profile) in &record.profiles {
-        profiles.entry(columns(profile)).or_default().push(name);
+        profiles.entry(columns(profile)).or_default().push((name, profile));
     }
     let numerics: Vec<&str> = record.numerics.keys().map(String::as_str).collect();
     let mut text = table(&rows) + &format!("numerics: {}\n", numerics.join(", "));
-    for (columns, names) in profiles {
-        text += &format!("profiles {}: {columns}\n", names.join(", "));
+    for (columns, of) in profiles {
+        let names: Vec<&str> = of.iter().map(|(name, _)| *name).collect();
+        text += &format!("profiles {}", names.join(", "));
+        for (k, column) in columns.iter().enumerate() {
+            let values = of.iter().flat_map(|(_, profile)| &profile.columns[k].values);
+            text += &format!(" | {column} | {}", number(mean(values)));
+        }
+        text += "\n";
     }
     text
 }
 
-fn columns(profile: &Profile) -> String {
-    let name = |c: &ProfileColumn| format!("{} [{}]", c.name, c.unit);
-    profile.columns.iter().map(name).collect::<Vec<_>>().join(", ")
+/// Names and units.
+fn columns(profile: &Profile) -> Vec<String> {
+    profile.columns.iter().map(|of: &ProfileColumn| format!("{} [{}]", of.name, of.unit)).collect()
+}
+
+/// The mean of the finite ones.
+fn mean<'a>(values: impl Iterator<Item = &'a f64>) -> f64 {
+    let (count, sum) = values
+        .filter(|value| value.is_finite())
+        .fold((0.0, 0.0), |(n, sum), value| (n + 1.0, sum + value));
+    sum / count
 }
 
 /// The work of the runs of a variant: a row a run.
@@ -691,5 +706,6 @@ fn a_change_is_seen_and_round_off_is_not() {
     assert!(!are("l2 | 0.1", "l2 | NaN") && !are("l2 | 0.1", "l2 | absent"));
     assert!(are("l2 | NaN", "l2 | NaN") && !are("a | 0.1", "a | 0.1\nb | 0.1"));
     assert!(!are("u [m/s] | 0.1", "u [V] | 0.1") && !are("a | 0.1", "a | 0.1 | 0.1"));
-    assert!(!are("profiles a: u [m/s]", "profiles a: u [V]"));
+    assert!(!are("profiles a | u [m/s] | 0.1", "profiles a | u [V] | 0.1"));
+    assert!(!are("profiles a | u [V] | 0.1", "profiles a | u [V] | 0.11"));
 }
