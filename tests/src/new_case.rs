@@ -1,4 +1,7 @@
 //! A new case in one file: the decay of a shear wave in a periodic box.
+//!
+//! A case of `validation/cases` takes its methods from `touchstone_schemes`, declares its metrics by
+//! `metrics!`, states them in `Facts::statement`, and has a longer reason for the recommended variant.
 
 use std::f64::consts::TAU;
 
