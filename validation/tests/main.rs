@@ -1,5 +1,7 @@
 //! Tests of the command, in one program that is linked once.
 
+#![allow(clippy::unwrap_used)] // clippy allows it in tests, not in their helpers
+
 mod baselines;
 mod cases;
 mod cli;

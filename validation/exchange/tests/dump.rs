@@ -1,5 +1,7 @@
 //! Dumps of LAMMPS: its names, its numbers of atoms, and names that the caller gives.
 
+#![allow(clippy::unwrap_used)] // clippy allows it in tests, not in their helpers
+
 use nalgebra::Vector2;
 use touchstone_exchange::read::{Renamed, read};
 

@@ -1,5 +1,7 @@
 //! Tables of comma-separated values: names, further columns, and messages.
 
+#![allow(clippy::unwrap_used)] // clippy allows it in tests, not in their helpers
+
 use touchstone_exchange::read::{Renamed, Results, read};
 
 /// The content of tables, or their flaws.

@@ -1,6 +1,8 @@
 //! Files of ParaView as other programs write them: every encoding gives one result, and the stated types are
 //! respected.
 
+#![allow(clippy::unwrap_used)] // clippy allows it in tests, not in their helpers
+
 use std::io::Write;
 
 use flate2::{Compression, write::ZlibEncoder};
