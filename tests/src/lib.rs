@@ -9,7 +9,10 @@ pub mod row_matrix;
 use std::{collections::BTreeMap, fs, path::Path};
 
 use nalgebra::Vector2;
-use touchstone_base::functions::{cos, sin};
+use touchstone_base::{
+    functions::{cos, sin},
+    random,
+};
 use touchstone_solver::{
     Compose, Domain, Engine, Integrator, Kernel, Open, Outcome, Particle, Physics, Rate, Scene,
     Stepper, Term, integrator::Stepped, lattice, numbers::Numbers, physics::Particles,
@@ -87,20 +90,18 @@ pub fn assert_near(what: &str, found: f64, expected: f64, tolerance: f64) {
 /// A plane vector.
 pub type V2 = Vector2<f64>;
 
-/// Splitmix64: equal numbers on every machine.
-pub struct Random(pub u64);
+/// Random vectors and orders, equal on every machine.
+pub struct Random(random::Random);
 
 impl Random {
-    fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+    /// The stream of this seed.
+    pub fn new(seed: u64) -> Self {
+        Self(random::Random::new(seed))
     }
 
     /// Uniform in [low, high).
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+        low + (high - low) * self.0.uniform()
     }
 
     /// Each component uniform in [low, high).
@@ -111,7 +112,7 @@ impl Random {
     /// Permutes the items.
     pub fn shuffle<T>(&mut self, items: &mut [T]) {
         for k in (1..items.len()).rev() {
-            items.swap(k, (self.bits() % (k as u64 + 1)) as usize);
+            items.swap(k, self.between(0.0, k as f64 + 1.0) as usize);
         }
     }
 }
@@ -171,7 +172,7 @@ pub fn relative_sum(numbers: impl Iterator<Item = f64>) -> f64 {
 /// A square lattice of n × n particles in the unit square, density 1, moved by up to `jitter`
 /// spacings, with smooth velocities of size 0.1 that fit the period.
 pub fn patch(n: usize, jitter: f64, seed: u64) -> Vec<Particle> {
-    let (mut random, dx) = (Random(seed), 1.0 / n as f64);
+    let (mut random, dx) = (Random::new(seed), 1.0 / n as f64);
     lattice(Vector2::repeat(0.5 * dx), dx, n, n)
         .map(|point| {
             let position = point + random.vector(-jitter, jitter) * dx;

@@ -80,7 +80,7 @@ fn a_parabola_on_a_lattice_has_its_viscous_force() {
 
 #[test]
 fn particles_on_a_line_and_alone_feel_nothing_that_is_not_finite() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let at = |x: f64| Particle::fluid(Vector2::new(x, 0.0), Vector2::new(x, 1.0), 1.0, DX * DX);
     let line: Vec<Particle> =
         (0..9).map(|k| at(f64::from(k) * DX + random.between(0.0, 0.3 * DX))).collect();

@@ -248,7 +248,7 @@ fn coincident_particles_stay_together_or_part_with_their_momentum() {
 #[test]
 fn a_thousand_times_the_speed_of_sound_conserves_momentum_or_is_reported() {
     let mut particles = patch(12, 0.2, 4);
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     particles.iter_mut().for_each(|p| p.velocity = random.vector(-1e3 * C, 1e3 * C));
     let size: f64 = particles.iter().map(|p| p.mass * p.velocity.norm()).sum();
     let dt = 0.1 * H / (1e3 * C);

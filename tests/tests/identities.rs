@@ -12,7 +12,7 @@ const ROUND_OFF: f64 = 1e-12;
 
 /// Random positions, velocities, densities below and above ⁰ρ, and masses within a factor of 4.
 fn cloud(seed: u64) -> Vec<Particle> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let particle = |_| {
         let (position, velocity) = (random.vector(0.0, 1.0), random.vector(-1.0, 1.0));
         let (density, volume) = (random.between(900.0, 1100.0), random.between(1e-3, 4e-3));
@@ -101,7 +101,7 @@ fn check_dissipation(name: &str, forces: impl Term<()>) {
         let total: f64 = power(&cloud, &rates).sum();
         assert!(total < 0.0, "{name} feeds {total:e} W/m into cloud {seed}");
         let mut two = [cloud[0], cloud[1]];
-        two[1].position = two[0].position + Random(seed).vector(-H, H);
+        two[1].position = two[0].position + Random::new(seed).vector(-H, H);
         let rates = open_rates::<CubicSpline, _, _, _>(H, &two, forces.clone(), ());
         let pair: f64 = power(&two, &rates).sum();
         let size: f64 = power(&two, &rates).map(f64::abs).sum();

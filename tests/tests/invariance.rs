@@ -83,7 +83,7 @@ fn predictor_corrector_is_the_same_in_every_frame() {
 
 fn check_permutation<I: Integrator<Scheme<()>>>() {
     let mut order: Vec<usize> = (0..144).collect();
-    Random(8).shuffle(&mut order);
+    Random::new(8).shuffle(&mut order);
     let start = start();
     let permuted = run::<I>(order.iter().map(|&k| start[k]).collect());
     let plain = run::<I>(start);
@@ -157,7 +157,7 @@ fn channel(particles: Vec<Particle>, below: f64, above: f64) -> Simulation<Chann
 }
 
 fn at_rest() -> Vec<Particle> {
-    let (mut random, dx) = (Random(3), 1.0 / 16.0);
+    let (mut random, dx) = (Random::new(3), 1.0 / 16.0);
     lattice(Vector2::repeat(0.5 * dx), dx, 8, 16)
         .map(|p| p + random.vector(-0.1, 0.1) * dx)
         .map(|p| Particle::fluid(p, Vector2::zeros(), 1.0, dx * dx))

@@ -35,7 +35,7 @@ fn grad_w(r: V2) -> V2 {
 /// Pairs of unequal particles that approach and recede, in tension and compression, without those
 /// so close to the knots q = 0, 1, 2 that the difference quotient is inaccurate.
 fn pairs() -> Vec<[Particle; 2]> {
-    let mut random = Random(2024);
+    let mut random = Random::new(2024);
     let mut pairs = Vec::new();
     while pairs.len() < 60 {
         let mut particle = |reach: f64| {

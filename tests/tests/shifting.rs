@@ -70,7 +70,7 @@ fn a_shifted_particle_takes_the_velocity_of_its_new_place() {
 
 #[test]
 fn on_a_line_and_alone_nothing_is_carried() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     let at =
         |x: f64, u: f64| Particle::fluid(Vector2::new(x, 0.0), Vector2::new(u, 1.0), 1.0, DX * DX);
     let line: Vec<Particle> =

@@ -86,7 +86,7 @@ fn random_stress(random: &mut Random) -> Symmetric {
 /// Random positions, velocities and stresses, densities within a share of ⁰ρ, masses within a
 /// factor of 4.
 fn cloud(seed: u64, share: f64) -> Vec<Solid> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let particle = |_| {
         let (position, velocity) = (random.vector(0.0, 1.0), random.vector(-1.0, 1.0));
         let density = RHO * (1.0 + random.between(-share, share));
@@ -288,7 +288,7 @@ fn jaumann_rate_is_equation_11() {
 /// R = −ξ Q diag(max(λ, 0)) Qᵀ.
 #[test]
 fn the_artificial_stress_has_the_principal_axes_of_the_stress() {
-    let (mut random, term) = (Random(5), PrincipalStress::new(XI, N, 1.0));
+    let (mut random, term) = (Random::new(5), PrincipalStress::new(XI, N, 1.0));
     let plain = |xx, yy, xy| Symmetric { xx, yy, xy };
     let mut stresses = vec![
         plain(0.0, 0.0, 0.0),
@@ -330,7 +330,7 @@ fn a_uniform_strain_rate_gives_the_exact_stress_rate_times_the_lattice_factor() 
     let factor = SquareLattice::of::<CubicSpline>(1.2, 0.0).gradient_factor();
     let (n, spin) = (15, 0.7);
     let plain = |xx, yy, xy| Symmetric { xx, yy, xy };
-    let (rest, s) = (Symmetric::default(), random_stress(&mut Random(4)));
+    let (rest, s) = (Symmetric::default(), random_stress(&mut Random::new(4)));
     let cases = [
         (Matrix2::new(1.0, 0.0, 0.0, 0.0), rest, plain(4.0 / 3.0, -2.0 / 3.0, 0.0) * MU),
         (Matrix2::new(0.0, 0.0, 0.0, 1.0), rest, plain(-2.0 / 3.0, 4.0 / 3.0, 0.0) * MU),
@@ -537,7 +537,7 @@ impl Lattice {
 
     /// The growth rate of noise, from the kinetic energy four e-foldings apart.
     fn measured_growth<K: Kernel>(&self, expected: f64) -> f64 {
-        let (mut random, dt) = (Random(1), 0.3);
+        let (mut random, dt) = (Random::new(1), 0.3);
         let noise: Vec<V2> = (0..self.n * self.n).map(|_| random.vector(-1e-13, 1e-13)).collect();
         let index = |x: V2| (x.y as usize) * self.n + x.x as usize;
         let mut simulation = self.simulation::<K>(|x| noise[index(x)]);

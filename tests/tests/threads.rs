@@ -106,7 +106,7 @@ fn walled() -> Vec<Particle> {
         }
     }
     // Roles mixed: the solver sorts them.
-    Random(4).shuffle(&mut all);
+    Random::new(4).shuffle(&mut all);
     all
 }
 
@@ -136,7 +136,7 @@ const STRIP: [usize; 2] = [12, 400];
 
 /// A strip between walls at y = 0 and the height of the strip, along which the fluid streams.
 fn strip() -> Vec<Particle> {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     let points = lattice(Vector2::repeat(0.5 * DX), DX, STRIP[1], STRIP[0]);
     let particle = |point: V2| {
         let velocity = random.vector(-0.1, 0.1) + Vector2::new(0.3, 0.0);

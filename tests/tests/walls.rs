@@ -56,7 +56,7 @@ fn shown<U: WallVelocity>(particles: &[Particle], walls: ExtrapolatingWall<Tait,
 
 /// Fluid above y = 0, wall particles below, moving at (0.7, 0.1), one of them out of reach.
 fn scene() -> Vec<Particle> {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut particles = Vec::new();
     for _ in 0..60 {
         let place = Vector2::new(random.between(0.0, LENGTH), random.between(0.0, 0.3));
@@ -168,7 +168,7 @@ fn a_hydrostatic_pressure_goes_on_behind_the_wall() {
 
 /// Water anywhere in a column at rest, compressed by a tenth at the bottom.
 fn column(eos: &Tait, gravity: V2, seed: u64) -> Vec<Particle> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let place = |random: &mut Random| random.vector(0.0, 1.0);
     let at_rest = |x: V2| {
         // ρ of the enthalpy g·(x − corner): 1 + (γ−1) w/c² to the power 1/(γ−1).
@@ -207,7 +207,7 @@ fn hydrostatic_diffusion_leaves_any_column_at_rest_alone() {
 
 #[test]
 fn without_gravity_hydrostatic_diffusion_is_the_plain_one_to_first_order() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let eos = Tait::new(1000.0, 15.0);
     for strain in [1e-3, 1e-5] {
         let cloud: Vec<Particle> = (0..200)
