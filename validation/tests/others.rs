@@ -25,6 +25,10 @@ struct Entry {
     rows: Vec<Vec<String>>,
 }
 
+/// Columns of particles that change in time, and columns that do not.
+const MOVED: [&str; 6] = ["id", "x", "y", "u", "v", "density"];
+const FIXED: [&str; 2] = ["mass", "role"];
+
 /// Result of a submission.
 struct SubmissionResult {
     code: i32,
@@ -43,6 +47,12 @@ fn touchstone(folder: &Path, line: &str) -> (i32, String) {
 
 fn cells(line: &str) -> Vec<String> {
     line.split(',').map(String::from).collect()
+}
+
+/// Position of the column of this name, whatever its unit.
+fn column(heads: &[String], name: &str) -> usize {
+    let is = |head: &String| head.split('[').next() == Some(name);
+    heads.iter().position(is).unwrap_or_else(|| panic!("no column {name}"))
 }
 
 impl Entry {
@@ -66,9 +76,28 @@ impl Entry {
         fs::write(path, method.replace("\"closed\"", "\"open\"")).unwrap();
     }
 
+    /// As a code that chose its particles itself submits them: with their start, masses and roles.
+    fn open(mut self) -> Self {
+        self.state_own_particles();
+        let text = fs::read_to_string(self.folder.join("particles.csv")).unwrap();
+        let mut start = text.lines().map(cells);
+        let heads = start.next().unwrap();
+        let start: Vec<_> = start.collect();
+        let row = |time: &str, heads_of: &[String], cells: &[String]| -> Vec<String> {
+            let moved = MOVED.map(|name| cells[column(heads_of, name)].clone());
+            let of = &start[moved[0].parse::<usize>().unwrap()];
+            let fixed = FIXED.map(|name| of[column(&heads, name)].clone());
+            [vec![time.to_string()], moved.into(), fixed.into()].concat()
+        };
+        let first = start.iter().map(|cells| row("0", &heads, cells));
+        let last = self.rows.iter().map(|cells| row(&cells[self.column("t")], &self.head, cells));
+        self.rows = first.chain(last).collect();
+        self.head = ["t"].into_iter().chain(MOVED).chain(FIXED).map(String::from).collect();
+        self
+    }
+
     fn column(&self, name: &str) -> usize {
-        let is = |head: &String| head.split('[').next() == Some(name);
-        self.head.iter().position(is).unwrap_or_else(|| panic!("no column {name}"))
+        column(&self.head, name)
     }
 
     fn number(&self, row: usize, column: usize) -> f64 {
@@ -260,7 +289,7 @@ fn nothing_is_judged_that_rests_on_a_density_that_was_not_handed_in() {
 
 /// A small problem of each case that has results of particles, and the metrics that are absent without
 /// densities and because results have no stress.
-const PROBLEMS: [(&str, &str, &str); 25] = [
+const PROBLEMS: [(&str, &str, &str); 26] = [
     ("couette --variant plain --set rows=8 --set end=0.4", "p_rms volume_drift", ""),
     ("poiseuille --variant seed --set rows=8 --set end=0.4", "p_rms volume_drift", ""),
     ("periodic_hill --variant carried --set n=5 --set end=2", FIELD_OF_HILLS, ""),
@@ -290,6 +319,7 @@ const PROBLEMS: [(&str, &str, &str); 25] = [
         "return strength u_ghia u_rms v_ghia v_rms volume",
         "",
     ),
+    ("slip_channel --set n=8", "", ""),
     ("elliptic_drop --set n=10", "", ""),
     ("hydrostatic --set rows=10 --set columns=5 --set end=4", "p_l2", ""),
     ("still_wedge --set n=10 --set end=4", "p_apex p_base p_l2", ""),
@@ -337,6 +367,32 @@ fn a_column_that_is_taken_away_leaves_out_the_metrics_that_need_it_and_no_other(
             assert_eq!(without.metric(name), expected, "{name} of {problem}");
         }
     }
+}
+
+/// No time, place or velocity is filled in from the problem.
+#[test]
+fn a_column_without_which_no_motion_is_known_is_refused_by_name() {
+    let own = Entry::own("couette --variant plain --set rows=8 --set end=0.1");
+    for name in ["t", "id", "x", "y", "u", "v"] {
+        let said = own.without(name);
+        let says = format!("column {name}: it is missing; expected a column {name} in");
+        assert!(said.code == 2 && said.text.contains(&says), "{name}: {}", said.text);
+        assert_eq!(said.record, None, "{name}");
+    }
+}
+
+/// No mass is filled in for particles that a code chose itself; without roles all of them are fluid.
+#[test]
+fn own_particles_state_their_masses_and_without_roles_are_fluid() {
+    let own = Entry::own("couette --variant plain --set rows=8 --set end=0.1").open();
+    let metrics = |said: SubmissionResult| said.record.expect(&said.text).metrics;
+    let honest = metrics(own.submit(&own.head, &own.rows));
+    assert!(honest.len() > 2, "{honest:?}");
+    assert_eq!(metrics(own.without("role")), honest);
+    let said = own.without("mass");
+    let says = "column mass: it is missing; in the open division each particle states its mass";
+    assert!(said.code == 2 && said.text.contains(says), "{}", said.text);
+    assert_eq!(said.record, None);
 }
 
 /// The run of a problem, and the record of its own results as a submission.
@@ -930,26 +986,7 @@ fn particles_that_a_code_chose_itself_are_the_ones_that_are_measured() {
 /// particles of another code are not put into it: their energy is not the energy of its particles.
 #[test]
 fn own_particles_without_densities_are_not_put_into_a_total_lagrangian_method() {
-    let own = Entry::own("elastic_bar --variant lagrangian --set n=10");
-    own.state_own_particles();
-    let text = fs::read_to_string(own.folder.join("particles.csv")).unwrap();
-    let mut start = text.lines().map(cells);
-    let head = start.next().unwrap();
-    let start: Vec<_> = start.collect();
-    let at = |name: &str| head.iter().position(|h| h.split('[').next() == Some(name)).unwrap();
-    let [mass, role] = ["mass", "role"].map(at);
-    let row = |time: &str, cells: &[String], columns: [usize; 5]| -> Vec<String> {
-        let of = &start[cells[columns[0]].parse::<usize>().unwrap()];
-        let moved = columns.map(|k| cells[k].clone());
-        [vec![time.to_string()], moved.into(), vec![of[mass].clone(), of[role].clone()]].concat()
-    };
-    let columns = ["id", "x", "y", "u", "v"];
-    let (begun, ended) = (columns.map(at), columns.map(|name| own.column(name)));
-    let first = start.iter().map(|cells| row("0", cells, begun));
-    let last = own.rows.iter().map(|cells| row(&cells[own.column("t")], cells, ended));
-    let rows: Vec<_> = first.chain(last).collect();
-    let head = ["t"].into_iter().chain(columns).chain(["mass", "role"]).map(String::from);
-    let said = own.submit(&head.collect::<Vec<_>>(), &rows);
+    let said = Entry::own("elastic_bar --variant lagrangian --set n=10").open().without("density");
     let record = said.record.unwrap_or_else(|| panic!("{}", said.text));
     assert_eq!(lacking(&record, "density"), "energy_change", "{}", said.text);
     assert_eq!(record.state, None, "{}", said.text);
