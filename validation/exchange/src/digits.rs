@@ -7,17 +7,19 @@ use touchstone_harness::foreign::{ForeignParticle, Frame};
 const FEW: usize = 11;
 /// Number of different rounded values that exclude a coincidence.
 const DIFFERENT: usize = 3;
-/// A bound as small is of round-off.
+/// Bounds up to this one are bounds of round-off.
 pub const ROUND_OFF: f64 = 1e-6;
 
-/// The columns of a particle.
-pub const NAMES: [&str; 5] = ["x", "y", "u", "v", "density"];
+/// A column of particles: its name and its value for a particle, NaN if the particle has none.
+type Column = (&'static str, fn(&ForeignParticle) -> f64);
 
-/// The numbers of a particle; NaN for missing ones.
-pub fn of(placed: &ForeignParticle) -> [f64; 5] {
-    let ForeignParticle { position, velocity, density, .. } = placed;
-    [position.x, position.y, velocity.x, velocity.y, density.unwrap_or(f64::NAN)]
-}
+const COLUMNS: [Column; 5] = [
+    ("x", |of| of.position.x),
+    ("y", |of| of.position.y),
+    ("u", |of| of.velocity.x),
+    ("v", |of| of.velocity.y),
+    ("density", |of| of.density.unwrap_or(f64::NAN)),
+];
 
 /// Digits of a number in its shortest exact text, as a double or as a float of 4 bytes.
 fn digits(value: f64) -> usize {
@@ -29,10 +31,10 @@ fn digits(value: f64) -> usize {
 
 /// Describes the first column of a frame whose numbers all have few digits. Numbers equal to the start's,
 /// which may be round, do not count.
-pub fn few(frame: &Frame, start: &dyn Fn(u32) -> Option<[f64; 5]>) -> Option<String> {
-    (0..NAMES.len()).find_map(|k| {
+pub fn few(frame: &Frame, start: &dyn Fn(u32) -> Option<ForeignParticle>) -> Option<String> {
+    COLUMNS.into_iter().find_map(|(name, value)| {
         let moved = frame.particles.iter().filter_map(|placed| {
-            let (now, before) = (of(placed)[k], start(placed.id)?[k]);
+            let (now, before) = (value(placed), value(&start(placed.id)?));
             (now != before && now.is_finite() && now != 0.0).then_some(now)
         });
         let (mut most, mut different) = (0, Vec::new());
@@ -45,7 +47,6 @@ pub fn few(frame: &Frame, start: &dyn Fn(u32) -> Option<[f64; 5]>) -> Option<Str
                 different.push(value);
             }
         }
-        let name = NAMES[k];
         (different.len() == DIFFERENT)
             .then(|| format!("all digits of {name}, which has at most {most}"))
     })
@@ -61,16 +62,15 @@ mod tests {
     #[test]
     fn numbers_of_the_start_say_nothing_of_digits() {
         let x = |id: u32| 0.25 * f64::from(id);
-        let start = |id: u32| Some([x(id), 0.0, 0.0, 0.0, 1000.0]);
-        let frame = |u: f64| {
-            let placed = |id: u32| ForeignParticle {
-                id,
-                position: Vector2::new(x(id), 0.0),
-                velocity: Vector2::new(f64::from(id) * u, 0.0),
-                density: Some(1000.0),
-            };
-            Frame { time: 1.0, particles: (0..9).map(placed).collect() }
+        let moving = |id: u32, u: f64| ForeignParticle {
+            id,
+            position: Vector2::new(x(id), 0.0),
+            velocity: Vector2::new(f64::from(id) * u, 0.0),
+            density: Some(1000.0),
         };
+        let start = |id: u32| Some(moving(id, 0.0));
+        let frame =
+            |u: f64| Frame { time: 1.0, particles: (0..9).map(|id| moving(id, u)).collect() };
         assert_eq!(few(&frame(1.0 / 3.0), &start), None);
         let of_halves = few(&frame(0.5), &start);
         assert_eq!(of_halves.as_deref(), Some("all digits of u, which has at most 2"));

@@ -1,4 +1,4 @@
-//! A solver of another library, called in place of one whose files are read.
+//! Calls a solver as a library instead of reading its result files.
 
 use touchstone_base::{record::Record, reference::sha256, spec::RunSpec};
 use touchstone_harness::{
@@ -17,12 +17,12 @@ use crate::{
 pub trait Solver {
     /// Its method.
     fn method(&self) -> Method;
-    /// Solves the problem, and passes the moving particles at each of its times, ascending, to `tell`;
+    /// Solves the problem, and passes the moving particles at each of its times, ascending, to `frame`;
     /// returns the machine and the cost.
     fn solve(
         &self,
         problem: &ExportedProblem,
-        tell: &mut dyn FnMut(f64, Vec<ForeignParticle>),
+        frame: &mut dyn FnMut(f64, Vec<ForeignParticle>),
     ) -> System;
 }
 

@@ -194,7 +194,7 @@ impl ExportedProblem {
     /// The problem of a run.
     ///
     /// # Errors
-    /// If the run is refused, or is none of a scene, or its particles take more memory than a run may.
+    /// If the run is refused, or has no scene, or its particles take more memory than a run may.
     pub fn of(case: &dyn Case, spec: RunSpec) -> Result<Self, RunError> {
         Self::seen(case, spec, None, false)
     }
@@ -202,8 +202,8 @@ impl ExportedProblem {
     /// The problem at a few early times in the frame of another observer, if there is a relation.
     ///
     /// # Errors
-    /// As [`ExportedProblem::of`], of the memory unless it is allowed, or if the relation is no symmetry
-    /// of the problem.
+    /// As [`ExportedProblem::of`], of the memory unless it is allowed, or if the relation is not a
+    /// symmetry of the problem.
     pub fn seen(
         case: &dyn Case,
         spec: RunSpec,

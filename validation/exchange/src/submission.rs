@@ -3,6 +3,7 @@
 
 use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
+use nalgebra::Vector2;
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, Error},
@@ -51,7 +52,7 @@ const SAME: f64 = 1e-6;
 /// Name of the document that describes the machine and the cost.
 pub const SYSTEM: &str = "system.json";
 
-/// More than this is no document \[bytes\].
+/// Largest document \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;
 
 /// A method as its document describes it.
@@ -226,7 +227,7 @@ fn misnumbered(frame: &Frame, expected: &[u32], end: usize) -> Vec<(usize, Strin
         let last = ids.last().map(|(id, _)| *id as usize);
         let ends = [Some(end), expected.last().map(|id| *id as usize + 1)];
         let is_higher = ends.contains(&last) && expected.iter().all(|id| has(id + 1));
-        let higher = "; each id is one higher than that of the problem, whose ids begin at 0";
+        let higher = "; each id is one higher than in the problem, whose ids begin at 0";
         let (count, all) = (1 + lacking.count(), expected.len());
         let why = if is_higher { higher } else { "" };
         let what = format!(
@@ -323,7 +324,7 @@ impl Entry {
     ///
     /// # Errors
     /// If the case measures none, or everything that is wrong with the table.
-    pub fn stand_for(
+    pub fn particles_from_curve(
         &mut self,
         case: &dyn Case,
         problem: &ExportedProblem,
@@ -337,7 +338,7 @@ impl Entry {
         Ok(())
     }
 
-    /// The problem in whose scene it is measured, if that is not the one that it solves. A series of one
+    /// The (coarser) problem used for measuring, if it differs from the submitted one. A series of one
     /// point does not depend on the resolution, and all particles of a fine scene would be held for each of
     /// its times.
     ///
@@ -570,21 +571,20 @@ impl Entry {
         Ok(record)
     }
 
-    /// The digits that were not submitted, in words, if there are few: rounding of a file is no flaw of a
+    /// The digits that were not submitted, in words, if there are few: rounding of a file is not a flaw of a
     /// method.
     pub fn few_digits(&self, problem: &ExportedProblem) -> Option<String> {
         let Results { frames, own, .. } = &self.results;
         let (last, particles) = (frames.last()?, &problem.outline.particles);
-        let own: BTreeMap<u32, [f64; 5]> = match self.particles() {
+        let own: BTreeMap<u32, ForeignParticle> = match self.particles() {
             Division::Closed => BTreeMap::new(),
-            Division::Open => {
-                own.iter().map(|own| (own.start.id, digits::of(&own.start))).collect()
-            }
+            Division::Open => own.iter().map(|own| (own.start.id, own.start)).collect(),
         };
-        let columns = digits::NAMES.map(|name| particles.column(name));
         let given = |id: u32| {
-            let row = columns.map(|column| column.get(id as usize).copied());
-            row.iter().all(Option::is_some).then(|| row.map(|of| of.unwrap_or(f64::NAN)))
+            let value = |name| particles.column(name).get(id as usize).copied();
+            let position = Vector2::new(value("x")?, value("y")?);
+            let velocity = Vector2::new(value("u")?, value("v")?);
+            Some(ForeignParticle { id, position, velocity, density: Some(value("density")?) })
         };
         let start = |id: u32| if own.is_empty() { given(id) } else { own.get(&id).copied() };
         digits::few(last, &start).filter(|_| self.curve.is_none())

@@ -93,7 +93,7 @@ pub enum Ran {
     Declined(String),
     /// It ended with another exit code than 0, or by a signal, and with this last line on standard error.
     Ended {
-        /// The exit code, none of a signal.
+        /// The exit code; `None` after a signal.
         code: Option<i32>,
         /// The line.
         words: String,
@@ -162,7 +162,7 @@ impl Code {
         let has = |name: &&str| case.variants().iter().any(|variant| variant.name == *name);
         let usual = if self.walls_of_particles { pose.particles } else { pose.planes };
         let mut spec = case::spec(case, asked.filter(has).unwrap_or(usual), &pose.set)?;
-        spec.allow_unstable = pose.set.iter().any(|set| set.starts_with("dt="));
+        spec.allow_unstable = pose.allow_unstable;
         let mut problem = ExportedProblem::seen(case, spec, pose.relation, false)?;
         if let Some(draft) = pose.draft {
             floating::put_in(&mut problem, draft);
@@ -295,20 +295,20 @@ fn stopped(folder: &Path, time: f64, map: &Renamed) -> bool {
 
 /// Reads the results of a problem.
 fn solved(problem: ExportedProblem, folder: &Path, map: &Renamed) -> Result<Solved, String> {
-    let told = |flaws: Vec<flaw::Flaw>| {
+    let first_flaw = |flaws: Vec<flaw::Flaw>| {
         let mut lines = flaw::lines(&flaws);
         let others = lines.split_off(lines.len().min(1)).len();
         let more = if others > 0 { format!("; and {others} more") } else { String::new() };
         lines.join("") + &more
     };
-    let entry = submission::read(folder, map).map_err(told)?;
+    let entry = submission::read(folder, map).map_err(first_flaw)?;
     if entry.curve.is_some() {
         return Err("a curve in place of particles; expected the particles".into());
     }
     if entry.method.division != touchstone_base::submission::Division::Closed {
         return Err("particles of the code's own choice; expected division closed".into());
     }
-    entry.check(&problem).map_err(told)?;
+    entry.check(&problem).map_err(first_flaw)?;
     let column = |name: &str| problem.outline.particles.column(name);
     let moving = problem.moving();
     let state = |id: &u32| {

@@ -1,6 +1,8 @@
 //! How a code behaves: settings, restart, divergence.
 
-use super::{Answer, Criterion, Finding, Pose, Question, Ran, Reads, Solved, fit, flows, vortices};
+use super::{
+    Answer, Criterion, Finding, Pose, Question, Ran, Reads, Solved, fit, flows, named, vortices,
+};
 
 pub fn settings() -> Question {
     Question {
@@ -16,10 +18,14 @@ pub fn settings() -> Question {
             vec![first, viscous, fast, channel("re=0.5"), channel("re=1")]
         },
         answer: Reads::Results(|of| {
-            let is_dead = |a: usize, b: usize| of[a].end().states == of[b].end().states;
-            let all = [("viscosity", 0, 1), ("sound speed", 0, 2), ("body force", 3, 4)];
-            let dead = all.iter().filter(|(_, a, b)| is_dead(*a, *b)).map(|(name, ..)| *name);
-            let dead: Vec<&str> = dead.collect();
+            let [first, viscous, fast, weak, strong] = named(of)?;
+            let all = [
+                ("viscosity", first, viscous),
+                ("sound speed", first, fast),
+                ("body force", weak, strong),
+            ];
+            let dead = all.iter().filter(|(_, a, b)| a.end().states == b.end().states);
+            let dead: Vec<&str> = dead.map(|(name, ..)| *name).collect();
             let words = match dead.is_empty() {
                 true => "each of them changes the results".into(),
                 false => format!("nothing changes with the {}", dead.join(", the ")),
@@ -41,12 +47,12 @@ pub fn restart() -> Question {
             vec![whole.clone(), Pose { interrupt: Some(0.5), ..whole }]
         },
         answer: Reads::Results(|of| {
-            let h = of[0].problem.outline.medium.h;
-            let domain = &of[0].problem.outline.domain;
-            let pairs = of[0].end().states.iter().zip(&of[1].end().states);
+            let [whole, interrupted] = named(of)?;
+            let (h, domain) = (whole.problem.outline.medium.h, &whole.problem.outline.domain);
+            let pairs = whole.end().states.iter().zip(&interrupted.end().states);
             let apart =
                 fit::rms(pairs.map(|(a, b)| domain.nearest(b.position - a.position).norm())) / h;
-            let is_equal = of[0].end().states == of[1].end().states;
+            let is_equal = whole.end().states == interrupted.end().states;
             let words = match is_equal {
                 true => "the state has equal bits".into(),
                 false => format!("places differ by {apart:.1e} h rms"),
@@ -59,8 +65,10 @@ pub fn restart() -> Question {
     }
 }
 
-/// Largest share by which the density of a sound run differs, and largest speed over c0.
-const SOUND: [f64; 2] = [0.3, 2.0];
+/// Largest change of density of a sound run, over the density.
+const MOST_CHANGE: f64 = 0.3;
+/// Largest speed of a sound run, over c0.
+const MOST_SPEED: f64 = 2.0;
 
 pub fn breaks() -> Question {
     Question {
@@ -69,8 +77,8 @@ pub fn breaks() -> Question {
         // A mild flow first: a crash says nothing about this flow if that one crashes too. Then twenty times
         // the largest stable step.
         poses: || {
-            let set = ["n=16", "perturb=0.2", "re=100", "end=4", "dt=0.2"];
-            vec![flows::mild(), Pose::of("taylor_green", "plain", &set)]
+            let set = ["n=16", "perturb=0.2", "re=100", "end=4"];
+            vec![flows::mild(), Pose::of("taylor_green", "plain", &set).step(0.2)]
         },
         answer: Reads::Ends(|ran| match ran {
             Ran::Declined(why) => Answer::NotApplicable(why.clone()),
@@ -87,7 +95,7 @@ pub fn breaks() -> Question {
     }
 }
 
-/// Of a code that takes a stable step of its own: are its results those of a flow?
+/// Whether a code that takes a stable step of its own has the results of a flow.
 fn remained_sound(of: &Solved) -> Finding {
     let eos = &of.problem.outline.medium.eos;
     let states = || of.moments.iter().flat_map(|at| &at.states);
@@ -100,8 +108,8 @@ fn remained_sound(of: &Solved) -> Finding {
     );
     let because = "a run that ends with exit code 0 is a weakly compressible flow";
     let criteria = [
-        Criterion::at_most("change of density", density, SOUND[0], because),
-        Criterion::at_most("speed over c0", speed, SOUND[1], because),
+        Criterion::at_most("change of density", density, MOST_CHANGE, because),
+        Criterion::at_most("speed over c0", speed, MOST_SPEED, because),
     ];
     Finding::new(words, criteria)
 }

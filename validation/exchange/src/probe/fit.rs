@@ -19,8 +19,8 @@ pub fn factor(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> Factor {
     Factor { value, uncertainty: (off / square / f64::max(count - 1.0, 1.0)).sqrt() }
 }
 
-/// The factor in the limit of fine spacing, from those of two spacings dx: with an error c dx², g(dx) = g0
-/// − c dx² gives g0. Its uncertainty is what remains of the fourth order, (g0 − g)² of the finer one.
+/// The factor in the limit of fine spacing, from the factors at two spacings dx: with an error c dx²,
+/// g(dx) = g0 − c dx² gives g0. Its uncertainty is what remains of the fourth order, (g0 − g)² of the finer one.
 pub fn limit([coarse, fine]: [Factor; 2], spacings: [f64; 2]) -> Factor {
     let ratio = (spacings[0] / spacings[1]).powi(2);
     let value = fine.value + (fine.value - coarse.value) / (ratio - 1.0);
@@ -28,16 +28,15 @@ pub fn limit([coarse, fine]: [Factor; 2], spacings: [f64; 2]) -> Factor {
     Factor { value, uncertainty }
 }
 
-/// The straight line a + b x through points by least squares: a and b.
-pub fn line(points: &[[f64; 2]]) -> [f64; 2] {
+/// Value at x = 0 and slope of the straight line through points (x, y) by least squares.
+pub fn line(points: &[[f64; 2]]) -> (f64, f64) {
     let n = points.len() as f64;
-    let mean = |k: usize| points.iter().fold(0.0, |sum, of| sum + of[k]) / n;
-    let [x, y] = [mean(0), mean(1)];
-    let (both, square) = points.iter().fold((0.0, 0.0), |(both, square), of| {
-        (both + (of[0] - x) * (of[1] - y), square + (of[0] - x).powi(2))
+    let [x, y] = [0, 1].map(|k| points.iter().fold(0.0, |sum, of| sum + of[k]) / n);
+    let (both, square) = points.iter().fold((0.0, 0.0), |(both, square), [at, value]| {
+        (both + (at - x) * (value - y), square + (at - x).powi(2))
     });
     let slope = both / square;
-    [y - slope * x, slope]
+    (y - slope * x, slope)
 }
 
 /// Components of two lists of vectors, pair by pair.

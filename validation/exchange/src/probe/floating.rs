@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 use touchstone_base::record::Profile;
 
-use super::{Criterion, Factor, Finding, Pose, Question, Reads, Solved, fixed};
+use super::{Criterion, Factor, Finding, Pose, Question, Reads, Solved, fixed, named};
 use crate::problem::ExportedProblem;
 
 /// Sides of the box \[dx\].
@@ -110,7 +110,7 @@ pub fn floats() -> Question {
             DRAFTS.map(|draft| Pose { draft: Some(draft), ..tank() }).into()
         },
         answer: Reads::Results(|of| {
-            let [shallow, deep] = [rise(of[0]), rise(of[1])];
+            let [shallow, deep] = named(of)?.map(rise);
             // By Archimedes the force is proportional to the draft beyond its value at rest; both drafts have
             // nearly equal added masses.
             let [less, more] = DRAFTS.map(|rows| rows as f64);

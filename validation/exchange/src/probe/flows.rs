@@ -8,7 +8,7 @@ use touchstone_maths::exact::StartUp;
 
 use super::{
     Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, code::State, fit,
-    fixed,
+    fixed, named,
 };
 
 /// Number of a setting of the problem.
@@ -28,7 +28,8 @@ pub fn did_it_run() -> Question {
         text: "Did it run? Are times, steps and particles those of a run?",
         poses: || vec![mild()],
         answer: Reads::Results(|of| {
-            let (of, outline) = (of[0], &of[0].problem.outline);
+            let [of] = named(of)?;
+            let outline = &of.problem.outline;
             // A way as short as the disorder of the start tells one run from another.
             let end = of.moments.iter().find(|at| at.time > 0.012).unwrap_or(&of.start);
             let pairs = of.start.states.iter().zip(&end.states);
@@ -81,7 +82,7 @@ fn disorder(of: &Solved) -> f64 {
     fit::rms(of.start.states.iter().map(|at| at.position.map(from_lattice).norm()))
 }
 
-/// Allowed energy over that of the exact flow at the end.
+/// Allowed energy over the energy of the exact flow at the end.
 const ENERGY: [f64; 2] = [0.98, 1.01];
 
 pub fn conservation() -> Question {
@@ -90,7 +91,7 @@ pub fn conservation() -> Question {
         text: "Is momentum kept, and energy lost only to the viscosity?",
         poses: || vec![super::vortices(&["re=1000"])],
         answer: Reads::Results(|of| {
-            let of = of[0];
+            let [of] = named(of)?;
             let sizes =
                 of.start.states.iter().fold(0.0, |sum, at| sum + at.mass * at.velocity.norm());
             let momentum = (fit::momentum(of.end()) - fit::momentum(&of.start)).norm() / sizes;
@@ -146,12 +147,12 @@ pub fn drag() -> Question {
         text: "Does a moving wall drag the fluid, at its own speed?",
         poses: || vec![couette()],
         answer: Reads::Results(|of| {
-            let of = of[0];
+            let [of] = named(of)?;
             let speed = start_up(of)?.v;
             let all = profile(of, &of.end().states)?;
-            let [low, slope] = fit::line(&all);
-            let off = fit::rms(all.iter().map(|[y, u]| u - low - slope * y));
-            let [low, high] = [low / speed, (low + slope) / speed];
+            let (start, slope) = fit::line(&all);
+            let off = fit::rms(all.iter().map(|[y, u]| u - start - slope * y));
+            let [low, high] = [start / speed, (start + slope) / speed];
             // Walls that act δ behind their place have u(0) = f V δ/(L + 2 δ), u(L) = f V (L + δ)/(L + 2 δ).
             let behind = low / (high - low) * setting(of, "rows")?;
             let is_displaced = (0.05..1.0).contains(&behind.abs());
@@ -159,7 +160,7 @@ pub fn drag() -> Question {
             let factor = Factor { value, uncertainty: 0.005 + off / speed };
             let other = match is_displaced {
                 true => format!("the walls act {} spacings behind their place", fixed(behind, 2)),
-                false => format!("that of the other wall is {} of it", fixed(low, 3)),
+                false => format!("the other wall has {} of it", fixed(low, 3)),
             };
             let words = format!("{}, {other}", factor.of("the speed of the moving wall"));
             let because = "second-order sums have the steady profile, a straight line, to 1 %";
@@ -179,7 +180,7 @@ pub fn stick() -> Question {
         text: "Does the fluid stick to the wall, as asked?",
         poses: || vec![couette()],
         answer: Reads::Results(|of| {
-            let of = of[0];
+            let [of] = named(of)?;
             let flow = start_up(of)?;
             let time = 0.1 * flow.l * flow.l / flow.nu;
             let at = of
@@ -215,7 +216,7 @@ pub fn slip() -> Question {
         text: "Does the fluid slip along the wall, as asked?",
         poses: || vec![Pose::of("slip_channel", "plain", &[]).or("extrapolating-wall")],
         answer: Reads::Results(|of| {
-            let of = of[0];
+            let [of] = named(of)?;
             // u = U (1 + cos πy/L exp(−π²νt/L²)), L = U = 1.
             let (states, nu) = (&of.end().states, of.problem.outline.medium.nu);
             let decay = PI * PI * nu * of.end().time;
@@ -259,7 +260,7 @@ pub fn slip() -> Question {
     }
 }
 
-/// Allowed momentum over that of the start.
+/// Allowed momentum over the momentum of the start.
 const KEPT: [f64; 2] = [0.99, 1.01];
 
 pub fn force() -> Question {
@@ -273,7 +274,7 @@ pub fn force() -> Question {
             ]
         },
         answer: Reads::Results(|of| {
-            let of = of[0];
+            let [of] = named(of)?;
             let flow = start_up(of)?;
             let middle = profile(of, &of.end().states)?;
             let middle = middle.into_iter().filter(|[y, _]| (y - 0.5).abs() < 0.25);
@@ -302,16 +303,17 @@ pub fn still() -> Question {
         answer: Reads::Results(|of| {
             // Until a wave of the surface or of a wall arrives, gravity that the pressure of the start
             // does not hold accelerates the middle of the tank as a free fall.
-            let (early, g) = (of[0].end(), of[0].problem.outline.medium.acceleration);
-            let side = setting(of[0], "depth")?;
+            let [short, long] = named(of)?;
+            let (early, g) = (short.end(), short.problem.outline.medium.acceleration);
+            let side = setting(short, "depth")?;
             let is_inside = |x: Vector2<f64>| x.iter().all(|x| (0.3..=0.7).contains(&(x / side)));
             let fall = g.norm_squared() * early.time;
-            let pairs = of[0].start.states.iter().zip(&early.states);
+            let pairs = short.start.states.iter().zip(&early.states);
             let pairs = pairs.filter(|(start, _)| is_inside(start.position));
             let fitted = fit::factor(pairs.map(|(_, at)| [1.0 + at.velocity.dot(&g) / fall, 1.0]));
             let factor = Factor { uncertainty: fitted.uncertainty + 0.01, ..fitted };
-            let (late, medium) = (of[1].end(), &of[1].problem.outline.medium);
-            let depth = setting(of[1], "depth")?;
+            let (late, medium) = (long.end(), &long.problem.outline.medium);
+            let depth = setting(long, "depth")?;
             let speeds: Vec<(Vector2<f64>, f64)> =
                 late.states.iter().map(|at| (at.position, at.velocity.norm())).collect();
             let unit = (medium.acceleration.norm() * depth).sqrt();

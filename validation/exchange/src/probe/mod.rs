@@ -38,6 +38,8 @@ pub struct Pose {
     pub particles: &'static str,
     /// Settings, `key=value`.
     pub set: Vec<String>,
+    /// Whether a time step above the stability limit is allowed.
+    pub allow_unstable: bool,
     /// The reference frame, for a comparison of frames.
     pub relation: Option<Relation>,
     /// Threads that the environment asks for (`OMP_NUM_THREADS`, `RAYON_NUM_THREADS`), 1 unless stated.
@@ -58,6 +60,12 @@ impl Pose {
     /// With another variant where walls are particles.
     fn or(self, particles: &'static str) -> Self {
         Self { particles, ..self }
+    }
+
+    /// With this time step \[s\], stable or not.
+    fn step(mut self, dt: f64) -> Self {
+        self.set.push(format!("dt={dt}"));
+        Self { allow_unstable: true, ..self }
     }
 
     /// In a reference frame.
@@ -116,7 +124,7 @@ pub struct Factor {
 
 impl fmt::Display for Factor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // Two digits of the uncertainty, and of what no run determines none.
+        // Two digits of the uncertainty; none below `NO_RUN_DETERMINES`.
         let shown = self.uncertainty.abs().max(NO_RUN_DETERMINES);
         let digits = (1.0 - log10(shown).floor()).clamp(1.0, 9.0) as usize;
         let value = fixed(self.value, digits);
@@ -149,7 +157,7 @@ impl Factor {
     }
 }
 
-/// What the results say.
+/// The result of a question.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// The diagnosis in words.
@@ -341,11 +349,16 @@ pub fn questions() -> Vec<Question> {
     .into()
 }
 
-/// Answers questions. `solve` is called once for each pose, in order; `tell` after each answer.
+/// Results of all problems of a question, to be named.
+fn named<'a, const N: usize>(of: &[&'a Solved]) -> Result<[&'a Solved; N], NotApplicable> {
+    of.try_into().map_err(|_| format!("results of {} problems; expected {N}", of.len()))
+}
+
+/// Answers questions. `solve` is called once for each pose, in order; `report` after each answer.
 pub fn ask(
     questions: &[Question],
     mut solve: impl FnMut(&Pose) -> Ran,
-    mut tell: impl FnMut(&Question, &Answer),
+    mut report: impl FnMut(&Question, &Answer),
 ) -> Vec<Answer> {
     let mut solved: Vec<(Pose, Ran)> = Vec::new();
     let mut answers = Vec::new();
@@ -359,7 +372,7 @@ pub fn ask(
         let of = |pose: &Pose| solved.iter().find(|(known, _)| known == pose).map(|(_, ran)| ran);
         let ran: Vec<&Ran> = poses.iter().filter_map(of).collect();
         let answer = answer(question, &ran);
-        tell(question, &answer);
+        report(question, &answer);
         answers.push(answer);
     }
     answers

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use touchstone_maths::exact::plane_wave::{K, PRESSURE, SPEED, slope, vector};
 
-use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
+use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit, named};
 
 /// Particles with the fields; h is not the spacing, so that one in place of the other shows.
 fn particles(variant: &'static str, n: &str, disorder: &str) -> Pose {
@@ -76,13 +76,14 @@ pub fn density() -> Question {
             vec![fine, particles("quintic-density", "n=44", "disorder=0.2")]
         },
         answer: Reads::Results(|of| {
-            let [lattice, disordered] = [normalisation(of[0])?, normalisation(of[1])?];
-            if change_of_density(of[0])? < 1e-9 {
+            let [regular, irregular] = named(of)?;
+            let [lattice, disordered] = [normalisation(regular)?, normalisation(irregular)?];
+            if change_of_density(regular)? < 1e-9 {
                 return Err("the code integrates the density and does not sum it: the density of particles \
                             at rest has not changed"
                     .into());
             }
-            let own = own_part(of[0]);
+            let own = own_part(regular);
             let lacks_self = (lattice - (1.0 - own)).abs() < 0.02;
             let mut words = format!(
                 "the kernel sums to {lattice:.4} on a lattice, to {disordered:.3} on disorder"
@@ -136,7 +137,8 @@ pub fn gradient() -> Question {
             vec![coarse, fine, particles("quintic-gradient", "n=24", "disorder=0.2")]
         },
         answer: Reads::Results(|of| {
-            let factor = limit(of[0], of[1], pressure_force)?;
+            let [coarse, fine, irregular] = named(of)?;
+            let factor = limit(coarse, fine, pressure_force)?;
             let on_lattice = Criterion::new(
                 "factor of the pressure force",
                 factor.value,
@@ -144,7 +146,8 @@ pub fn gradient() -> Question {
                 LATTICE,
             );
             let words = factor.of("the pressure force");
-            let changed = of[2].end().densities().map_or(Ok(0.0), |_| change_of_density(of[2]))?;
+            let changed = irregular.end().densities();
+            let changed = changed.map_or(Ok(0.0), |_| change_of_density(irregular))?;
             if changed > OWN_DENSITY {
                 let words = format!(
                     "{words}; disordered particles are not judged: the code replaces their density, \
@@ -152,7 +155,7 @@ pub fn gradient() -> Question {
                 );
                 return Ok(Finding::new(words, [on_lattice]).with(factor));
             }
-            let pairs = pressure_force(of[2])?;
+            let pairs = pressure_force(irregular)?;
             let disordered = fit::factor(fit::components(pairs.iter().copied()));
             let off = pairs.iter().map(|[a, b]| (a - b * disordered.value).norm());
             let noise = fit::rms(off) / fit::rms(pairs.iter().map(|[_, b]| b.norm()));
@@ -165,7 +168,7 @@ pub fn gradient() -> Question {
                     "disorder of 0.2 spacings and 24 spacings a wave take up to 5 %",
                 ),
             ];
-            if of[2].entry.method.settings.get("gradient_correction") == Some(&true.into()) {
+            if irregular.entry.method.settings.get("gradient_correction") == Some(&true.into()) {
                 criteria.push(Criterion::at_most(
                     "scatter on disordered particles",
                     noise,
@@ -197,8 +200,9 @@ pub fn viscous() -> Question {
             vec![coarse, fine, other, last]
         },
         answer: Reads::Results(|of| {
-            let factor = limit(of[0], of[1], viscous_force)?;
-            let gradient = limit(of[2], of[3], pressure_force)?;
+            let [coarse, fine, coarse_pressure, fine_pressure] = named(of)?;
+            let factor = limit(coarse, fine, viscous_force)?;
+            let gradient = limit(coarse_pressure, fine_pressure, pressure_force)?;
             let guard = "both are the lattice sum −½ Σ V r W': a guard η² = 0.01 h² against 0/0 lowers the \
                          viscosity alone, by 0.7 %";
             let mut words = factor.of("the viscous force");
@@ -215,7 +219,7 @@ pub fn viscous() -> Question {
                     Criterion::new("viscous over pressure force", ratio, [0.997, 1.003], guard);
                 if criteria[0].passes() && !guard.passes() {
                     words += &format!(
-                        ", {ratio:.4} times that of the same sum for the pressure: a guard η² is too large"
+                        ", {ratio:.4} times the factor of the pressure force: a guard η² is too large"
                     );
                 }
                 criteria.push(guard);

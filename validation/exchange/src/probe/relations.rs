@@ -2,7 +2,7 @@
 
 use touchstone_harness::{relation::Relation, symmetry};
 
-use super::{Criterion, Finding, NotApplicable, Pose, Question, Reads, Solved};
+use super::{Criterion, Finding, NotApplicable, Pose, Question, Reads, Solved, named};
 
 /// The difference of results for two frames, the first of them ours, over what round-off explains, and its
 /// place in words.
@@ -34,8 +34,9 @@ fn apart(ours: &Solved, other: &Solved) -> Result<(f64, String), NotApplicable> 
 /// The answer for results that are compared with the first ones.
 fn agree(of: &[&Solved]) -> Result<Finding, NotApplicable> {
     let (mut worst, mut words) = (0.0_f64, "equal to round-off".to_string());
-    for other in &of[1..] {
-        let (over, place) = apart(of[0], other)?;
+    let (first, others) = of.split_first().ok_or("the question has no problem")?;
+    for other in others {
+        let (over, place) = apart(first, other)?;
         if over.is_nan() || over > 1.0 {
             words = format!("differs: {place}");
         }
@@ -120,7 +121,8 @@ pub fn numbers() -> Question {
         },
         answer: Reads::Results(|of| {
             let found = agree(of)?;
-            let bits = match of[0].moments == of[2].moments {
+            let [once, _, again] = named(of)?;
+            let bits = match once.moments == again.moments {
                 true => "a second run on two threads has equal bits",
                 false => "a second run on two threads has other bits",
             };

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use touchstone_base::functions::{atan2, cos, sin};
 
-use super::{Criterion, Factor, Finding, Pose, Question, Reads, fit};
+use super::{Criterion, Factor, Finding, Pose, Question, Reads, fit, named};
 
 pub fn spin() -> Question {
     Question {
@@ -12,7 +12,8 @@ pub fn spin() -> Question {
         text: "Does a spinning disk keep its angular momentum and its shape?",
         poses: || vec![Pose::of("spinning_disk", "lagrangian", &["n=6", "end=0.1"])],
         answer: Reads::Results(|of| {
-            let (start, end) = (&of[0].start.states, &of[0].end().states);
+            let [of] = named(of)?;
+            let (start, end) = (&of.start.states, &of.end().states);
             let spin = |all: &[super::code::State]| {
                 all.iter().fold(0.0, |sum, at| sum + at.mass * at.position.perp(&at.velocity))
             };
@@ -51,9 +52,9 @@ pub fn spin() -> Question {
     }
 }
 
-/// Frequency of the first mode over that of thin plates, of a plate seven times as long as thick: 20 layers
-/// of the total Lagrangian method, whose frequency for a plate ten times as long is that of finite elements
-/// to 0.05 %.
+/// Frequency of the first mode of a plate seven times as long as thick, over the frequency of thin plates:
+/// by 20 layers of the total Lagrangian method, which for a plate ten times as long as thick agrees with
+/// finite elements to 0.05 %.
 const BEND: f64 = 0.9915;
 
 pub fn bend() -> Question {
@@ -64,7 +65,7 @@ pub fn bend() -> Question {
             vec![Pose::of("oscillating_plate", "lagrangian", &["n=5", "length=0.14", "end=0.25"])]
         },
         answer: Reads::Results(|of| {
-            let of = of[0];
+            let [of] = named(of)?;
             // The velocities at the start are the first mode.
             let free = |k: &usize| of.start.states[*k].velocity.norm() > 0.0;
             let all: Vec<usize> = (0..of.start.states.len()).filter(free).collect();

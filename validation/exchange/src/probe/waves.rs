@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Vector2;
 use touchstone_base::functions::{atan2, cos, hypot, ln, log2, sin};
 
-use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit};
+use super::{Criterion, Factor, Finding, NotApplicable, Pose, Question, Reads, Solved, fit, named};
 
 /// Wave number of one wave in the box \[1/m\].
 fn wave_number(of: &Solved) -> f64 {
@@ -22,14 +22,15 @@ pub fn shear() -> Question {
     Question {
         id: "shear-wave",
         text: "Does a shear wave decay as exp(-νk²t)?",
-        // The density is no power of ten, so that a dynamic viscosity in place of ν is a factor. An
+        // The density is not a power of ten, so that a dynamic viscosity in place of ν is a factor. An
         // artificial viscosity α = 0.1 of approaching pairs adds α h c0/16 = 0.23 ν.
         poses: || {
             let set = ["n=32", "rho=1.5", "nu=0.001", "amplitude=1e-4", "span=0.2"];
             vec![Pose::of("shear_wave", "cubic-leapfrog", &set)]
         },
         answer: Reads::Results(|of| {
-            let (of, gain) = (of[0], amplitude(of[0]));
+            let [of] = named(of)?;
+            let gain = amplitude(of);
             let outline = &of.problem.outline;
             let k = wave_number(of);
             let decay = outline.medium.nu * k * k * of.end().time;
@@ -48,7 +49,7 @@ pub fn shear() -> Question {
 
 /// Phase and amplitude of a standing wave v = v0 cos ωt, ρ = ρ0 − (ρ0/c0) v0' sin ωt, where v0' is v0 a
 /// quarter of a wave further on, of sound that is `factor` times as fast.
-fn standing(of: &Solved, factor: f64) -> Result<[f64; 2], NotApplicable> {
+fn standing(of: &Solved, factor: f64) -> Result<(f64, f64), NotApplicable> {
     let outline = &of.problem.outline;
     let (eos, k) = (&outline.medium.eos, wave_number(of));
     let states = &of.start.states;
@@ -65,26 +66,27 @@ fn standing(of: &Solved, factor: f64) -> Result<[f64; 2], NotApplicable> {
         [density / eos.density - 1.0, shape]
     });
     let [velocity, density] = [amplitude(of).value, fit::factor(pairs).value];
-    Ok([atan2(density, velocity), hypot(density, velocity)])
+    Ok((atan2(density, velocity), hypot(density, velocity)))
 }
 
 /// Uncertainty of a sound speed on fine spacing: usual kernels have the lattice sum c² over 3.6 spacings to
 /// 0.1 %.
 const LATTICE: f64 = 0.001;
 
-/// The factor of the sound speed by the phase of a wave after a period, and its amplitude over that of the
-/// start. The phase of an early time, less than half a turn, gives the whole turns of the late one.
-fn period([early, late]: [&Solved; 2]) -> Result<[f64; 2], NotApplicable> {
+/// The factor of the sound speed by the phase of a wave after a period, and its amplitude over the amplitude
+/// at the start. The phase of an early time, less than half a turn, gives the whole turns of the late one.
+fn period(early: &Solved, late: &Solved) -> Result<(f64, f64), NotApplicable> {
     let expected =
         |of: &Solved| wave_number(of) * of.problem.outline.medium.eos.sound_speed * of.end().time;
     // The factor scales the densities from which it follows: three corrections suffice.
     let mut guess = 1.0;
     for _ in 0..4 {
-        guess = standing(early, guess)?[0] / expected(early);
+        let (phase, _) = standing(early, guess)?;
+        guess = phase / expected(early);
     }
-    let [phase, height] = standing(late, guess)?;
+    let (phase, height) = standing(late, guess)?;
     let turns = ((guess * expected(late) - phase) / TAU).round();
-    Ok([(phase + turns * TAU) / expected(late), height])
+    Ok(((phase + turns * TAU) / expected(late), height))
 }
 
 pub fn sound() -> Question {
@@ -99,9 +101,12 @@ pub fn sound() -> Question {
             ["n=24", "n=32"].map(|n| ["span=0.15", "span=1"].map(|span| wave([n, span]))).concat()
         },
         answer: Reads::Results(|of| {
-            let [coarse, [fine, height]] = [period([of[0], of[1]])?, period([of[2], of[3]])?];
-            let found = [coarse[0], fine].map(|value| Factor { value, uncertainty: 0.0 });
-            let factor = fit::limit(found, [of[1], of[3]].map(|of| of.problem.outline.medium.dx));
+            let [coarse_early, coarse, fine_early, fine] = named(of)?;
+            let spacings = [coarse, fine].map(|of| of.problem.outline.medium.dx);
+            let (coarse, _) = period(coarse_early, coarse)?;
+            let (fine, height) = period(fine_early, fine)?;
+            let found = [coarse, fine].map(|value| Factor { value, uncertainty: 0.0 });
+            let factor = fit::limit(found, spacings);
             let factor = Factor { uncertainty: factor.uncertainty + LATTICE, ..factor };
             let words = format!(
                 "{}; after one period the amplitude is {height:.3} of that at the start",
@@ -132,14 +137,9 @@ pub fn order() -> Question {
         id: "order-in-time",
         text: "Halve the step: does the error of time fall with the stated order?",
         poses: || {
-            let wave = |dt| {
-                Pose::of(
-                    "acoustic_wave",
-                    "cubic-leapfrog",
-                    &["n=16", "nu=0", "amplitude=1e-3", "span=0.3", dt],
-                )
-            };
-            vec![wave("dt=0.02"), wave("dt=0.01"), wave("dt=0.005")]
+            let set = ["n=16", "nu=0", "amplitude=1e-3", "span=0.3"];
+            let wave = Pose::of("acoustic_wave", "cubic-leapfrog", &set);
+            [0.02, 0.01, 0.005].map(|dt| wave.clone().step(dt)).into()
         },
         answer: Reads::Results(|of| {
             if let Some(few) = of.iter().find_map(|of| of.entry.few_digits(&of.problem)) {
@@ -161,9 +161,10 @@ pub fn order() -> Question {
             let apart = |a: &Solved, b: &Solved| {
                 fit::rms(velocities(a).iter().zip(velocities(b)).map(|(a, b)| (a - b).norm()))
             };
-            let order = log2(apart(of[0], of[1]) / apart(of[1], of[2]));
+            let [long, half, quarter] = named(of)?;
+            let order = log2(apart(long, half) / apart(half, quarter));
             let stated =
-                of[0].entry.method.settings.get("time_order").and_then(serde_json::Value::as_f64);
+                long.entry.method.settings.get("time_order").and_then(serde_json::Value::as_f64);
             let words = match stated {
                 Some(stated) => {
                     format!("the error of time has the order {order:.2}, stated is {stated}")

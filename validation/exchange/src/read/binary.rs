@@ -38,7 +38,7 @@ impl NumberFormat {
         bits.filter(is_known).map(|bits| Self { of, width: bits / 8, is_big })
     }
 
-    /// By the name of ParaView, as in `Float64`.
+    /// The type with this name in ParaView, as in `Float64`.
     pub fn of_vtk(name: &str, is_big: bool) -> Result<Self, String> {
         let kinds = [("Float", Of::Float), ("Int", Of::Signed), ("UInt", Of::Unsigned)];
         let of = |(begin, of)| {

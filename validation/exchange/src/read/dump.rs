@@ -22,7 +22,7 @@ const UNITS: [&str; 2] = ["si", "lj"];
 struct Head {
     time: Option<f64>,
     atoms: Option<usize>,
-    /// The ends of the box in each direction, or why there are none.
+    /// The ends of the box in each direction, or why they are missing.
     box_ends: Option<Result<[[f64; 2]; 3], &'static str>>,
 }
 
@@ -134,7 +134,7 @@ fn snapshot<'a>(
     let flaw = |what: String| Flaw::of(file, what).at(first_line - 1);
     let lacking = |item: &str| vec![flaw(format!("there is no {item} before these atoms"))];
     let time = head.time.ok_or_else(|| lacking("ITEM: TIME (dump_modify time yes)"))?;
-    // The time is none of the columns.
+    // The time is not a column.
     let places = columns::places(file, first_line - 1, heads, &COLUMNS[1..])?;
     let atoms = head.atoms.ok_or_else(|| lacking("ITEM: NUMBER OF ATOMS"))?;
     let (mut rows, mut flaws) = (Rows::new(file, first_line, heads, &places), Vec::new());

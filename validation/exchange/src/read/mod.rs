@@ -27,7 +27,7 @@ use touchstone_solver::Role;
 use crate::flaw::Flaw;
 use columns::{MOST_SHOWN, Places, THIRD};
 
-/// More than this is no result of a run of a laptop \[bytes\].
+/// Largest result of a run of a laptop \[bytes\].
 pub const MOST_BYTES: u64 = 1 << 28;
 /// More rows than these would not fit into the memory of a laptop.
 const MOST_ROWS: usize = 3_000_000;

@@ -132,7 +132,7 @@ impl<'a> Stream<'a> {
             Self::Letters(text) => {
                 let letters = count.div_ceil(3).checked_mul(4).ok_or(cut)?;
                 let (taken, rest) = text.split_at_checked(letters.min(text.len())).ok_or(cut)?;
-                let bytes = from_base64(taken).ok_or("it is no base64")?;
+                let bytes = from_base64(taken).ok_or("it is not base64")?;
                 if bytes.len() < count {
                     return Err(cut.into());
                 }
