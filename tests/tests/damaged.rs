@@ -1,4 +1,4 @@
-//! Records that say less, or other things, than a study expects: judging them is no panic.
+//! Judging incomplete or unexpected records must not panic.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};

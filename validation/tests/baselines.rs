@@ -134,9 +134,9 @@ fn a_file_that_is_no_baseline_of_this_problem_and_code_is_refused_and_stays() {
         }
     };
     refused("does not have the digest", &whole.replacen("\"rows\": 20", "\"rows\": 21", 1));
-    refused("it is no baseline", &whole[..whole.len() / 2]);
-    refused("it is no baseline", "");
-    refused("it is no baseline", "my thesis");
+    refused("it is not a baseline", &whole[..whole.len() / 2]);
+    refused("it is not a baseline", "");
+    refused("it is not a baseline", "my thesis");
     let run = touchstone(at, "run couette --variant seed --rows 8 --set end=0.1 --json");
     refused("a run of touchstone itself", &String::from_utf8_lossy(&run.stdout));
     let other = "export couette --variant seed --set rows=8 --set end=0.1 --out eight --solve";
@@ -165,7 +165,7 @@ fn a_file_that_is_no_baseline_of_this_problem_and_code_is_refused_and_stays() {
     assert!(code == 2 && words.contains("--baseline <FILE>"), "{words}");
     multiply(at, "u", 1e6);
     let (words, code) = of(at, "submit couette own --baseline broken.json --update-baseline");
-    assert!(code == 2 && words.contains("is no baseline; nothing was written"), "{words}");
+    assert!(code == 2 && words.contains("is not a baseline; nothing was written"), "{words}");
     assert!(!at.join("broken.json").exists(), "{:?}", names(at));
 }
 

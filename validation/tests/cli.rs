@@ -657,8 +657,8 @@ fn forged(whole: &[u8]) -> Vec<(Vec<u8>, &'static str)> {
     vec![
         (sealed(&head.replace("\"n\":56", "\"n\":57"), numbers), "particles of another scene"),
         (sealed(&head.replace("\"n\":56", "\"n\":-1"), numbers), "setting n is"),
-        (with(0, 1e9_f64.to_le_bytes()), "a time that is not on its way"),
-        (with(0, f64::NAN.to_le_bytes()), "a time that is not on its way"),
+        (with(0, 1e9_f64.to_le_bytes()), "a time outside its interval"),
+        (with(0, f64::NAN.to_le_bytes()), "a time outside its interval"),
         (endless, "a count that no run reaches"),
         // The length of a list of observations.
         (sealed(&head, &numbers[..numbers.len() - 40]), "not one of this run"),

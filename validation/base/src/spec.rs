@@ -78,7 +78,7 @@ pub(crate) fn name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Erro
     match (1..=LONGEST_NAME).contains(&name.len()) && name.bytes().all(is_plain) {
         true => Ok(name),
         false => Err(D::Error::custom(format!(
-            "{:?} is no name of a case or variant: 1 to {LONGEST_NAME} letters, digits, - and _",
+            "{:?} is not a valid case or variant name: 1 to {LONGEST_NAME} letters, digits, - and _",
             name.chars().take(LONGEST_NAME).collect::<String>()
         ))),
     }

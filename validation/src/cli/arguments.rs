@@ -231,7 +231,7 @@ pub struct Plan {
     /// `--set re=0.5,1,2 --set rows=10,20`
     #[arg(long, value_name = "KEY=VALUE,…")]
     pub set: Vec<String>,
-    /// Variants of the sweep, separated by commas; by default that of `touchstone run`
+    /// Variants of the sweep, separated by commas; by default the one of `touchstone run`
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     pub variant: Vec<String>,
     /// Also write a table of the time and memory that each run is estimated to take, one row a line of the
@@ -306,7 +306,7 @@ pub struct Probe {
     /// A folder with a probe.toml that names the command: `command = ["python", "run.py"]`
     #[arg(long, value_name = "DIR")]
     pub code: Option<PathBuf>,
-    /// Ask our own variant of this name, and the recommended one of each case that has none of this name
+    /// Ask our own variant of this name, and the recommended one of each case without this variant
     #[arg(long, value_name = "NAME")]
     pub variant: Option<String>,
     /// With one constant of our own variant multiplied by a factor: a question that has the same answer does
@@ -382,7 +382,7 @@ pub struct Symmetry {
 /// The arguments of a command under an earlier name, which are not read.
 #[derive(Debug, Args)]
 pub struct Earlier {
-    /// What the command took
+    /// Arguments of the command
     #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
     pub arguments: Vec<String>,
 }
@@ -510,7 +510,7 @@ pub struct Report {
     #[arg(long)]
     pub overwrite: bool,
     /// Write the report from the records of this folder without making any run; by default, runs are
-    /// made and their records stored in the folder `records` inside that of --out. Runs that no tier plans,
+    /// made and their records stored in `records` inside the folder of --out. Runs that no tier plans,
     /// such as those of a sweep, are shown in a table and a figure, and not judged
     #[arg(long, value_name = "DIR", conflicts_with = "fresh")]
     pub store: Option<PathBuf>,

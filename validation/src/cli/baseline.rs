@@ -21,7 +21,7 @@ use super::{
     output,
 };
 
-/// More than this is no baseline \[bytes\].
+/// Largest baseline file \[bytes\].
 pub const MOST_BYTES: u64 = 1 << 24;
 
 /// The file of `--baseline`, and the record in it.
@@ -35,7 +35,7 @@ impl<'a> Baseline<'a> {
     /// The baseline that a command names.
     ///
     /// # Errors
-    /// If there is no such file and none is to be written, or the file is no record of a submission.
+    /// If there is no such file and none is to be written, or the file is not the record of a submission.
     pub fn of(arguments: &'a arguments::Submit) -> Result<Option<Self>, Failure> {
         let Some(file) = arguments.baseline.as_deref() else { return Ok(None) };
         let is_updated = arguments.update_baseline;
@@ -51,7 +51,7 @@ impl<'a> Baseline<'a> {
                 None
             }
             Err(error) => {
-                let words = format!("{error}; it is no baseline, and it is left as it is");
+                let words = format!("{error}; it is not a baseline and stays as it is");
                 return Err(Failure::usage(words));
             }
         };
@@ -120,7 +120,7 @@ impl<'a> Baseline<'a> {
             return Ok(None);
         }
         if now.status != Status::Completed {
-            let words = format!("a run that {} is no baseline; nothing was written", now.status);
+            let words = format!("a run that {} is not a baseline; nothing was written", now.status);
             return Err(Failure::usage(words));
         }
         let kept = Record { profiles: BTreeMap::new(), ..now.clone() };
@@ -145,7 +145,7 @@ pub fn read(file: &Path) -> Result<Record, FileError> {
     record.map_err(|reason| FileError::Unread { path: file.into(), reason })
 }
 
-/// What a later version of a code keeps: the problem with its settings, and the name of code and scheme.
+/// The part that later versions of a code keep: problem, settings, and the names of code and scheme.
 fn parts(record: &Record) -> Vec<(String, String)> {
     let RunSpec { case, variant, settings, submission, .. } = record.spec();
     let mut parts = vec![("case".into(), case), ("variant".into(), variant)];

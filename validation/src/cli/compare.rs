@@ -74,7 +74,7 @@ struct Submitted {
     record: Option<Record>,
 }
 
-/// Adds a record to the verdicts on it, or judges it where there are none.
+/// Adds a record to the verdicts on it, or judges it where they are missing.
 fn add(all: &mut Vec<Submitted>, record: Record, session: &Session) {
     let key = record.run.key().to_string();
     if let Some(known) = all.iter_mut().find(|known| known.of.key == key) {
@@ -241,7 +241,7 @@ impl ChangeKind {
         matches!(self, Self::Worse | Self::Changed | Self::Better)
     }
 
-    /// Of a metric; none of a metric that did not change.
+    /// The kind of a change of a metric; `None` for an unchanged one.
     fn of(change: Change) -> Option<Self> {
         Some(match change {
             Change::Same => return None,
@@ -267,7 +267,7 @@ struct VerdictChange {
 const NOTABLE: f64 = 1.1;
 
 /// Number of metrics of a run that are named.
-const TOLD: usize = 3;
+const MOST_SHOWN: usize = 3;
 
 pub fn compare(arguments: &arguments::Compare, session: &Session) -> Outcome {
     let (before, after) =
@@ -434,7 +434,7 @@ fn of_both(was: &Record, is: &Record, metrics: &[MetricChange]) -> Vec<(ChangeKi
     changes
 }
 
-/// One change for each kind of change of metrics, with the first [`TOLD`] metrics.
+/// One change for each kind of change of metrics, with the first [`MOST_SHOWN`] metrics.
 fn of_metrics(
     was: &Record,
     is: &Record,
@@ -451,15 +451,15 @@ fn of_metrics(
             (.., None) => metric.clone(),
         }
     };
-    let mut told = BTreeMap::<ChangeKind, Vec<String>>::new();
+    let mut shown = BTreeMap::<ChangeKind, Vec<String>>::new();
     for of in metrics {
-        let kind = ChangeKind::of(of.change).map(|kind| told.entry(kind).or_default());
+        let kind = ChangeKind::of(of.change).map(|kind| shown.entry(kind).or_default());
         kind.into_iter().for_each(|all| all.push(words(of)));
     }
-    told.into_iter().map(|(kind, all)| {
-        let told = all[..all.len().min(TOLD)].join(", ");
-        let more = all.len().saturating_sub(TOLD);
-        (kind, if more == 0 { told } else { format!("{told} and {more} more") })
+    shown.into_iter().map(|(kind, all)| {
+        let shown = all[..all.len().min(MOST_SHOWN)].join(", ");
+        let more = all.len().saturating_sub(MOST_SHOWN);
+        (kind, if more == 0 { shown } else { format!("{shown} and {more} more") })
     })
 }
 
@@ -524,9 +524,9 @@ mod tests {
         let all = |record: &mut Record| {
             record.metrics.values_mut().for_each(|metric| metric.value = 123.0);
         };
-        let told = ["1: l2 0.1 to 123.0", "1: drift 1e-9 to 123.0"].map(String::from);
+        let shown = ["1: l2 0.1 to 123.0", "1: drift 1e-9 to 123.0"].map(String::from);
         let kinds = [ChangeKind::Worse, ChangeKind::Changed];
-        assert!(changes(all).into_iter().eq(kinds.into_iter().zip(told)));
+        assert!(changes(all).into_iter().eq(kinds.into_iter().zip(shown)));
         one(|record| record.put(L2, 0.01), ChangeKind::Better, "l2 0.1 to 0.01");
     }
 

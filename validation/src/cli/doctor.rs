@@ -23,7 +23,7 @@ pub fn doctor(arguments: &arguments::Doctor, session: &Session) -> Outcome {
             Ok(words) => ("ok  ", words),
             Err(Failure { reason, .. }) => {
                 match what {
-                    "writing" => can_write = false, // a folder of yours is no bug of ours
+                    "writing" => can_write = false, // a folder of the user is not a bug
                     _ => is_sound = false,
                 }
                 ("FAIL", reason)

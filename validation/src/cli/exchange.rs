@@ -170,7 +170,7 @@ pub fn sealed(
     Ok(())
 }
 
-/// The record of the submission in a folder, of the named case or of that of its problem.json.
+/// The record of the submission in a folder, of the named case or of the case in its problem.json.
 ///
 /// # Errors
 /// Everything that is missing or wrong.
@@ -189,7 +189,7 @@ pub fn measured(
     let problem = problem(case, &entry, how)?;
     let coarse = entry.scene(case, &problem)?;
     let scene = coarse.as_ref().unwrap_or(&problem);
-    entry.stand_for(case, scene).map_err(refused)?;
+    entry.particles_from_curve(case, scene).map_err(refused)?;
     entry.results.notes().iter().for_each(|note| output::say(note));
     entry.check(scene).map_err(refused)?;
     let mut record = entry.measure(case, &scene.spec, &problem).map_err(|error| {
@@ -204,7 +204,7 @@ pub fn submit(arguments: &arguments::Submit, session: &Session) -> Outcome {
     let name = Some(arguments.case.as_str());
     let (case, record) = measured(name, &arguments.folder, &arguments.how, session)?;
     let before = baseline.as_ref().map(|of| of.before(&record)).transpose()?.flatten();
-    // To look whether it is complete is no verdict, but one that diverged is not complete.
+    // A check of completeness gives no verdict, but a diverged submission is not complete.
     if arguments.check && record.status == Status::Completed {
         output::say("complete: the submission has all required entries; nothing was recorded");
         return Ok(Exit::Pass);

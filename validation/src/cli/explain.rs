@@ -199,7 +199,7 @@ fn unknown(asked: &str, gates: &[ExplainedGate]) -> Failure {
     let mut near = by_similarity(&ids.iter().copied().collect::<Vec<_>>(), asked);
     near.truncate(SUGGESTED);
     let hint = match near.as_slice() {
-        [] => "there are none in the plans".to_string(),
+        [] => "the plans have no gates".to_string(),
         near => format!("the nearest of {} names: {}", ids.len(), near.join(", ")),
     };
     Failure::usage(format!(

@@ -56,7 +56,7 @@ fn table_of<'a>(mut judged: Vec<&'a Judged>) -> String {
     text
 }
 
-/// The table of the gates that did not pass, or of all gates, and an empty line; nothing if there are none.
+/// The table of the gates that did not pass, or of all gates, and an empty line; nothing without gates.
 pub fn shown<'a>(judged: impl IntoIterator<Item = &'a Judged>, all: bool) -> String {
     let judged =
         judged.into_iter().filter(|judged| all || judged.judgement.verdict != Verdict::Pass);
@@ -136,7 +136,7 @@ pub struct SubmissionVerdicts {
 }
 
 impl SubmissionVerdicts {
-    /// The verdicts on a run of another code; none of a run of ours.
+    /// The verdicts on a run of another code; `None` for our own run.
     pub fn of(case: &dyn Case, run: &JudgedRun, embedded: bool) -> Option<Self> {
         let (apply, others) = run.applicable();
         Some(Self {

@@ -15,8 +15,8 @@ use super::output;
 /// Metrics of a run by name.
 pub type Metrics = BTreeMap<String, Metric>;
 
-/// Share of the scale of a metric by which two values may differ and count as equal. The scale is that of the
-/// bound of the gate that judges the metric, see [`Bound::scale`], or else the larger of the two values. One
+/// Share of the scale of a metric by which two values may differ and count as equal. The scale is the
+/// scale of the bound of its gate, see [`Bound::scale`], or else the larger of the two values. One
 /// percent is less than any bound allows, and more than rounding changes.
 pub const SHARE: f64 = 0.01;
 

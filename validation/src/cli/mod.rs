@@ -77,7 +77,7 @@ pub enum Exit {
     Bug = 4,
     /// `solve` cannot solve the problem.
     Declines = 77,
-    /// By the user.
+    /// The user interrupted.
     Interrupted = 130,
 }
 
@@ -187,7 +187,7 @@ impl Session {
         });
         bar.clear();
         let made = made?;
-        tell_trouble(&made);
+        report_problems(&made);
         Ok(made)
     }
 
@@ -217,26 +217,26 @@ impl Session {
 }
 
 /// Number of messages of one kind that are printed in full.
-const TOLD: usize = 10;
+const MOST_SHOWN: usize = 10;
 
-/// Prints problems, the first lines in full.
-fn tell(lines: &[String]) {
-    lines.iter().take(TOLD).for_each(|line| output::say(&format!("touchstone: {line}")));
-    if lines.len() > TOLD {
-        output::say(&format!("touchstone: and {} more like this", lines.len() - TOLD));
+/// Prints problems, the first ones in full.
+fn print_problems(lines: &[String]) {
+    lines.iter().take(MOST_SHOWN).for_each(|line| output::say(&format!("touchstone: {line}")));
+    if lines.len() > MOST_SHOWN {
+        output::say(&format!("touchstone: and {} more like this", lines.len() - MOST_SHOWN));
     }
 }
 
 /// Reports records that could not be read, kept or made.
-fn tell_trouble(made: &BatchResult) {
+fn report_problems(made: &BatchResult) {
     let again = |(_, error): &(RunKey, FileError)| format!("{error}; this record is ignored");
-    tell(&made.unsound.iter().map(again).collect::<Vec<_>>());
+    print_problems(&made.unsound.iter().map(again).collect::<Vec<_>>());
     let lost = |(_, error): &(RunKey, FileError)| format!("a record could not be stored: {error}");
-    tell(&made.not_kept.iter().map(lost).collect::<Vec<_>>());
+    print_problems(&made.not_kept.iter().map(lost).collect::<Vec<_>>());
     let failed = |(key, failed): &(RunKey, RunError)| format!("run {key} has no record: {failed}");
-    tell(&made.failed.iter().map(failed).collect::<Vec<_>>());
+    print_problems(&made.failed.iter().map(failed).collect::<Vec<_>>());
     let unread = |error: &FileError| format!("{error}; the submission is ignored");
-    tell(&made.unread.iter().map(unread).collect::<Vec<_>>());
+    print_problems(&made.unread.iter().map(unread).collect::<Vec<_>>());
 }
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.

@@ -17,7 +17,7 @@ use super::Failure;
 pub const BUG: &str = "touchstone: this is a bug of touchstone, not of your settings. Please report it \
                        with the command line and these lines:";
 
-/// Prints one or more lines on standard error. A closed standard error is no error.
+/// Prints one or more lines on standard error. A closed standard error is not an error.
 pub fn say(text: &str) {
     let _ = writeln!(io::stderr(), "{}", visible(text.trim_end_matches('\n')));
 }
@@ -81,7 +81,7 @@ fn visible_with(text: &str, has_colour: bool) -> String {
     visible
 }
 
-/// A result, on standard output. A reader that has had enough (`| head`) is no error.
+/// A result, on standard output. A reader that has had enough (`| head`) is not an error.
 pub fn print(text: &str) -> Result<(), Failure> {
     taken(write(&visible(text)))
 }

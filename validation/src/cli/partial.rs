@@ -31,10 +31,10 @@ pub fn of_made(
     let mut missing = make::jobs(plans.clone());
     missing.retain(|job| !made.records.contains_key(&job.planned.spec.key()));
     let lacking = lacking(missing, path, &made);
-    let told = tell(&plans, &lacking);
+    let note = missing_note(&plans, &lacking);
     let lacks = |name: &str| lacking.values().any(|(job, _)| job.case.name() == name);
     plans.retain(|(case, _)| !lacks(case.name()));
-    (suite::judge(plans, tier, made), told)
+    (suite::judge(plans, tier, made), note)
 }
 
 /// The suite of the stored runs, a list of the missing ones, and a message about them.
@@ -46,8 +46,8 @@ pub fn partial(
 ) -> (Suite, String, MissingNote) {
     let StoredRuns { made, missing, .. } = stored;
     let lacking = lacking(missing, store, &made);
-    let told = tell(&plans, &lacking);
-    (judge(plans, tier, made, &lacking), list(lacking.values().collect()), told)
+    let note = missing_note(&plans, &lacking);
+    (judge(plans, tier, made, &lacking), list(lacking.values().collect()), note)
 }
 
 fn lacking(missing: Vec<Job>, path: &Path, made: &BatchResult) -> BTreeMap<RunKey, MissingRun> {
@@ -91,7 +91,7 @@ fn judge(
     suite
 }
 
-fn tell(plans: &Plans, lacking: &BTreeMap<RunKey, MissingRun>) -> MissingNote {
+fn missing_note(plans: &Plans, lacking: &BTreeMap<RunKey, MissingRun>) -> MissingNote {
     let of: BTreeSet<&str> = lacking.values().map(|(job, _)| job.case.name()).collect();
     let names: Vec<&str> =
         plans.iter().map(|(case, _)| case.name()).filter(|name| of.contains(name)).collect();

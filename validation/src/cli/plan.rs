@@ -21,7 +21,7 @@ use touchstone_harness::{
 };
 use touchstone_report::{counted, seconds, sig};
 
-use super::{Exit, Failure, Outcome, Session, arguments, output, tell, trouble};
+use super::{Exit, Failure, Outcome, Session, arguments, output, print_problems, trouble};
 
 pub fn plan(arguments: &arguments::Plan, session: &Session) -> Result<(), Failure> {
     let cases = session.choose(&arguments.cases)?;
@@ -132,7 +132,7 @@ fn sum(jobs: &[Job], sizes: &[Option<Size>]) -> String {
 /// Makes the runs of a plan, one record each.
 pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, session: &Session) -> Outcome {
     let (planned, refused) = planned(file, arguments, session)?;
-    tell(&refused);
+    print_problems(&refused);
     if planned.is_empty() {
         return Err(Failure::usage(format!("{} describes no run", file.display())));
     }
@@ -224,7 +224,7 @@ fn planned(
     Ok((planned, refused))
 }
 
-/// More than this is no list of runs \[bytes\].
+/// Largest list of runs \[bytes\].
 const MOST_BYTES: u64 = 1 << 28;
 
 fn read(file: &Path) -> io::Result<String> {

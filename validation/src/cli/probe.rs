@@ -25,7 +25,7 @@ use super::{
 const DOCUMENT: &str = "probe.toml";
 /// A complete document.
 const EXAMPLE: &str = r#"command = ["python", "run.py"]"#;
-/// More than this is no such document \[bytes\].
+/// Largest document \[bytes\].
 const MOST_BYTES: u64 = 1 << 16;
 
 /// The document of a code.
@@ -60,12 +60,12 @@ pub fn probe(arguments: &arguments::Probe, session: &Session) -> Outcome {
         }
         ran
     };
-    let tell = |question: &Question, answer: &Answer| {
+    let print_answer = |question: &Question, answer: &Answer| {
         if !arguments.json && !session.is_interrupted() {
             output::say(&format!("{}: {}", question.id, answer.verdict().words()));
         }
     };
-    let answers = probe::ask(&questions, solve, tell);
+    let answers = probe::ask(&questions, solve, print_answer);
     stopped.and_then(|()| session.go_on("no verdict is printed"))?;
     let took = started.elapsed().as_secs_f64();
     let junit = arguments

@@ -34,7 +34,7 @@ use super::{
 const REPORTS: &str = "reports";
 /// Name of the page in its folder.
 const PAGE: &str = "index.html";
-/// More than this is no page \[bytes\].
+/// Largest page \[bytes\].
 const MOST_BYTES: u64 = 1 << 28;
 
 pub fn report(arguments: &arguments::Report, session: &Session) -> Outcome {
@@ -71,7 +71,7 @@ pub fn report(arguments: &arguments::Report, session: &Session) -> Outcome {
             (listed, lacking) = (String::new(), None);
         }
     }
-    // A file that cannot be written keeps none of the others from being written: the runs took minutes.
+    // A file that cannot be written does not keep the others from being written: the runs took minutes.
     let exported = judged::write_junit(&suite, arguments.junit.as_deref());
     let written = write_verdicts(&folder, &suite);
     let path = folder.path().join(PAGE);

@@ -176,7 +176,7 @@ struct Lost {
 
 impl Lost {
     /// Reports the first of them.
-    fn tell(&self, error: &RunError, folder: Option<&Folder>) {
+    fn report_lost(&self, error: &RunError, folder: Option<&Folder>) {
         if self.count.fetch_add(1, Ordering::Relaxed) > 0 {
             return;
         }
@@ -200,13 +200,13 @@ fn compute(
     let _hold = asked.every.map(|_| Hold::new());
     let bar = Bar::new();
     let last = Mutex::default();
-    let tell = |size: &Size| {
+    let show_size = |size: &Size| {
         if !arguments.json {
             bar.say(&format!("estimate: {size}"));
         }
     };
     let show = |progress: RunProgress| bar.show_run(progress);
-    let lose = |error: &RunError| bar.suspend(|| lost.tell(error, folder));
+    let lose = |error: &RunError| bar.suspend(|| lost.report_lost(error, folder));
     let frames = folder.zip(asked.vtk).map(|(folder, count)| (folder.vtk(), count.into()));
     let write = |state: &[u8]| match folder {
         Some(folder) => checkpoint::write(&folder.output, asked, state)
@@ -222,7 +222,7 @@ fn compute(
         lost: Some(&lose),
         allow_long: asked.allow_long,
         profile: arguments.profile,
-        estimate: Some(&tell),
+        estimate: Some(&show_size),
         at_the_end: folder.map(|_| &last),
         progress: Some(&show),
         interrupt: Some(session.interrupt),

@@ -86,7 +86,7 @@ pub fn results(
     }
     let results = Mutex::new(table);
     let stop = AtomicBool::new(false);
-    let tell = |time: f64, particles: Profile| {
+    let write_frame = |time: f64, particles: Profile| {
         let next = problem.outline.times.iter().find(|next| **next > time);
         if how.stop_after.zip(next).is_some_and(|(last, next)| *next > last) {
             stop.store(true, Ordering::Relaxed);
@@ -119,12 +119,12 @@ pub fn results(
     };
     let record = match problem.relation {
         Some(relation) => {
-            let told = &mut |time, particles| tell(time, particles);
-            case.pose(&spec)?.seen_by(relation, &context, told).map_err(declined)?;
+            let on_frame = &mut |time, particles| write_frame(time, particles);
+            case.pose(&spec)?.seen_by(relation, &context, on_frame).map_err(declined)?;
             // A record without metrics or work: the seen particles were not measured.
             Record::of(&spec, 1)
         }
-        None => case.run(&spec, &Context { at_times: Some(&tell), ..context })?,
+        None => case.run(&spec, &Context { at_times: Some(&write_frame), ..context })?,
     };
     session.go_on("the problem is written, its results are not")?;
     let Record { cost, manifest, .. } = &record;
@@ -140,8 +140,8 @@ pub fn results(
         Some(series) => (CURVE, series),
         None => (RESULTS, results.into_inner().unwrap_or_else(PoisonError::into_inner)),
     };
-    let told = |what| Failure::usage(format!("{name} was not written: {what}"));
-    table.check_finite().map_err(told)?;
+    let failure = |what| Failure::usage(format!("{name} was not written: {what}"));
+    table.check_finite().map_err(failure)?;
     folder.write(name, table.to_csv().as_bytes())?;
     folder.write(SYSTEM, format!("{system:#}\n").as_bytes())?;
     Ok(([name, SYSTEM].map(String::from).into(), record.status))
@@ -215,7 +215,7 @@ pub fn solve(arguments: &arguments::Solve, session: &Session) -> Outcome {
     let text = touchstone_base::files::read_text(&path, MOST_BYTES);
     let text = text.map_err(|why| Failure::usage(format!("{path:?} cannot be read: {why}")))?;
     let document: Document = serde_json::from_str(&text)
-        .map_err(|why| Failure::usage(format!("{path:?} is no problem: {why}")))?;
+        .map_err(|why| Failure::usage(format!("{path:?} is not a problem file: {why}")))?;
     let Document { spec, relation, rigid_body, probe } = document;
     if rigid_body.is_some() {
         let reason = "it has no rigid bodies that float in a fluid".into();
@@ -237,5 +237,5 @@ pub fn solve(arguments: &arguments::Solve, session: &Session) -> Outcome {
     }
 }
 
-/// More than this is no problem of ours \[bytes\].
+/// Largest problem file \[bytes\].
 const MOST_BYTES: u64 = 1 << 24;

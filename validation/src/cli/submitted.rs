@@ -104,7 +104,7 @@ fn next(
     }
 }
 
-/// The gates of a submission that reached its end and whose metric is no finite number, and why.
+/// The gates of a submission that reached its end and whose metric is not finite, and why.
 fn without_number(run: &JudgedRun, judged: &[Judged]) -> Vec<Vec<String>> {
     let record = &run.record;
     let without = |judged: &&Judged| {

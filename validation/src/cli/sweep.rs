@@ -15,9 +15,9 @@ use touchstone_harness::{
 };
 use touchstone_report::{Block, Page, Section, Table, counted};
 
-use super::{Failure, Session, output, tell};
+use super::{Failure, Session, output, print_problems};
 
-/// The runs of a store that holds some that no tier plans, and not all runs of any case of this tier; none of
+/// The runs of a store with runs that no tier plans and without a complete case of this tier; `None` for
 /// another store, whose runs are judged.
 pub fn of(
     plans: &Plans,
@@ -49,7 +49,9 @@ pub fn of(
     if !cases.iter().any(is_other) {
         return None;
     }
-    tell(&unread.iter().map(|error| format!("{error}; it is not shown")).collect::<Vec<_>>());
+    print_problems(
+        &unread.iter().map(|error| format!("{error}; it is not shown")).collect::<Vec<_>>(),
+    );
     Some(cases)
 }
 

@@ -16,7 +16,7 @@ use touchstone_report::counted;
 
 use super::{
     Early, Exit, Failure, Outcome, Session, arguments, judged, output, partial::partial,
-    summary::summary, tell_trouble, trouble,
+    report_problems, summary::summary, trouble,
 };
 
 pub fn verify(arguments: &arguments::Verify, session: &Session) -> Outcome {
@@ -191,7 +191,7 @@ pub fn stored(
         let words = "nothing is judged; the same command reads the store from its beginning";
         return Err(Failure::interrupted(words));
     }
-    tell_trouble(&stored.made);
+    report_problems(&stored.made);
     peers::add(&mut stored.made, &plans);
     Ok((plans, stored))
 }
