@@ -1,10 +1,18 @@
 //! The engine: the right-hand side of a scene, which integrators evaluate. It refreshes the data derived from
 //! a state and then makes the pair sweeps.
 //!
-//! Five things are between an integrator and a term. An [`Engine`] holds particles and `Equations`, which are
-//! the terms of the scene and the columns derived by them. A `Sweep` forms a `PairSum`, such as the sum of
-//! some terms, over neighbour lists. Code that does not depend on the types of terms, here and in `sweep.rs`,
-//! uses `dyn Equations` and `dyn PairSweep` and is compiled once, not once for each scheme.
+//! Between an integrator and a term:
+//! - [`Engine`]: particles and equations, with a method for each sweep that an integrator makes;
+//! - [`BlockUpdate`]: the integrator's update of some particles by their rates;
+//! - `TypedEquations`: the terms of a scene, and the columns that they derive;
+//! - `Equations`: the same without types of terms;
+//! - `Sweep`: sums over neighbour lists, which read columns;
+//! - `PairSweep`: the same without the types of what it reads and sums;
+//! - `PairSum`: the summand of a sweep;
+//! - `Rates`: the summand of some terms, whose sum is a [`Rate`].
+//!
+//! Code that uses `dyn Equations` and `dyn PairSweep`, here and in `sweep.rs`, is compiled once, not once for
+//! each scheme.
 
 use std::mem::take;
 

@@ -328,7 +328,7 @@ impl Neighbours {
         }
     }
 
-    /// Appends the images of all points so far, by those of these maps that are `near` the point.
+    /// Appends the images of all points so far, by the maps that are `near` the point.
     fn make_stage(
         &mut self,
         maps: Range<usize>,

@@ -160,11 +160,11 @@ impl<X: Numbers> Checkpoint<X> {
         let Work { steps, pair_interactions, right_hand_sides, list_builds } = progress.work;
         let counts = [steps, pair_interactions, right_hand_sides, list_builds, progress.made];
         let all = [
-            (is_under_way || progress.call == Interval::default(), "a time that is not on its way"),
+            (is_under_way || progress.call == Interval::default(), "a time outside its interval"),
             (counts.into_iter().all(|count| count < 1 << 60), "a count that no run reaches"),
             (has_past && past.iter().all(is_past), "earlier steps of other particles"),
             (sum.is_finite(), "a time, a lag or a place that is not finite"),
-            (built_at.len() == particles.len(), "a number of places that is not that of particles"),
+            (built_at.len() == particles.len(), "another number of places than of particles"),
             (particles.iter().all(|(_, p)| p.density > 0.0 && p.mass > 0.0), "no density or mass"),
             (particles.is_sorted_by_key(|(_, p)| p.role), "particles not sorted by their roles"),
             (ids.into_iter().eq(0..particles.len() as u32), "numbers of another scene"),

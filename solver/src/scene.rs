@@ -226,7 +226,7 @@ fn check_feet(reads: bool, feet: &[Vector2<f64>], walls: usize) -> Checked {
     let on_surface =
         feet.iter().map(Vector2::norm).find(|depth| !(*depth > 0.0 && depth.is_finite()));
     let (is_off, depth) = (on_surface.is_none(), on_surface.unwrap_or_default());
-    let allowed = format!("{expected}, that of the wall particles if the walls read feet, else 0");
+    let allowed = format!("{expected}, the number of wall particles if walls read feet, else 0");
     let all = [
         (count == expected, "number of feet", count as f64, &*allowed),
         (is_off, "depth of a wall particle in m", depth, "finite and above 0"),

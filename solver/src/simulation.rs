@@ -279,7 +279,7 @@ impl<S: Scheme> Simulation<S> {
 
     /// Rates of each particle of [`ParticleData::fluid`] by the given terms alone, after
     /// [`Stepper::advance`] reached a time. The terms may belong to the scene or not. dx/dt does not
-    /// include v. A program that never calls this function contains none of its code.
+    /// include v. A program that never calls this function does not contain its code.
     ///
     /// Terms that depend on the largest speed use the value that [`Term::prepare`] received last.
     pub fn rates<T: Term<S::Extra>>(&self, terms: &T) -> Vec<Rate<S::Extra>> {

@@ -83,7 +83,7 @@ fn check(
     let is_sound = |value: f64| value >= 0.0 && value.is_finite();
     let allowed = "finite and at least 0";
     let all = [
-        (count == 0 || has_all, "number of body numbers", count as f64, "0, or that of particles"),
+        (count == 0 || has_all, "number of body numbers", count as f64, "0, or one a particle"),
         (is_sound(bulk), "bulk modulus in Pa", bulk, allowed),
         (is_sound(shear), "shear modulus in Pa", shear, allowed),
         (is_sound(hourglass), "hourglass strength", hourglass, allowed),

@@ -30,7 +30,7 @@ fn has() -> [bool; 2] {
     [is_x86_feature_detected!("avx2"), eight]
 }
 
-/// Runs a loop on the widest registers that the processor has; returns the loop if there are none.
+/// Runs a loop on the widest registers that the processor has; returns the loop if it has only narrow ones.
 pub(crate) fn run<W: OnLanes>(work: W) -> Option<W> {
     match has() {
         // SAFETY: called only if the processor has the features that the function enables.

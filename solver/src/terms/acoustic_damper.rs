@@ -10,7 +10,7 @@ use crate::particles::SweptParticle;
 ///
 /// A wave of sound with wave number k decays as exp(−½ α₂ c₀ h k² t). A motion without divergence is left
 /// alone: a rotation on any particles, a shear on a lattice, and a flow that keeps the density of every
-/// particle. Both sums are adjoint as those of pressure and continuity: the term takes the power
+/// particle. Both sums are adjoint, as pressure and continuity are: the term takes the power
 /// ζ Σ Vᵢ Dᵢ² from the particles, also beside boundary particles at rest, which have D = 0, and it conserves
 /// linear and angular momentum. The sum of D needs a sweep before each sweep of forces.
 #[derive(Clone, Copy, Debug)]
@@ -216,7 +216,7 @@ mod tests {
         assert!(of.force.y.abs() > 1e-3 * of.size, "the wall pushes");
     }
 
-    /// Above the floor the accelerations are those of the fluid with its mirror image as particles.
+    /// Above the floor the accelerations equal those with the mirror image as particles.
     #[test]
     fn mirror_particles_have_the_divergence_of_their_source() {
         let floor = PlaneWall::new(Vector2::zeros(), Vector2::y(), Vector2::zeros());

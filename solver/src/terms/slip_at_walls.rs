@@ -113,7 +113,7 @@ mod tests {
         of.into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// Beside walls, dρ/dt of the fluid is that of a fluid four times as large that is its own mirror.
+    /// Beside walls, dρ/dt of the fluid equals dρ/dt in a fluid four times as large that is its own mirror.
     #[test]
     fn walls_continue_any_flow_by_its_mirror() {
         fn check<T: Term<()> + Copy>(term: T) {
@@ -185,8 +185,8 @@ mod tests {
         }
     }
 
-    /// Of flows without divergence above a floor, which the mirror bends or kinks: in the first row, what the
-    /// lattice sums of the kink, and otherwise nothing.
+    /// Flows without divergence above a floor, which the mirror bends or kinks: dρ/dt is the lattice sum of
+    /// the kink in the first row, and 0 elsewhere.
     #[test]
     fn a_sheared_flow_along_a_floor_keeps_its_density_and_one_that_speeds_up_nearly_does() {
         let floor = || Ghosts { walls: vec![corner().walls[0]] };

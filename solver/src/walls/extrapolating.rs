@@ -132,23 +132,24 @@ impl WallVelocity for CurvedNoSlip {
         let (bent, turned) = (away * away * V::all(0.5), along * away);
         let weight = pair.other.volume * pair.w();
         let [a, b, c] = [away * weight, bent * weight, turned * weight];
-        sum.0 = sum.0 + Symmetric { xx: a * away, yy: b * bent, xy: a * bent };
-        sum.1 += Vector2::new(a * turned, b * turned);
-        sum.2 += c * turned;
-        sum.3 += pair.v * a;
-        sum.4 += pair.v * b;
-        sum.5 += pair.v * c;
+        let (kk, k3, m33, v_away, v_bent, v_turned) = sum;
+        *kk = *kk + Symmetric { xx: a * away, yy: b * bent, xy: a * bent };
+        *k3 += Vector2::new(a * turned, b * turned);
+        *m33 += c * turned;
+        *v_away += pair.v * a;
+        *v_bent += pair.v * b;
+        *v_turned += pair.v * c;
     }
     #[inline(always)]
-    fn beyond((kk, k3, m33, a, b, c): Self::Sum, _: f64) -> Vector2<f64> {
+    fn beyond((kk, k3, m33, v_away, v_bent, v_turned): Self::Sum, _: f64) -> Vector2<f64> {
         let Symmetric { xx, yy, xy } = kk;
         let moments = Matrix3::new(xx, xy, k3.x, xy, yy, k3.y, k3.x, k3.y, m33);
         // The field at η = −1, ξ = 0; the sums have the opposite sign.
         if let Some(inverse) = of_three(&moments).above(LEAST_OF_FIT * xx * yy * m33) {
             let weight = |k| inverse[(k, 0)] - 0.5 * inverse[(k, 1)];
-            return a * weight(0) + b * weight(1) + c * weight(2);
+            return v_away * weight(0) + v_bent * weight(1) + v_turned * weight(2);
         }
-        if xx > 0.0 { a / xx } else { Vector2::zeros() }
+        if xx > 0.0 { v_away / xx } else { Vector2::zeros() }
     }
 }
 

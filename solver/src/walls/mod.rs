@@ -96,7 +96,7 @@ impl<S, E: Extrapolation> PairSum<S, WallState> for Extrapolated<'_, E> {
 
     #[inline(always)]
     fn read(&self, number: usize, _: &S) -> E::Foot {
-        // Fluid has numbers below those of walls, and images have numbers above: neither has feet.
+        // Numbers of fluid are below the numbers of walls, and numbers of images above: neither has feet.
         E::foot(self.feet.get(number.wrapping_sub(self.first)))
     }
 
