@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::{Value, json};
+use touchstone_base::absent::Absent;
 use touchstone_base::mutation::{Constant, Detect, Disorder, Mutation};
 use touchstone_base::record::{Metric, Record, Status};
 use touchstone_base::spec::{Bisect, EndAfter, Keep, RunSpec, Task};
@@ -191,7 +192,7 @@ fn rare_records(record: &Record) -> Vec<Value> {
     let mut rare = record.clone();
     rare.status = Status::Interrupted { step: 3, time: f64::INFINITY };
     rare.metrics.insert("none".into(), Metric::new(f64::NAN, "-", "0/0"));
-    rare.absent.insert("order".into(), "there is one level".into());
+    rare.absent.insert("order".into(), Absent::because("there is one level"));
     rare.run.allow_unstable = true;
     rare.run.keep = Keep { particles: true };
     rare.run.mutation = Some(Mutation { of: Constant::BodyForce, factor: 1.03 });

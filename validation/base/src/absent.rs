@@ -2,14 +2,11 @@
 
 use std::fmt;
 
-use serde::{Deserialize, Serialize};
-
-/// Reason for an absent metric that takes long to measure, in a run measured for its headline only.
-pub const NOT_ASKED: &str = "not asked for: --metrics all";
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// Why a metric is absent; in documents a sentence.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(from = "String", into = "String")]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(into = "String")]
 pub enum Absent {
     /// Takes long to measure, and the run was measured for its headline only.
     NotAsked,
@@ -29,7 +26,7 @@ pub enum Absent {
 
 /// Reasons with one sentence for every run.
 const FIXED: [(Absent, &str); 5] = [
-    (Absent::NotAsked, NOT_ASKED),
+    (Absent::NotAsked, "not asked for: --metrics all"),
     (Absent::EveryStep, "it is measured after every step"),
     (Absent::OwnTerms, "it needs the sums of this program's own terms"),
     (Absent::OwnTheory, "it compares with the theory of this program's own method"),
@@ -40,6 +37,22 @@ const FIXED: [(Absent, &str); 5] = [
 const NOT_GIVEN: &str = "not given: ";
 
 impl Absent {
+    /// The outcome of the run, or its settings, give the metric no meaning, for this reason.
+    pub fn because(why: impl Into<String>) -> Self {
+        Self::NoMeaning(why.into())
+    }
+
+    /// The reason with this sentence in a document.
+    fn read(text: String) -> Self {
+        if let Some((fixed, _)) = FIXED.into_iter().find(|(_, sentence)| *sentence == text) {
+            return fixed;
+        }
+        match text.strip_prefix(NOT_GIVEN) {
+            Some(column) => Self::NotGiven(column.into()),
+            None => Self::NoMeaning(text),
+        }
+    }
+
     /// Is a gate on the metric not applicable to a submission? Only if this was known before its numbers were
     /// read; a submission whose numbers determine no value fails.
     pub fn is_known_before(&self) -> bool {
@@ -60,27 +73,9 @@ impl fmt::Display for Absent {
     }
 }
 
-impl From<String> for Absent {
-    fn from(text: String) -> Self {
-        if let Some((fixed, _)) = FIXED.into_iter().find(|(_, sentence)| *sentence == text) {
-            return fixed;
-        }
-        match text.strip_prefix(NOT_GIVEN) {
-            Some(column) => Absent::NotGiven(column.into()),
-            None => Absent::NoMeaning(text),
-        }
-    }
-}
-
-impl From<&str> for Absent {
-    fn from(text: &str) -> Self {
-        text.to_string().into()
-    }
-}
-
-impl From<&String> for Absent {
-    fn from(text: &String) -> Self {
-        text.clone().into()
+impl<'de> Deserialize<'de> for Absent {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        String::deserialize(from).map(Self::read)
     }
 }
 
@@ -99,7 +94,7 @@ mod tests {
         let fixed = FIXED.map(|(of, _)| of);
         let others = [Absent::NotGiven("density".into()), Absent::NoMeaning("no contact".into())];
         for absent in fixed.into_iter().chain(others) {
-            assert_eq!(Absent::from(absent.to_string()), absent);
+            assert_eq!(Absent::read(absent.to_string()), absent);
             let of_values = matches!(absent, Absent::NoMeaning(_));
             assert_eq!(absent.is_known_before(), !of_values, "{absent}");
         }

@@ -532,7 +532,7 @@ impl Record {
     pub fn put_or(&mut self, metric: impl Into<MetricName>, value: Option<f64>, reason: &str) {
         match value {
             Some(value) => self.put(metric, value),
-            None => self.leave_out(metric, reason),
+            None => self.leave_out(metric, Absent::because(reason)),
         }
     }
 
@@ -552,8 +552,8 @@ impl Record {
     }
 
     /// States why a metric is absent: this run gives it no meaning.
-    pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: impl Into<Absent>) {
-        self.absent.insert(metric.into().name, reason.into());
+    pub fn leave_out(&mut self, metric: impl Into<MetricName>, reason: Absent) {
+        self.absent.insert(metric.into().name, reason);
     }
 
     /// Takes out every metric that is to go, and states why it is absent.
@@ -647,7 +647,7 @@ mod tests {
         record.numerics.insert("kernel".into(), "quintic".into());
         let profile = Profile::default().with("y", "m", vec![1e-300, 0.1]);
         record.profiles.insert("t=0.1".into(), profile.with("u", "m/s", vec![f64::INFINITY, 0.3]));
-        record.absent.insert("order".into(), "there is one level".into());
+        record.absent.insert("order".into(), Absent::because("there is one level"));
         record.state = Some(digest(&[1.0]));
         record.cost.alone_s = vec![0.1, 0.3];
         record

@@ -3,6 +3,7 @@
 use std::{fmt::Display, marker::PhantomData, rc::Rc};
 
 use touchstone_base::{
+    absent::Absent,
     gate::{Bound, Evidence, Gate},
     record::{MetricName, Record},
     settings::{self, Field, SettingError, Settings, Values},
@@ -169,7 +170,7 @@ impl Composition {
             other => other,
         })?;
         state_steps(&mut record);
-        record.take_out(&|_, metric| !metric.value.is_finite(), &NO_NUMBER.into());
+        record.take_out(&|_, metric| !metric.value.is_finite(), &Absent::because(NO_NUMBER));
         Ok(record)
     }
 }

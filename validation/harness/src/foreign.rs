@@ -240,7 +240,9 @@ impl<D: ?Sized> OurSums<D> {
             state.built_at = state.particles.iter().map(|(_, p)| p.position).collect();
         }
         let progress = Progress { time, ..Progress::default() };
-        simulation.restore(&Checkpoint { progress, lag: 0.0, past: Vec::new(), ..state })?;
+        simulation
+            .restore(&Checkpoint { progress, lag: 0.0, past: Vec::new(), ..state })
+            .map_err(Absent::because)?;
         Ok(simulation.advance(time, 1.0, &mut ()))
     }
 
@@ -271,7 +273,7 @@ impl<X: Numbers, D: Stepper<X> + ?Sized> Sums<X> for OurSums<D> {
         read: &mut dyn FnMut(&dyn Stepper<X>),
     ) -> Result<(), Absent> {
         match self.put(time, particles)? {
-            Outcome::Diverged(divergence) => Err(divergence.to_string().into()),
+            Outcome::Diverged(divergence) => Err(Absent::because(divergence.to_string())),
             Outcome::Reached | Outcome::Stopped => {
                 read(self.simulation.borrow_mut().stepper());
                 Ok(())

@@ -465,6 +465,7 @@ fn of_metrics(
 
 #[cfg(test)]
 mod tests {
+    use touchstone_base::absent::Absent;
     use touchstone_base::gate::{Bound, Evidence, Gate};
     use touchstone_base::record::{Metric, MetricKey};
 
@@ -534,7 +535,7 @@ mod tests {
     fn a_metric_that_vanished_or_came_is_told_with_its_reason() {
         let gone = |record: &mut Record| {
             record.metrics.remove("l2");
-            record.absent.insert("l2".into(), "no reference".into());
+            record.absent.insert("l2".into(), Absent::because("no reference"));
         };
         one(gone, ChangeKind::Gone, "l2 (no reference)");
         one(|record| record.metrics.clear(), ChangeKind::Gone, "drift, l2");

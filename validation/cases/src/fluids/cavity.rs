@@ -200,7 +200,7 @@ const SAMPLES: usize = 20;
 /// Metrics from the mean velocities at these points over the last fifth of the run.
 fn measure(places: &[Place], means: &[f64], record: &mut Record) {
     if places.is_empty() {
-        return record.leave_out(STRENGTH, "the reference has Re 100 and 1000");
+        return record.leave_out(STRENGTH, Absent::because("the reference has Re 100 and 1000"));
     }
     let all = || means.iter().zip(places);
     for (component, metrics) in [[U_RMS, U_GHIA], [V_RMS, V_GHIA]].into_iter().enumerate() {

@@ -267,10 +267,7 @@ fn measure(
         let reason = format!(
             "the exact speed has decayed to {left:.1e} of that of the start, below {DECAYED}"
         );
-        for metric in [L2, ENERGY, PRESSURE_L2] {
-            record.leave_out(metric, &reason);
-        }
-        return;
+        return record.leave_all_out(&[L2, ENERGY, PRESSURE_L2], &Absent::because(reason));
     }
     record.put(L2, error);
     let energy = end.iter().map(|p| 0.5 * p.mass * p.velocity.norm_squared()).sum::<f64>();

@@ -188,7 +188,8 @@ pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Recor
     record.put_or_absent(FORCE, force.clone());
     let relative = |value: f64| (setup.flux() != 0.0).then_some(value);
     let none = "the flux wanted is 0, so no error relative to it exists";
-    let flux = flux.and_then(|flux| relative(flux / setup.flux() - 1.0).ok_or(none.into()));
+    let flux =
+        flux.and_then(|flux| relative(flux / setup.flux() - 1.0).ok_or(Absent::because(none)));
     record.put_or_absent(FLUX, flux);
     if let Some(absent) = &window.absent {
         return record.leave_all_out(OF_FIELD, absent);
@@ -199,7 +200,7 @@ pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Recor
         record.put(part, drag);
     }
     let balance = force.and_then(|force| {
-        let none = || "no body force has acted yet".into();
+        let none = || Absent::because("no body force has acted yet");
         (force != 0.0).then(|| drags.iter().sum::<f64>() / (force * area) - 1.0).ok_or_else(none)
     });
     record.put_or_absent(DRAG_BALANCE, balance);
@@ -259,10 +260,7 @@ fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
 fn compare(setup: &HillSetup, sections: &[[f64; 2]], record: &mut Record) {
     let Some(reference) = setup.reference else {
         let reason = format!("no reference exists for these settings, only for {KNOWN_SETTINGS}");
-        for metric in COMPARED {
-            record.leave_out(metric, &reason);
-        }
-        return;
+        return record.leave_all_out(&COMPARED, &Absent::because(reason));
     };
     let exact = || reference.stations.iter().flat_map(|s| &s.v);
     record.put(L2_U, rms(sections.iter().zip(exact()).map(|(f, e)| f[0] - e.x)));

@@ -141,7 +141,7 @@ impl PairwiseSums<'_> {
     /// Without densities at the start, or if the nearest image is not the only one in reach.
     fn error(&self, start: &ParticleArrays, values: &Values) -> Result<f64, Absent> {
         if self.reach >= 0.5 {
-            return Err("the support reaches half of the period".into());
+            return Err(Absent::because("the support reaches half of the period"));
         }
         let start: Vec<(Point, f64)> =
             start.points.iter().copied().zip(start.densities()?.iter().copied()).collect();

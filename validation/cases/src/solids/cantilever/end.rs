@@ -161,7 +161,7 @@ impl Watch<CantileverSettings> for End {
         let (whole, first) = COMPARED.split_at(if is_whole { 0 } else { COMPARED.len() - 1 });
         let lacks = "the run is too short, or finite elements have no such bar: they have 0.35 m and 0.02 m, \
                      1.4 MPa, Poisson's ratio 0.4, 1000 kg/m^3, under 2 and 0.2 m/s^2 for 4 s";
-        whole.iter().for_each(|(_, error)| record.leave_out(*error, lacks));
+        whole.iter().for_each(|(_, error)| record.leave_out(*error, Absent::because(lacks)));
         let of_path = (PATH_RMS, "harmonic_y");
         solid::compare(exact.as_ref(), first, of_path, (&path, lacks), record);
         compare_with_theory(s, record);
@@ -175,8 +175,7 @@ fn compare_with_theory(settings: &CantileverSettings, record: &mut Record) {
     let is_known = record.run.variant != "seed";
     let Some((frequency, sag)) = frequency.zip(sag).filter(|_| is_known) else {
         let lacks = if is_known { "no distance from finite elements" } else { "no theory" };
-        OF_METHODS.iter().for_each(|of| record.leave_out(*of, format!("there is {lacks}")));
-        return;
+        return record.leave_all_out(OF_METHODS, &Absent::because(format!("there is {lacks}")));
     };
     let stiffness = lagrangian::bending(settings.n, settings.solid.poisson);
     record.put(BENDING_FREQUENCY_ERROR, (1.0 + frequency) / stiffness.sqrt() - 1.0);

@@ -242,7 +242,7 @@ impl RingHistory {
         record.put(HEIGHT_MAX, most(|at| at.extents.y));
         let energy = match s.speed > 0.0 {
             true => self.energy(),
-            false => Err("the rings are at rest at the start".into()),
+            false => Err(Absent::because("the rings are at rest at the start")),
         };
         let lost = |all: &Vec<f64>| 1.0 - all[all.len() - 1] / all[0];
         let gained = |all: &Vec<f64>| all.iter().copied().fold(0.0, f64::max) / all[0] - 1.0;

@@ -1,6 +1,7 @@
 //! The finite-element run of one ring against a frictionless plane, and the distance from it.
 
 use touchstone_base::{
+    absent::Absent,
     record::{MetricKey, Record},
     reference::Reference,
 };
@@ -57,13 +58,10 @@ type Histories = [Vec<(f64, f64)>; 4];
 pub fn compare(s: &RingSettings, phases: &[ContactPhase], found: &Histories, record: &mut Record) {
     let Some(exact) = RingReference::of(&record.run.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
-        for metric in errors.into_iter().chain(OF_HISTORIES) {
-            record.leave_out(
-                metric,
-                "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0",
-            );
-        }
-        return;
+        let lacks = Absent::because(
+            "finite elements have rings of 3 and 4 L, 0.22 K, at 0.059 and 0.03 c0, to 200 L/c0",
+        );
+        return record.leave_all_out(&[&errors[..], &OF_HISTORIES].concat(), &lacks);
     };
     for (quantity, error) in COMPARED {
         let pair = exact.number(quantity).zip(record.value(quantity));
@@ -130,10 +128,7 @@ impl RingReference {
             pairs.map(|(found, exact)| history::differences(found, exact)).collect();
         let found = match found {
             Ok(found) => found,
-            Err(why) => {
-                OF_HISTORIES.into_iter().for_each(|key| record.leave_out(key, why.clone()));
-                return;
-            }
+            Err(why) => return record.leave_all_out(&OF_HISTORIES, &Absent::because(why)),
         };
         for (metric, differences) in RMS.into_iter().zip(&found) {
             record.put(metric, rms(differences.iter().copied()));

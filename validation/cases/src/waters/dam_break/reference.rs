@@ -4,6 +4,7 @@
 use std::{f64::consts::SQRT_2, sync::LazyLock};
 
 use touchstone_base::{
+    absent::Absent,
     record::{MetricName, Record},
     reference::Reference as Package,
 };
@@ -202,7 +203,7 @@ fn put_distance(
 ) {
     let count: f64 = pairs.iter().map(|(_, m)| m.len() as f64).sum();
     if count == 0.0 {
-        return record.leave_all_out(&of.metrics(), &TOO_SHORT.into());
+        return record.leave_all_out(&of.metrics(), &Absent::because(TOO_SHORT));
     }
     let all = |shift: f64| (squares(pairs, shift) / count).sqrt();
     let shift = best_shift(pairs, range);
