@@ -25,36 +25,61 @@ pub const SORTING: &str = "sorting";
 /// The remainder of a step.
 pub const REST: &str = "rest of the integrator";
 
-/// The names of the phases of a step, by their numbers.
+/// The names of the phases of a step, in the order of tables.
 const PHASES: [&str; 8] = [FORCES, DRIFT, BOTH, WALLS, REFRESH, SEARCH, SORTING, REST];
+
+/// The name of a phase.
+fn name_of(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Forces => FORCES,
+        Phase::Drift => DRIFT,
+        Phase::Both => BOTH,
+        Phase::Walls => WALLS,
+        Phase::Refresh => REFRESH,
+        Phase::Search => SEARCH,
+        Phase::Sorting => SORTING,
+        Phase::Rest => REST,
+    }
+}
 
 /// Frames for ParaView.
 pub const FRAMES: &str = "frames";
 /// Checkpoints.
 pub const CHECKPOINTS: &str = "checkpoints";
+/// Neither stepping nor observing; no part of a profile.
+const PAUSE: &str = "";
 
 /// Time steps between samples of the lists: a sample costs a fraction of a step.
 const SAMPLE_EVERY: u64 = 500;
 
-/// A clock over numbered parts, of which one is under way. Only the thread that steps reads it: atomic, so
-/// that a simulation can own a share of it, and never locked.
+/// A clock over named parts, of which one is under way. Only the thread that steps reads it: atomic, so that
+/// a simulation can own a share of it, and never locked.
 struct Clock {
     start: Instant,
+    /// The index of the part under way.
     part: AtomicUsize,
     since: AtomicU64,
-    /// Nanoseconds of each part, and how often it began.
-    parts: Vec<[AtomicU64; 2]>,
+    /// All parts; the last is [`PAUSE`].
+    parts: Vec<Timed>,
+}
+
+/// The time of a part, and how often it began.
+struct Timed {
+    name: &'static str,
+    nanoseconds: AtomicU64,
+    times: AtomicU64,
 }
 
 impl Clock {
-    fn enter(&self, part: usize) {
+    fn enter(&self, name: &str) {
         let now = u64::try_from(self.start.elapsed().as_nanos()).unwrap_or(u64::MAX);
-        let [spent, _] = &self.parts[self.part.load(Relaxed)];
+        let spent = &self.parts[self.part.load(Relaxed)].nanoseconds;
         spent.store(spent.load(Relaxed) + now - self.since.load(Relaxed), Relaxed);
         self.since.store(now, Relaxed);
-        self.part.store(part, Relaxed);
-        let [_, times] = &self.parts[part];
-        times.store(times.load(Relaxed) + 1, Relaxed);
+        let place = self.parts.iter().position(|part| part.name == name);
+        let place = place.unwrap_or(self.parts.len() - 1);
+        self.part.store(place, Relaxed);
+        self.parts[place].times.fetch_add(1, Relaxed);
     }
 }
 
@@ -69,17 +94,15 @@ struct ListSums {
     state_bytes: f64,
 }
 
-/// Profiles a run: phases by number, then observers, and last the rest.
+/// Profiles a run: phases of a step, then observers.
 pub(crate) struct Profiler {
     clock: Arc<Clock>,
-    /// Names of all parts but the last.
-    names: Vec<&'static str>,
     /// Profile of the part of the run before a checkpoint.
     earlier: Breakdown,
     lists: ListSums,
     sampled: u64,
-    /// Steps and builds of lists before it.
-    before: [u64; 2],
+    steps_before: u64,
+    list_builds_before: u64,
 }
 
 impl Profiler {
@@ -89,32 +112,32 @@ impl Profiler {
         observers: Vec<&'static str>,
         earlier: Breakdown,
     ) -> Self {
-        let names = [&PHASES[..], &observers].concat();
-        let parts = (0..=names.len()).map(|_| Default::default()).collect();
-        let (part, since) = (AtomicUsize::new(names.len()), AtomicU64::new(0));
+        let names = [&PHASES[..], &observers, &[PAUSE]].concat().into_iter();
+        let new = |name| Timed { name, nanoseconds: 0.into(), times: 0.into() };
+        let parts: Vec<_> = names.map(new).collect();
+        let (part, since) = (AtomicUsize::new(parts.len() - 1), AtomicU64::new(0));
         let clock = Arc::new(Clock { start: Instant::now(), part, since, parts });
         let watch = Arc::clone(&clock);
-        let enter = move |phase| watch.enter(phase as usize);
-        simulation.data_mut().watch = Some(Box::new(enter));
+        simulation.data_mut().watch = Some(Box::new(move |phase| watch.enter(name_of(phase))));
         let work = simulation.work();
-        let before = [work.steps, work.list_builds];
-        Self { clock, names, earlier, lists: ListSums::default(), sampled: 0, before }
+        let (steps_before, list_builds_before) = (work.steps, work.list_builds);
+        let (lists, sampled) = (ListSums::default(), 0);
+        Self { clock, earlier, lists, sampled, steps_before, list_builds_before }
     }
 
     /// Stepping begins. The time between an observer and the next phase of a step counts as observing.
     pub fn step(&self) {
-        self.clock.enter(Phase::Rest as usize);
+        self.clock.enter(REST);
     }
 
     /// An observer begins.
     pub fn observe(&self, observer: &str) {
-        let place = self.names.iter().position(|name| *name == observer);
-        self.clock.enter(place.unwrap_or(self.names.len()));
+        self.clock.enter(observer);
     }
 
     /// Neither stepping nor observing begins.
     pub fn pause(&self) {
-        self.clock.enter(self.names.len());
+        self.clock.enter(PAUSE);
     }
 
     /// Looks at the lists of a simulation that was brought to a time, if the last look is long ago.
@@ -146,14 +169,17 @@ impl Profiler {
     /// The profile so far.
     pub fn breakdown<X: Numbers>(&self, simulation: &dyn Stepper<X>) -> Breakdown {
         let mut all = self.earlier.clone();
-        for (k, (name, part)) in self.names.iter().zip(&self.clock.parts).enumerate() {
-            let parts = if k < PHASES.len() { &mut all.stepping } else { &mut all.observing };
-            let [nanoseconds, times] = part.each_ref().map(|number| number.load(Relaxed));
-            add(parts, name, 1e-9 * nanoseconds as f64, times);
+        for Timed { name, nanoseconds, times } in &self.clock.parts {
+            let parts = match *name {
+                PAUSE => continue,
+                name if PHASES.contains(&name) => &mut all.stepping,
+                _ => &mut all.observing,
+            };
+            add(parts, name, 1e-9 * nanoseconds.load(Relaxed) as f64, times.load(Relaxed));
         }
         let work = simulation.work();
-        all.steps += work.steps - self.before[0];
-        all.list_builds += work.list_builds - self.before[1];
+        all.steps += work.steps - self.steps_before;
+        all.list_builds += work.list_builds - self.list_builds_before;
         let sweeps =
             all.stepping.iter().filter(|part| [FORCES, DRIFT, BOTH].contains(&&*part.name));
         let sweeps = sweeps.map(|part| part.times).sum::<u64>() as f64;

@@ -6,11 +6,17 @@ use super::table::{class, mark};
 use maud::{Markup, html};
 use touchstone_base::gate::Verdict;
 
-/// How many gates ended how, and how many runs.
+/// Numbers of gates by verdict, and of runs that diverged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Gates, in the order of [`Verdict::ALL`].
-    pub gates: [usize; Verdict::ALL.len()],
+    /// Gates that pass.
+    pub pass: usize,
+    /// Controls that failed, as they must.
+    pub control: usize,
+    /// Known limitations.
+    pub limitation: usize,
+    /// Gates that fail.
+    pub fail: usize,
     /// Limitations whose cause is not known.
     pub unexplained: usize,
     /// Runs that diverged.
@@ -23,30 +29,38 @@ impl Counts {
     /// The counts of the given outcomes.
     pub fn of(outcomes: impl IntoIterator<Item = Verdict>) -> Self {
         let mut counts = Self::default();
-        outcomes.into_iter().for_each(|outcome| counts.gates[outcome as usize] += 1);
+        outcomes.into_iter().for_each(|outcome| *counts.of_verdict(outcome) += 1);
         counts
     }
 
     /// How many gates ended so.
-    pub fn count(self, outcome: Verdict) -> usize {
-        self.gates[outcome as usize]
+    pub fn count(mut self, outcome: Verdict) -> usize {
+        *self.of_verdict(outcome)
+    }
+
+    fn of_verdict(&mut self, outcome: Verdict) -> &mut usize {
+        match outcome {
+            Verdict::Pass => &mut self.pass,
+            Verdict::ExpectedFailure => &mut self.control,
+            Verdict::Limitation => &mut self.limitation,
+            Verdict::Fail => &mut self.fail,
+        }
     }
 
     /// Counts of the verdicts of all gates, failures first, and of the runs, in a sentence.
     pub fn headline(self) -> String {
         let of =
             |count: usize, one: &str, many: &str| (count > 0).then(|| counted(count, one, many));
-        let [pass, control, limitation, fail] = self.gates;
         let unexplained = match self.unexplained {
             0 => String::new(),
             count => format!(" ({count} of them unexplained)"),
         };
-        let limited = of(limitation, "known limitation", "known limitations");
+        let limited = of(self.limitation, "known limitation", "known limitations");
         let parts = [
-            of(fail, "gate fails", "gates fail"),
-            of(pass, "gate passes", "gates pass"),
+            of(self.fail, "gate fails", "gates fail"),
+            of(self.pass, "gate passes", "gates pass"),
             limited.map(|text| text + &unexplained),
-            of(control, "control fails as it must", "controls fail as they must"),
+            of(self.control, "control fails as it must", "controls fail as they must"),
             of(self.diverged, "run diverged", "runs diverged"),
         ];
         let text = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
@@ -55,7 +69,7 @@ impl Counts {
 
     /// The outcomes that there are, worst first, with their counts.
     fn worst_first(self) -> impl Iterator<Item = (Verdict, usize)> {
-        let all = Verdict::ALL.into_iter().zip(self.gates).rev();
+        let all = Verdict::ALL.into_iter().rev().map(move |verdict| (verdict, self.count(verdict)));
         all.filter(|(_, count)| *count > 0)
     }
 
@@ -88,7 +102,7 @@ impl Counts {
         if self.worst().is_none() {
             return html! { p.verdict { "Nothing was judged" } };
         }
-        let [pass, _, limitation, fail] = self.gates;
+        let Self { pass, limitation, fail, .. } = self;
         let failed = match fail {
             0 => "none fails".into(),
             fail => counted(fail, "gate fails", "gates fail"),
@@ -122,7 +136,15 @@ mod tests {
         let counts = Counts::of([Verdict::Pass, Verdict::Pass, Verdict::ExpectedFailure]);
         assert_eq!(Verdict::ALL.map(|verdict| counts.count(verdict)), [2, 1, 0, 0]);
         assert_eq!(counts.headline(), "2 gates pass, 1 control fails as it must");
-        let all = Counts { gates: [2, 1, 2, 1], unexplained: 1, diverged: 3, unexpected: 1 };
+        let all = Counts {
+            pass: 2,
+            control: 1,
+            limitation: 2,
+            fail: 1,
+            unexplained: 1,
+            diverged: 3,
+            unexpected: 1,
+        };
         let headline = "1 gate fails, 2 gates pass, 2 known limitations (1 of them unexplained), 1 control \
                         fails as it must, 3 runs diverged";
         assert_eq!(
@@ -134,14 +156,14 @@ mod tests {
         let words = "2 gates pass · 1 gate fails · 2 known limitations, 1 of them unexplained · 3 runs \
                      diverged, 1 of them unexpected";
         assert!(line.contains(words) && line.contains("class=\"verdict fail\""), "{line}");
-        let good = Counts { gates: [2, 0, 0, 0], diverged: 1, ..Counts::default() };
+        let good = Counts { pass: 2, diverged: 1, ..Counts::default() };
         assert!(
             good.line()
                 .into_string()
                 .contains(">2 gates pass · none fails · 1 run diverged, all expected<")
         );
         assert_eq!(Counts::default().headline(), "Nothing was judged");
-        let one = Counts { gates: [1; 4], diverged: 1, ..Counts::default() };
+        let one = Counts { diverged: 1, ..Counts::of(Verdict::ALL) };
         let headline = "1 gate fails, 1 gate passes, 1 known limitation, 1 control fails as it must, 1 run \
                         diverged";
         assert_eq!(one.headline(), headline);
