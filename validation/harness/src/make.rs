@@ -177,7 +177,7 @@ mod tests {
             Quick.made(spec, context)
         }
         fn studied(&self, _: Tier) -> Studies {
-            let card = || Card::made_up(ERROR, "k", Vec::new());
+            let card = || Card::made_up(ERROR, Vec::new());
             Studies::default().with_all(self.1.then(card))
         }
     }

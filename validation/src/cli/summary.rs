@@ -231,9 +231,9 @@ pub fn error_of(studies: &Studies, record: &Record) -> (String, String) {
 
 /// The setting at which the run broke, if it did.
 fn broken(breaks: &Breaks, record: &Record) -> Option<String> {
-    let Breaks { setting, words: [before, after], has_broken, sign } = breaks;
+    let Breaks { value, words: [before, after], has_broken, sign } = breaks;
     has_broken(record).filter(|broken| *broken)?;
-    let value = touchstone_report::exact(record.run.settings[*setting].as_f64()?);
+    let value = touchstone_report::exact(value(&record.run));
     Some(format!("at {before}{value}{after}: {sign}"))
 }
 

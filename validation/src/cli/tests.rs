@@ -114,7 +114,7 @@ impl Case for Staged {
             Planned { timed: self.name == "timed", ..planned }
         };
         let runs: Vec<Planned> = self.planned.iter().map(planned).collect();
-        let card = || Card::made_up(ERROR, "re", vec![spec("right")]);
+        let card = || Card::made_up(ERROR, vec![spec("right")]);
         let (name, card) = (self.name, (self.name == "main").then(card));
         let section = move |runs: &Runs| {
             let count = runs.all.len() as f64;

@@ -82,14 +82,15 @@ impl Card {
 
     /// The card of a case that a test makes up, which breaks nowhere.
     #[doc(hidden)]
-    pub fn made_up(metric: MetricKey, setting: &'static str, runs: Vec<RunSpec>) -> Self {
+    pub fn made_up(metric: MetricKey, runs: Vec<RunSpec>) -> Self {
         let stated = |_: &RunSpec| Stated {
             name: "made up".into(),
             against: "nothing",
             uncertainty: None,
             unit: "",
         };
-        let breaks = Breaks { setting, words: ["", ""], has_broken: |_| Some(false), sign: "" };
+        let breaks =
+            Breaks { value: |_| 0.0, words: ["", ""], has_broken: |_| Some(false), sign: "" };
         let (title, picture, pictured_scene, metric) = ("Main", "none", "", metric.into());
         Card { title, picture, pictured_scene, metric, stated, beside: None, runs, breaks }
     }
@@ -177,8 +178,8 @@ impl Stated {
 
 /// The setting over which a case looks for the value at which runs break.
 pub struct Breaks {
-    /// The setting.
-    pub setting: &'static str,
+    /// The value of the setting in a run.
+    pub value: fn(&RunSpec) -> f64,
     /// The words before and after its values.
     pub words: [&'static str; 2],
     /// Whether the result of a run is broken although it may have reached its end; none if the run does not
@@ -469,7 +470,7 @@ fn broken_at(card: &Card, variant: &str, runs: &Runs) -> Option<Broken> {
         let is_refused = matches!(record.status, Status::Refused { .. });
         let has_broken = (card.breaks.has_broken)(record).filter(|_| !is_refused)?;
         let broken = has_broken || record.status != Status::Completed;
-        Some((record.run.settings[card.breaks.setting].as_f64()?, broken))
+        Some(((card.breaks.value)(&record.run), broken))
     });
     let (broken, whole): (Vec<_>, Vec<_>) = answers.partition(|(_, broken)| *broken);
     let least = broken.iter().map(|(value, _)| *value).reduce(f64::min);
@@ -517,7 +518,7 @@ mod tests {
             beside: None,
             runs: vec![spec("good", 1), spec("bad", 1)],
             breaks: Breaks {
-                setting: "n",
+                value: |run| run.settings["n"].as_f64().unwrap_or(f64::NAN),
                 words: ["n = ", ""],
                 has_broken: |record| Some(record.value(ERROR)? > 1.0),
                 sign: "it is torn",

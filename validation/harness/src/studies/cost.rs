@@ -260,13 +260,12 @@ pub fn against_run_time(
     let (metric, accuracy) = (studies.error()?, studies.first::<Accuracy>()?);
     let card = studies.first::<Card>()?;
     // A ladder at another value of the setting than the run of the card says so.
-    let setting = |of: &RunSpec| of.settings[card.breaks.setting].as_f64();
-    let finest = accuracy.finest(&[case.recommended().variant]).first().and_then(setting);
-    let resolution = RefiningSetting::of(case, studies);
-    let is_other = |value: &f64| card.runs.first().and_then(setting) != Some(*value);
-    let is_resolution = resolution.is_some_and(|of| of.setting.name == card.breaks.setting);
-    let other = finest.filter(is_other).filter(|_| !is_resolution);
-    let [before, after] = card.breaks.words;
+    let (value, [before, after]) = (card.breaks.value, card.breaks.words);
+    let finest = accuracy.finest(&[case.recommended().variant]).first().map(value);
+    let is_other = |finest: &f64| card.runs.first().map(value) != Some(*finest);
+    let levels = studies.ladder().map_or(&[][..], |ladder| &ladder.levels);
+    let is_refined = levels.windows(2).any(|of| value(&of[0].run.spec) != value(&of[1].run.spec));
+    let other = finest.filter(is_other).filter(|_| !is_refined);
     let other = other.map_or(String::new(), |value| format!(", {before}{}{after}", exact(value)));
     let title = format!("{title}{other}");
     let plot = Plot::new(title, Axis::log("run time [s]"), Axis::log(&accuracy.label));

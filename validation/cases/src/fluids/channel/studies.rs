@@ -123,7 +123,7 @@ fn card(flow: Flow, accuracy: &Accuracy) -> Card {
         beside: None,
         runs: accuracy.finest(&[flow.case().recommended.variant, "seed"]),
         breaks: Breaks {
-            setting: "re",
+            value: |run| run.settings_as::<ChannelSettings>().re,
             words: ["Re ", ""],
             has_broken: maps::has_broken,
             sign: "velocity error above 5 %",

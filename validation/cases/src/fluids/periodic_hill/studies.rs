@@ -137,7 +137,7 @@ fn card(tier: Tier, accuracy: &Accuracy) -> Card {
         beside: None,
         runs,
         breaks: Breaks {
-            setting: "re",
+            value: |run| run.settings_as::<HillSettings>().re,
             words: ["Re ", ""],
             has_broken: |record| Some(record.value(OUTSIDE).is_some_and(|count| count > 0.0)),
             sign: "a particle has passed a wall",

@@ -195,7 +195,7 @@ fn card(accuracy: &Accuracy) -> Card {
         // Both variants with five layers: their ladders end at different spacings.
         runs: accuracy.spaced(&SHOWN, 0.2),
         breaks: Breaks {
-            setting: "speed",
+            value: |run| run.settings_as::<RingSettings>().speed,
             words: ["", " c0 each"],
             has_broken,
             sign: "a ring is torn",

@@ -102,7 +102,7 @@ fn card(accuracy: &Accuracy) -> Card {
         beside: Some(against_the_experiment),
         runs: accuracy.finest(&[DAM_BREAK.recommended.variant, "seed"]),
         breaks: Breaks {
-            setting: "n",
+            value: |run| run.settings_as::<DamSettings>().n as f64,
             words: ["a/dx = ", ""],
             // Both variants are compared in the tank of the error.
             has_broken: |record| {
