@@ -40,7 +40,7 @@ type Flow<K> = Compose<K, (Pressure<Tait>, Viscosity), Continuity, Open, Leapfro
 
 fn pose(method: &Method, s: &Decay) -> Result<Simple, RunError> {
     let (n, end, dx) = (s.n, s.end, 1.0 / s.n as f64);
-    let medium = method.properties.medium(Tait::new(1.0, 1.0), [dx, 1.3 * dx]);
+    let medium = method.properties.medium(Tait::new(1.0, 1.0), dx, 1.3 * dx);
     let medium = Medium { nu: 0.01, eta2_over_h2: 1e-6, ..medium };
     let limits = method.properties.limits_in(&medium, 1.3, 32);
     let rules = Rules { step: Step::share(s.step, &limits), limits, sound_speed: 1.0, end };

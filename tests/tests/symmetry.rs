@@ -179,7 +179,7 @@ fn flawed<const KIND: char>() -> Method {
 fn pose((domain, m): &(Domain, Method), _: &Decay) -> Result<Simple, RunError> {
     let eos = Tait { background: 0.3, ..Tait::new(1.0, 1.0) };
     let medium =
-        Medium { nu: 0.01, eta2_over_h2: 1e-6, ..m.properties.medium(eos, [1.0 / 12.0, 0.1]) };
+        Medium { nu: 0.01, eta2_over_h2: 1e-6, ..m.properties.medium(eos, 1.0 / 12.0, 0.1) };
     let rules = Rules { step: Step::given(1.0 / 32.0), ..Rules::REFUSED };
     let (domain, size) = (*domain, (144.0, "nothing"));
     let scene = move || Ok(Parts::new(medium, domain, patch(12, 0.15, 11)));

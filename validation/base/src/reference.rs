@@ -83,6 +83,15 @@ pub enum Grade {
     Digitised,
 }
 
+/// A number of the table `summary` of a reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Uncertain {
+    /// The number.
+    pub value: f64,
+    /// Its standard uncertainty, in the same unit.
+    pub uncertainty: f64,
+}
+
 /// How far the numbers of two codes are apart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agreement {
@@ -240,11 +249,12 @@ impl Reference {
         Ok(Reference { package, tables })
     }
 
-    /// Value and uncertainty of the row of the table `summary` of a reference that has these texts; NaN if
-    /// there is none, so that nothing follows from it.
-    pub fn summarised(name: &str, of: &[(&str, &str)]) -> [f64; 2] {
-        let read = || Self::load(name)?.table("summary")?.select(of, ["value", "uncertainty"]);
-        read().ok().and_then(|rows| rows.first().copied()).unwrap_or([f64::NAN; 2])
+    /// The number in the row of the table `summary` of a reference that has these texts; NaN if there is
+    /// none, so that nothing follows from it.
+    pub fn summarised(name: &str, of: &[(&str, &str)]) -> Uncertain {
+        let read = || Self::load(name)?.table("summary")?.uncertain(of);
+        let first = read().ok().and_then(|numbers| numbers.first().copied());
+        first.unwrap_or(Uncertain { value: f64::NAN, uncertainty: f64::NAN })
     }
 
     /// A column of a table of a reference over another one, in the rows that have these texts; empty if there
@@ -277,18 +287,17 @@ impl Reference {
     /// equal texts in the columns before `value`.
     fn distance(&self, other: &Reference) -> Result<Agreement, ReferenceError> {
         let (own, others) = (self.table("summary")?, other.table("values")?);
-        let numbers = ["value", "uncertainty"];
         let keys = &others.fields[..others.position("value")?];
         let (mut worst, mut of) = (0.0, String::new());
-        for (row, [value, doubt]) in others.rows.iter().zip(others.select(&[], numbers)?) {
+        for (row, theirs) in others.rows.iter().zip(others.uncertain(&[])?) {
             let texts: Vec<_> =
                 keys.iter().map(|key| &*key.name).zip(row.iter().map(|cell| &**cell)).collect();
             let name = row[..keys.len()].join(" ");
-            let Some(&[value_of, doubt_of]) = own.select(&texts, numbers)?.first() else {
+            let Some(ours) = own.uncertain(&texts)?.first().copied() else {
                 return refused(format!("reference {} has no number {name:?}", self.package.name));
             };
-            let both = (doubt * doubt + doubt_of * doubt_of).sqrt();
-            let ratio = (value - value_of).abs() / both;
+            let squares = [theirs, ours].map(|of| of.uncertainty * of.uncertainty);
+            let ratio = (theirs.value - ours.value).abs() / (squares[0] + squares[1]).sqrt();
             if ratio.is_nan() || ratio >= worst {
                 (worst, of) = (ratio, name);
             }
@@ -353,6 +362,12 @@ impl Table {
             selected.push(numbers);
         }
         Ok(selected)
+    }
+
+    /// The columns `value` and `uncertainty` of the rows that have these texts in these columns.
+    pub fn uncertain(&self, of: &[(&str, &str)]) -> Result<Vec<Uncertain>, ReferenceError> {
+        let rows = self.select(of, ["value", "uncertainty"])?.into_iter();
+        Ok(rows.map(|[value, uncertainty]| Uncertain { value, uncertainty }).collect())
     }
 
     fn number(&self, row: usize, column: &str) -> Result<f64, ReferenceError> {

@@ -533,7 +533,7 @@ trait Parted: Problem {
             return Err(RunError::TimeStep { dt, limit, integrator });
         }
         let reach = method.support * brief.medium.h / brief.medium.dx;
-        let size = Size::new([rules.end / dt, brief.particles], reach);
+        let size = Size::new(rules.end / dt, brief.particles, reach);
         let sweeps = if brief.is_limited { rules.sweeps() } else { size.sweeps };
         let size = Size { sweeps, samples: brief.samples, storage: method.storage, ..size };
         let size = check_size(size, steps.most(), brief.decisive, allow_long)?;

@@ -95,7 +95,7 @@ impl Rules {
     }
 
     /// These and the lattice, h/dx and dx \[m\], by the names that records give them.
-    pub fn numbers(&self, [h_over_dx, dx]: [f64; 2]) -> [(&'static str, f64); 5] {
+    pub fn numbers(&self, h_over_dx: f64, dx: f64) -> [(&'static str, f64); 5] {
         let (dt, dt_limit, sound_speed) = (self.dt(), self.dt_limit(), self.sound_speed);
         [
             ("h/dx", h_over_dx),
@@ -162,7 +162,7 @@ mod tests {
         limits.together = 4e-4;
         let rules = Rules { step: Step::given(2e-4), limits, ..Rules::REFUSED };
         let mut record = Record::new("c", "v", json!({}), 1);
-        let numbers = rules.numbers([1.2, 0.1]).map(|(name, value)| (name.into(), value.into()));
+        let numbers = rules.numbers(1.2, 0.1).map(|(name, value)| (name.into(), value.into()));
         record.numerics.extend(numbers);
         record.cost.largest_dt_s = 1e-4;
         state_steps(&mut record);

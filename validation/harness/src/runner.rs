@@ -426,7 +426,7 @@ mod tests {
     fn wave() -> Box<dyn Stepper<()>> {
         let method = Method::<()>::of::<Sound>();
         let (n, dx) = (12, 1.0 / 12.0);
-        let medium = method.properties.medium(Tait::new(1.0, 1.0), [dx, 1.3 * dx]);
+        let medium = method.properties.medium(Tait::new(1.0, 1.0), dx, 1.3 * dx);
         let speed = |x: Vector2<f64>| Vector2::new(0.01 * sin(std::f64::consts::TAU * x.x), 0.0);
         let places = lattice(Vector2::repeat(0.5 * dx), dx, n, n);
         let particles = places.map(|x| Particle::fluid(x, speed(x), 1.0, dx * dx)).collect();

@@ -189,7 +189,7 @@ const KEPT: f64 = 3.0;
 /// The total cost of the batteries of runs without refused ones: all relations in sequence, and the particles
 /// of all specs at once.
 pub fn size(specs: &[(&dyn Case, RunSpec)]) -> Size {
-    let (mut all, relations) = (Size::new([0.0, 0.0], 0.0), Relation::ALL.len() as f64);
+    let (mut all, relations) = (Size::new(0.0, 0.0, 0.0), Relation::ALL.len() as f64);
     for (case, spec) in specs {
         let spec = spec.clone().allow_unstable();
         let posed = case.pose(&spec);

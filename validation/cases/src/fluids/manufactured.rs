@@ -121,7 +121,7 @@ fn parts(m: &Method, flow: &UnitFlow) -> Parts {
 fn pose(m: &Method, s: &ManufacturedSettings) -> Result<Simple, RunError> {
     let (flow, method) = (flow(s, m), m.clone());
     let (medium, rules, particles) = (flow.medium, flow.rules, flow.particles);
-    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
+    let numbers = rules.numbers(s.h_over_dx, medium.dx);
     let scene = move || Ok(parts(&method, &flow));
     let at_end = move |end: &Snapshot, record: &mut Record| {
         measure(&medium, end, record);

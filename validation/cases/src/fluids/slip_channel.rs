@@ -98,7 +98,7 @@ fn pose(m: &Method, s: &SlipSettings) -> Result<Simple, RunError> {
         FlowScales { re, n, h_over_dx, c0, end, speed: 2.0, force: 0.0, area: 1.0, dt: None };
     let flow = UnitFlow::new(&m.properties, &s.numerics, scales);
     let (medium, rules, size) = (flow.medium, flow.rules, (flow.particles, DECISIVE));
-    let numbers = rules.numbers([h_over_dx, medium.dx]);
+    let numbers = rules.numbers(h_over_dx, medium.dx);
     let first_row = m.properties.first_row;
     let scene = move || {
         let (rho, volume) = (medium.eos.density, medium.dx * medium.dx);
@@ -109,7 +109,7 @@ fn pose(m: &Method, s: &SlipSettings) -> Result<Simple, RunError> {
         }))
     };
     let (tau, steps) = (s.end, (end / rules.dt() - 1e-9).ceil());
-    let lattice = m.properties.square([h_over_dx, medium.eta2_over_h2]);
+    let lattice = m.properties.square(h_over_dx, medium.eta2_over_h2);
     let symbol = lattice.laplacian(Vector2::new(0.0, PI * medium.dx));
     let decay = medium.nu * symbol / (medium.h * medium.h) * end;
     let theory = exact_steps(decay / steps, steps);

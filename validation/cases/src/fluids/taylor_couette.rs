@@ -79,7 +79,7 @@ impl Cylinders {
         let inner = s.gap / (s.ratio - 1.0);
         // Mach 0.1, and at least the sound speed as stiff as viscosity.
         let sound_speed = (10.0 * speed).max(s.c0_viscous * s.nu / h);
-        let medium = method.properties.medium(Tait::new(s.rho, sound_speed), [dx, h]).set_by(s);
+        let medium = method.properties.medium(Tait::new(s.rho, sound_speed), dx, h).set_by(s);
         let medium = Medium { nu: s.nu, ..medium };
         let step = Step::courant(s.courant, h, [sound_speed, speed]).viscous(s.viscous, h, s.nu);
         let limits = method.properties.limits_in(&medium, s.h_over_dx, LIMIT_BOX);
@@ -118,7 +118,7 @@ impl Cylinders {
 fn pose(method: &Method, s: &CylinderSettings) -> Result<Simple, RunError> {
     let (cylinders, m) = (Cylinders::new(method, s)?, method.clone());
     let Cylinders { medium, rules, flow, .. } = cylinders;
-    let numbers = rules.numbers([s.h_over_dx, medium.dx]);
+    let numbers = rules.numbers(s.h_over_dx, medium.dx);
     let numbers = [&numbers[..], &[("V [m/s]", flow.speed)]].concat();
     let walls = method.properties.support * medium.h; // behind both cylinders
     let area = std::f64::consts::PI * ((flow.outer + walls).powi(2) - (flow.inner - walls).powi(2));

@@ -85,7 +85,7 @@ impl UnitFlow {
         let background = numerics.background * c0 * c0;
         let eos = Tait { gamma: numerics.gamma as i32, background, ..Tait::new(1.0, c0) };
         let acceleration = Vector2::new(force, 0.0);
-        let medium = Medium { nu, acceleration, ..method.medium(eos, [dx, h]).set_by(numerics) };
+        let medium = Medium { nu, acceleration, ..method.medium(eos, dx, h).set_by(numerics) };
         let step = Step::courant(numerics.courant, h, [c0, speed]).viscous(numerics.viscous, h, nu);
         let limits = method.limits_in(&medium, h / dx, LIMIT_BOX).moving(h, speed, force);
         let step = step.or_given(dt);
@@ -99,7 +99,7 @@ impl UnitFlow {
     pub fn brief(&self) -> Brief {
         let dx = self.medium.dx;
         Brief::new(self.medium, self.rules, self.particles, DECISIVE)
-            .numbers(&self.rules.numbers([self.h_over_dx, dx]))
+            .numbers(&self.rules.numbers(self.h_over_dx, dx))
     }
 
     /// A square of fluid between plane walls at rest at y = 0 and y = 1, periodic along x: `of` makes the

@@ -211,7 +211,7 @@ fn fastest(particles: &[Point]) -> f64 {
 /// ρ₀ = c₀ = dx = 1, ν = 0.1.
 fn medium(method: &Method, s: &ExtremeSettings) -> Medium {
     let eos = Tait { background: s.background, ..Tait::new(1.0, 1.0) };
-    Medium { nu: 0.1, eta2_over_h2: 1e-6, ..method.properties.medium(eos, [1.0, s.h_over_dx]) }
+    Medium { nu: 0.1, eta2_over_h2: 1e-6, ..method.properties.medium(eos, 1.0, s.h_over_dx) }
 }
 
 /// A lattice at rest, for very many steps.

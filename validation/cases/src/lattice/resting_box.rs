@@ -139,7 +139,7 @@ fn stiffness(s: &BoxSettings) -> f64 {
 fn modes(method: &Method, s: &BoxSettings) -> Vec<Mode> {
     let (nu, alpha, delta) = (1.0 / stiffness(s), s.alpha, s.delta);
     let medium = WaveMedium { nu, alpha, delta, ..WaveMedium::of_sound(1.0, 1.0) };
-    time_step::modes(&method.properties.square([s.h_over_dx, ETA2]), s.n, &medium)
+    time_step::modes(&method.properties.square(s.h_over_dx, ETA2), s.n, &medium)
 }
 
 /// A run of the case.
@@ -170,7 +170,7 @@ fn medium(method: &Method, s: &BoxSettings) -> Medium {
         eta2_over_h2: ETA2,
         alpha: s.alpha,
         diffusion: s.delta,
-        ..method.properties.medium(Tait::new(1.0, 1.0), [1.0 / s.n as f64, h(s)])
+        ..method.properties.medium(Tait::new(1.0, 1.0), 1.0 / s.n as f64, h(s))
     }
 }
 

@@ -193,7 +193,7 @@ impl Wave {
         }
         let (dx, h) = (s.length / s.n as f64, s.h_over_dx * s.length / s.n as f64);
         let theta = Vector2::new(s.kx as f64, s.ky as f64) * (TAU / s.n as f64);
-        let lattice = method.properties.square([s.h_over_dx, s.eta2_over_h2]);
+        let lattice = method.properties.square(s.h_over_dx, s.eta2_over_h2);
         let density = s.rho * (1.0 + s.compression);
         let sound_speed = s.c0 * (1.0 + s.compression).powi((GAMMA - 1) / 2);
         // A background pressure makes p = 0 at this density: a displacement then acts on a pressure of its
@@ -204,7 +204,7 @@ impl Wave {
             density,
             sound_speed,
             nu: s.nu,
-            ..method.properties.medium(eos, [dx, h]).set_by(s)
+            ..method.properties.medium(eos, dx, h).set_by(s)
         };
         let waves =
             WaveMedium { nu: s.nu, delta: s.diffusion, ..WaveMedium::of_sound(sound_speed, h) };

@@ -102,13 +102,13 @@ impl Wave {
     fn new(method: &Method<Symmetric>, s: &WaveSettings) -> Self {
         let (h_over_dx, h, properties) = (s.h_over_dx, s.h_over_dx * DX, &method.properties);
         let direction = if s.transverse { Vector2::y() } else { Vector2::x() };
-        let lattice = properties.square([h_over_dx, 0.0]);
+        let lattice = properties.square(h_over_dx, 0.0);
         let g = lattice.gradient(Vector2::new(TAU / N as f64, 0.0)).norm() / h;
         let Material { bulk, shear, .. } = RUBBER;
         let modulus = if s.transverse { shear } else { bulk + 4.0 / 3.0 * shear };
         let frequency = g * modulus.sqrt();
         let step = Step { dt: 0.02 / frequency * TAU, number: 0.02, by: "period" };
-        let medium = medium_of(&RUBBER, properties, [DX, h]);
+        let medium = medium_of(&RUBBER, properties, DX, h);
         let limits = limits(properties, &RUBBER, &medium, h_over_dx, 0.0);
         let (sound_speed, end) = (RUBBER.sound_speed(), step.dt * STEPS as f64);
         let rules = Rules { step, limits, sound_speed, end };

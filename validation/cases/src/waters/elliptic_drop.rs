@@ -237,7 +237,7 @@ impl Problem for Drop {
 
     fn brief(&self) -> Brief {
         let (n, h_over_dx) = (self.settings.n, self.settings.water.h_over_dx);
-        let [_, numbers @ ..] = self.rules.numbers([h_over_dx, self.medium.dx]);
+        let [_, numbers @ ..] = self.rules.numbers(h_over_dx, self.medium.dx);
         let (particles, decisive) = (FRAC_PI_4 * (n * n) as f64, "end, dt, courant, c0 or n");
         Brief::new(self.medium, self.rules, particles, decisive).numbers(&numbers)
     }

@@ -152,11 +152,11 @@ impl WaterColumn {
         let medium = Medium {
             acceleration: down,
             wall_acceleration: down * s.wall_gravity,
-            ..m.properties.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, [dx, h]).set_by(s)
+            ..m.properties.medium(Tait { gamma, ..Tait::new(s.rho, c0) }, dx, h).set_by(s)
         };
         let exact = water::at_rest(&medium);
         let fastest = exact.sound_speed(s.depth);
-        let limits = water::limits(&m.properties, &medium, [s.h_over_dx, fastest], LIMIT_BOX);
+        let limits = water::limits(&m.properties, &medium, s.h_over_dx, fastest, LIMIT_BOX);
         let limits = limits.moving(h, 0.0, s.g);
         let (step, period) = (Step::courant(s.courant, h, [fastest, 0.0]), 4.0 * s.depth / c0);
         let rules = Rules { step, limits, sound_speed: c0, end: s.end * period };
@@ -206,7 +206,7 @@ impl Problem for WaterColumn {
         let HydrostaticSettings { rows, columns, h_over_dx, .. } = self.settings;
         let (particles, decisive) = (rows as f64 * columns as f64, "end, courant, rows or columns");
         let brief = Brief::new(self.medium, self.rules, particles, decisive)
-            .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]));
+            .numbers(&self.rules.numbers(h_over_dx, self.medium.dx));
         Brief { samples: self.rules.end / self.period, ..brief }
     }
 

@@ -239,7 +239,7 @@ impl Problem for Still {
         let dx = self.medium.dx;
         let decisive = "end, courant, c0 or n";
         let brief = Brief::new(self.medium, self.rules, 2.0 * HALF / (dx * dx), decisive)
-            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, dx]));
+            .numbers(&self.rules.numbers(self.settings.water.h_over_dx, dx));
         Brief { samples: self.samples(), ..brief }
     }
 

@@ -122,7 +122,7 @@ mod tests {
             diffusion: 0.4,
             damper: 0.8,
             shift: 0.6,
-            ..method.properties.medium(Tait::new(1000.0, 20.0), [0.1, 0.15])
+            ..method.properties.medium(Tait::new(1000.0, 20.0), 0.1, 0.15)
         };
         let fluid = Particle::fluid(Vector2::new(0.2, 0.3), Vector2::new(1.0, 2.0), 1000.0, 0.01);
         let wall = fluid.with_role(Role::Wall);

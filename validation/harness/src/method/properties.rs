@@ -90,7 +90,7 @@ impl Properties {
     }
 
     /// A medium with this equation of state, spacing \[m\] and smoothing length \[m\], and nothing else.
-    pub fn medium(&self, eos: Tait, [dx, h]: [f64; 2]) -> Medium {
+    pub fn medium(&self, eos: Tait, dx: f64, h: f64) -> Medium {
         Medium {
             eos,
             density: eos.density,
@@ -98,7 +98,7 @@ impl Properties {
             dx,
             h,
             w_at_spacing: (self.weight)(h, dx * dx),
-            stiffest: self.square([h / dx, 0.0]).stiffest(),
+            stiffest: self.square(h / dx, 0.0).stiffest(),
             nu: 0.0,
             shear_modulus: 0.0,
             acceleration: Vector2::zeros(),
@@ -116,7 +116,7 @@ impl Properties {
     }
 
     /// The symbols of the square lattice with these h/dx and η²/h², for its forces.
-    pub fn square(&self, [h_over_dx, eta2_over_h2]: [f64; 2]) -> SquareLattice {
+    pub fn square(&self, h_over_dx: f64, eta2_over_h2: f64) -> SquareLattice {
         let lattice = (self.lattice)(h_over_dx, eta2_over_h2);
         if self.is_corrected { lattice.corrected() } else { lattice }
     }
@@ -124,17 +124,17 @@ impl Properties {
     /// The limits of a step in a medium, by the waves of a periodic square lattice of n × n particles
     /// with this h/dx.
     pub fn limits_in(&self, medium: &Medium, h_over_dx: f64, n: usize) -> TimeStepLimits {
-        self.limits([h_over_dx, medium.eta2_over_h2], n, &medium.waves(&self.uses))
+        let lattice = self.square(h_over_dx, medium.eta2_over_h2);
+        self.limits(&lattice, n, &medium.waves(&self.uses))
     }
 
-    /// The limits of a step by the waves of a periodic square lattice of n × n particles with these h/dx and
-    /// η²/h².
+    /// The limits of a step by the waves of a periodic square lattice of n × n particles.
     pub fn limits(
         &self,
-        lattice: [f64; 2],
+        lattice: &SquareLattice,
         n: usize,
         medium: &time_step::WaveMedium,
     ) -> TimeStepLimits {
-        TimeStepLimits::of(&time_step::modes(&self.square(lattice), n, medium), self.theory)
+        TimeStepLimits::of(&time_step::modes(lattice, n, medium), self.theory)
     }
 }

@@ -17,7 +17,7 @@ type Scheme = Compose<WendlandC2, Forces, Continuity, Open, Leapfrog<SuperSteps>
 fn the_step_from_which_super_time_stepping_counts_its_stages_is_that_of_forward_euler() {
     let method = <Method>::with::<Scheme>(|_| unreachable!("no scene is built"));
     let (h, nu) = (0.05, 2e-3);
-    let medium = Medium { nu, ..method.properties.medium(Tait::new(1.0, 1.0), [h, h]) };
+    let medium = Medium { nu, ..method.properties.medium(Tait::new(1.0, 1.0), h, h) };
     let by_hand = 2.0 / (1.1 * 35.0 / (2.0 * std::f64::consts::PI)) * h * h / nu;
     let Split(_, _, of_scheme) = Forces::new(&medium);
     for (limit, of) in [(medium.explicit_limit(), "medium"), (of_scheme, "scheme")] {
@@ -25,7 +25,7 @@ fn the_step_from_which_super_time_stepping_counts_its_stages_is_that_of_forward_
         assert!(apart < 1e-12, "the limit of the {of} is {limit} s, by hand it is {by_hand} s");
     }
     // Three stages allow (3² + 3 - 2)/4 = 2.5 of these steps, five 7, and a sweep more for all forces.
-    let limits = method.properties.limits([1.0, 0.0], 16, &medium.waves(&method.properties.uses));
+    let limits = method.properties.limits_in(&medium, 1.0, 16);
     for (ratio, sweeps) in [(2.49, 4.0), (2.51, 6.0), (6.99, 6.0), (7.01, 8.0)] {
         assert_eq!(limits.sweeps(ratio * by_hand), sweeps, "sweeps of a step of {ratio} limits");
     }

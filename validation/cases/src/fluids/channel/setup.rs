@@ -181,7 +181,7 @@ impl ChannelSetup {
             nu: s.nu,
             acceleration: along,
             wall_acceleration: along,
-            ..method.properties.medium(eos, [dx, h]).set_by(s)
+            ..method.properties.medium(eos, dx, h).set_by(s)
         };
         let limits = method.properties.limits_in(&medium, s.h_over_dx, LIMIT_BOX);
         let both = || Step::courant(s.courant, h, [sound_speed, v]).viscous(s.viscous, h, s.nu);
@@ -273,7 +273,7 @@ impl Problem for ChannelSetup {
         let own = [("V [m/s]", self.v), ("c0/V", c0 / self.v), ("c0 h/nu", c0 * h / s.nu)];
         let particles = s.rows as f64 * self.columns as f64;
         let mut brief = Brief::new(self.medium, self.rules, particles, DECISIVE)
-            .numbers(&self.rules.numbers([s.h_over_dx, dx]))
+            .numbers(&self.rules.numbers(s.h_over_dx, dx))
             .numbers(&own);
         brief.numbers.push(("columns", self.columns.into()));
         Brief { least_steps: s.least_steps, ..brief }

@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use nalgebra::Vector2;
 use touchstone_base::{
     record::MetricKey,
-    reference::{Reference, ReferenceError},
+    reference::{Reference, ReferenceError, Uncertain},
 };
 use touchstone_maths::{geometry::Hill, metrics::norms::rms};
 
@@ -78,7 +78,7 @@ impl HillReference {
 
     /// The number in the summary for a metric.
     pub fn number(&self, metric: MetricKey) -> Option<f64> {
-        Some(summary(self.re, &String::from(metric))[0]).filter(|value| value.is_finite())
+        Some(summary(self.re, &String::from(metric)).value).filter(|value| value.is_finite())
     }
 
     /// The velocity at x, at the share s of a section `gap` \[H\] high: a start that is near the flow, within
@@ -129,8 +129,8 @@ pub fn reference(re: f64) -> Option<&'static HillReference> {
     HillReference::of(&HillSettings { re, ..HillSettings::default() }).ok().flatten()
 }
 
-/// Value and uncertainty of a quantity of the summary at this Reynolds number; NaN if it has none.
-pub fn summary(re: f64, quantity: &str) -> [f64; 2] {
+/// A quantity of the summary at this Reynolds number; NaN if it has none.
+pub fn summary(re: f64, quantity: &str) -> Uncertain {
     Reference::summarised("periodic_hill", &[("re", &re.to_string()), ("quantity", quantity)])
 }
 

@@ -93,15 +93,15 @@ fn comparisons(tier: Tier, accuracy: &Accuracy) -> Comparisons {
     const BECAUSE: &str = "computed for the same inputs; u_D: meshes (`references/periodic_hill`)";
     let re = if tier == Tier::Quick { 10.0_f64 } else { 50.0 };
     let profiles = reference(re).map_or(f64::NAN, |reference| reference.uncertainty);
-    let [force, force_uncertainty] = summary(re, "force");
+    let force = summary(re, "force");
     let mut all = vec![
         ("u, rms [U_b]", L2_U, profiles),
         ("v, rms [U_b]", L2_V, profiles),
-        ("driving force", FORCE_ERROR, force_uncertainty / force),
+        ("driving force", FORCE_ERROR, force.uncertainty / force.value),
     ];
     if re > 10.0 {
-        all.push(("separation [H]", SEPARATION_ERROR, summary(re, "separation")[1]));
-        all.push(("reattachment [H]", REATTACHMENT_ERROR, summary(re, "reattachment")[1]));
+        all.push(("separation [H]", SEPARATION_ERROR, summary(re, "separation").uncertainty));
+        all.push(("reattachment [H]", REATTACHMENT_ERROR, summary(re, "reattachment").uncertainty));
     }
     let ladder =
         accuracy.ladders.iter().filter(|of| [RECOMMENDED, "interface-wall"].contains(&of.variant));

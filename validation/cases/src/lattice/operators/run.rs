@@ -51,7 +51,7 @@ pub(super) fn guard() -> Parameter {
 
 fn medium(method: &Method, s: &OperatorSettings) -> Medium {
     let dx = 1.0 / s.n as f64;
-    let medium = method.properties.medium(Tait::new(1.0, 1.0), [dx, s.h_over_dx * dx]);
+    let medium = method.properties.medium(Tait::new(1.0, 1.0), dx, s.h_over_dx * dx);
     // Viscosity as fast as sound.
     Medium { nu: medium.h * medium.eos.sound_speed, eta2_over_h2: ETA2, ..medium }
 }
@@ -100,7 +100,7 @@ impl OperatorVariant {
     fn symbol(&self, method: &Method, s: &OperatorSettings, weight: &dyn Fn(f64) -> f64) -> f64 {
         let (ratio, dx) = (s.h_over_dx, 1.0 / s.n as f64);
         let phase = K * dx;
-        let plain = method.properties.square([ratio, 0.0]);
+        let plain = method.properties.square(ratio, 0.0);
         let corrected = if self.is_corrected { plain.gradient_factor() } else { 1.0 };
         match self.operator {
             Operator::Density => {
@@ -113,7 +113,7 @@ impl OperatorVariant {
             Operator::Laplacian => {
                 let eta2 = if self.is_corrected { 0.0 } else { ETA2 };
                 let unit = WaveMedium { nu: 1.0, ..WaveMedium::of_sound(1.0, 1.0) };
-                let lattice = method.properties.square([ratio, eta2]);
+                let lattice = method.properties.square(ratio, eta2);
                 let mode = Mode::new(&lattice, Vector2::repeat(phase), &unit);
                 mode.viscous / (2.0 * (phase * ratio).powi(2)) / corrected
             }
@@ -225,7 +225,7 @@ impl Problem for Sampled {
     fn brief(&self) -> Brief {
         let OperatorSettings { n, h_over_dx, .. } = self.settings;
         Brief::new(self.medium, self.rules, (n * n) as f64, "n or steps")
-            .numbers(&self.rules.numbers([h_over_dx, self.medium.dx]))
+            .numbers(&self.rules.numbers(h_over_dx, self.medium.dx))
     }
 
     fn scene(&self) -> Result<Parts, RunError> {

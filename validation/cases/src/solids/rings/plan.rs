@@ -201,7 +201,7 @@ impl Distances<'_> {
         let mut gates = [RESTITUTION_ERROR, HEIGHT_MAX_ERROR, WIDTH_MIN_ERROR]
             .map(|metric| self.near_zero(metric, allowed))
             .to_vec();
-        let least = self.exact.number(WIDTH_MIN).map_or(f64::NAN, |[width, _]| width);
+        let least = self.exact.number(WIDTH_MIN).map_or(f64::NAN, |width| width.value);
         let flatter = softer * (2.0 * self.row.settings.outer / least - 1.0);
         if flatter > allowed {
             gates[2] = faces::soft(gates[2].clone(), Bound::Within(-flatter, allowed));

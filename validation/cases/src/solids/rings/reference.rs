@@ -3,7 +3,7 @@
 use touchstone_base::{
     absent::Absent,
     record::{MetricKey, Record},
-    reference::Reference,
+    reference::{Reference, Uncertain},
 };
 use touchstone_maths::metrics::{contact::ContactPhase, history, norms::rms};
 use touchstone_solver::lagrangian::{Hencky, Law as _};
@@ -65,7 +65,7 @@ pub fn compare(s: &RingSettings, phases: &[ContactPhase], found: &Histories, rec
     };
     for (quantity, error) in COMPARED {
         let pair = exact.number(quantity).zip(record.value(quantity));
-        let value = pair.map(|([exact, _], found)| found / exact - 1.0);
+        let value = pair.map(|(exact, found)| found / exact.value - 1.0);
         record.put_or(error, value, "the run has no number to compare");
     }
     exact.compare_phases(phases, record);
@@ -107,8 +107,8 @@ impl RingReference {
         })
     }
 
-    /// A number of the summary with its uncertainty.
-    pub fn number(&self, quantity: MetricKey) -> Option<[f64; 2]> {
+    /// A number of the summary.
+    pub fn number(&self, quantity: MetricKey) -> Option<Uncertain> {
         self.quantities.get(&String::from(quantity)).copied()
     }
 
@@ -201,14 +201,14 @@ mod tests {
         let at =
             |speed| RingReference::of("seed", &RingSettings { speed, ..RingSettings::default() });
         let paper = at(0.059).expect("the paper's speed");
-        let [restitution, spread] = paper.number(RESTITUTION).expect("measured");
-        assert!((restitution - 0.8004).abs() < 1e-3 && spread < 0.01);
+        let restitution = paper.number(RESTITUTION).expect("measured");
+        assert!((restitution.value - 0.8004).abs() < 1e-3 && restitution.uncertainty < 0.01);
         assert!(at(0.03).is_some() && at(0.12).is_none());
         assert!((paper.phases[0][0] - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
         let start = paper.histories.iter().map(|points| points[0].1).collect::<Vec<f64>>();
         assert_eq!(start, [5.0, -0.059, 8.0, 8.0]);
         let other = RingReference::of(LAGRANGIAN, &RingSettings::default()).expect("its law");
-        assert_eq!(other.number(RESTITUTION).map(|[value, _]| value), Some(0.795617));
+        assert_eq!(other.number(RESTITUTION).map(|found| found.value), Some(0.795617));
         let softer = RingSettings { shear_modulus: 0.2, ..RingSettings::default() };
         assert!(RingReference::of("seed", &softer).is_none());
     }

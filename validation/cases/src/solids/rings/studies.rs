@@ -163,7 +163,7 @@ fn comparisons(accuracy: &Accuracy) -> Comparisons {
     let of = |ladder: &Ladder| {
         let exact = RingReference::of(ladder.variant, &RingSettings::default())?;
         let share =
-            |quantity| exact.number(quantity).map_or(f64::NAN, |[value, spread]| spread / value);
+            |quantity| exact.number(quantity).map_or(f64::NAN, |of| of.uncertainty / of.value);
         let quantities = [
             ("histories", HISTORIES, exact.uncertainty),
             ("restitution", RESTITUTION_ERROR, share(RESTITUTION)),

@@ -5,21 +5,21 @@ use std::collections::BTreeMap;
 use nalgebra::Vector2;
 use touchstone_base::{
     record::{MetricKey, Record},
-    reference::Reference,
+    reference::{Reference, Uncertain},
 };
 use touchstone_maths::metrics::path::{Path, PathPoint};
 
 /// Columns of a table with the texts that rows have in them.
 type Texts<'a> = &'a [(&'a str, &'a str)];
 
-/// Quantities by name, each with its uncertainty.
-pub type Quantities = BTreeMap<String, [f64; 2]>;
+/// Quantities by name.
+pub type Quantities = BTreeMap<String, Uncertain>;
 
 /// The quantities in the rows of the summary of a package with these texts.
 pub fn quantities(package: &str, of: Texts) -> Option<Quantities> {
     let summary = Reference::load(package).ok()?.table("summary").ok()?;
     let (names, rows) = (summary.texts("quantity").ok()?, summary.rows_of(of).ok()?);
-    let numbers = summary.select(of, ["value", "uncertainty"]).ok()?;
+    let numbers = summary.uncertain(of).ok()?;
     Some(rows.into_iter().map(|row| names[row].to_string()).zip(numbers).collect())
 }
 
@@ -42,7 +42,7 @@ impl Elements {
 
     /// A quantity.
     pub fn number(&self, name: &str) -> Option<f64> {
-        self.quantities.get(name).map(|[value, _]| *value)
+        self.quantities.get(name).map(|number| number.value)
     }
 }
 

@@ -10,10 +10,10 @@ use touchstone_solver::{Linear, Tait};
 use super::lagrangian;
 
 /// The medium of a method at this spacing \[m\] and smoothing length \[m\], without any stabilisation.
-pub fn medium_of(material: &Material, method: &Properties, lengths: [f64; 2]) -> Medium {
+pub fn medium_of(material: &Material, method: &Properties, dx: f64, h: f64) -> Medium {
     let Linear { density, sound_speed } = material.eos();
     let eos = Tait { density, sound_speed, gamma: 7, background: 0.0 };
-    Medium { shear_modulus: material.shear, ..method.medium(eos, lengths) }
+    Medium { shear_modulus: material.shear, ..method.medium(eos, dx, h) }
 }
 
 /// Side of the periodic box whose waves give the limit of the time step.
@@ -48,7 +48,7 @@ pub fn limits(
     let wave = material.p_wave_speed();
     let alpha = medium.alpha * material.sound_speed() / wave;
     let waves = time_step::WaveMedium { alpha, ..time_step::WaveMedium::of_sound(wave, medium.h) };
-    let limits = method.limits([h_over_dx, 0.01], LIMIT_BOX, &waves);
+    let limits = method.limits(&method.square(h_over_dx, 0.01), LIMIT_BOX, &waves);
     // Both kinds of waves have the rates of one gradient.
     let shear = limits.alone(Mechanism::Waves) * wave / material.shear_wave_speed();
     limits.with(Mechanism::ShearWaves, shear).with(Mechanism::Contact, meeting)
@@ -69,7 +69,7 @@ mod tests {
         let method = touchstone_schemes::solid::clamped_plain();
         let limit = |shear: f64, alpha: f64| {
             let material = Material { density: 1.0, bulk: 1.0, shear };
-            let medium = Medium { alpha, ..medium_of(&material, &method.properties, [1.0, 1.5]) };
+            let medium = Medium { alpha, ..medium_of(&material, &method.properties, 1.0, 1.5) };
             limits(&method.properties, &material, &medium, 1.5, 0.0).together
                 * material.p_wave_speed()
         };
@@ -87,7 +87,7 @@ mod tests {
     /// the start.
     fn growth(of_limit: f64) -> f64 {
         let method = corrected();
-        let medium = medium_of(&RUBBER, &method.properties, [1.0, 1.5]);
+        let medium = medium_of(&RUBBER, &method.properties, 1.0, 1.5);
         let dt = of_limit * limits(&method.properties, &RUBBER, &medium, 1.5, 0.0).together;
         let noise = |k: usize| 1e-12 * ((k as f64 * 0.618_033_988_749_895).fract() - 0.5);
         let places = touchstone_solver::lattice(Vector2::repeat(0.5), 1.0, SIDE, SIDE).enumerate();
@@ -111,10 +111,10 @@ mod tests {
     #[test]
     fn correction_lengthens_the_step_by_the_factor_of_gradients() {
         fn limit(method: Properties) -> f64 {
-            limits(&method, &RUBBER, &medium_of(&RUBBER, &method, [1.0, 1.5]), 1.5, 0.0).together
+            limits(&method, &RUBBER, &medium_of(&RUBBER, &method, 1.0, 1.5), 1.5, 0.0).together
         }
         let ratio = limit(corrected().properties) / limit(bare().properties);
-        let factor = bare().properties.square([1.5, 0.0]).gradient_factor();
+        let factor = bare().properties.square(1.5, 0.0).gradient_factor();
         assert!((ratio / factor - 1.0).abs() < 1e-12 && factor > 1.006, "{ratio} {factor}");
     }
 }

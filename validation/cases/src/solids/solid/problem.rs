@@ -164,7 +164,7 @@ pub fn leave_out(settings: &mut dyn Values, names: &[&str]) {
 pub fn medium(settings: &impl ElasticBody, method: &Properties) -> Medium {
     let SolidScales { dx, gravity, .. } = settings.scales();
     let SolidParameters { material, h_over_dx, .. } = settings.common();
-    let medium = medium_of(&material, method, [dx, h_over_dx * dx]);
+    let medium = medium_of(&material, method, dx, h_over_dx * dx);
     Medium { acceleration: gravity, ..medium }.set_by(settings)
 }
 
@@ -223,7 +223,7 @@ impl<B: ElasticBody> Problem for Solid<B> {
         let Self { medium, rules, scales, .. } = self;
         let SolidParameters { material, h_over_dx, .. } = self.body.common();
         let brief = Brief::new(*medium, *rules, scales.count, scales.decisive)
-            .numbers(&rules.numbers([h_over_dx, medium.dx]))
+            .numbers(&rules.numbers(h_over_dx, medium.dx))
             .numbers(&[
                 ("K [Pa]", material.bulk),
                 ("mu [Pa]", material.shear),

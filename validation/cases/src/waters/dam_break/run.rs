@@ -168,7 +168,7 @@ impl Problem for Dam {
             RunError::Combination { key: "variant", value, allowed }
         });
         let brief = Brief::new(*medium, self.rules, all, DECISIVE)
-            .numbers(&self.rules.numbers([self.settings.water.h_over_dx, medium.dx]));
+            .numbers(&self.rules.numbers(self.settings.water.h_over_dx, medium.dx));
         Brief { unstable, ..brief }
     }
 

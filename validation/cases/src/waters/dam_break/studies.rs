@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use touchstone_base::{
     mutation::{Constant, Mutation},
     record::{MetricName, Status},
-    reference::Reference,
+    reference::{Reference, Uncertain},
 };
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
@@ -91,9 +91,11 @@ fn card(accuracy: &Accuracy) -> Card {
             let in_tank = "front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}";
             let (name, uncertainty, unit) = match run.settings_as::<DamSettings>().scene() {
                 Some(Experiment::MartinMoyce) => {
-                    (front, 2.0 * vof("martin_moyce", "front_at_1")[1], "a")
+                    (front, 2.0 * vof("martin_moyce", "front_at_1").uncertainty, "a")
                 }
-                Some(Experiment::Lobovsky) => (in_tank, vof("lobovsky", "front_at_2")[1], "H"),
+                Some(Experiment::Lobovsky) => {
+                    (in_tank, vof("lobovsky", "front_at_2").uncertainty, "H")
+                }
                 None => ("front, dx a part of 1/{n} of the column", f64::NAN, "a"),
             };
             let uncertainty = Some(uncertainty).filter(|u| u.is_finite());
@@ -186,8 +188,16 @@ fn front() -> SubmittedCurve {
 fn comparisons(tier: Tier, table: &Table) -> Comparisons {
     // Compared quantity, its metric, and u_D as a method.
     let column = [
-        ("front at T = 2 [a]", FRONT_AWAY.at(2), 2.0 * vof("martin_moyce", "front_at_1")[1]),
-        ("residual height, rms [H]", HEIGHT_AWAY.into(), vof("martin_moyce", "height_at_1.65")[1]),
+        (
+            "front at T = 2 [a]",
+            FRONT_AWAY.at(2),
+            2.0 * vof("martin_moyce", "front_at_1").uncertainty,
+        ),
+        (
+            "residual height, rms [H]",
+            HEIGHT_AWAY.into(),
+            vof("martin_moyce", "height_at_1.65").uncertainty,
+        ),
     ];
     let measured_column = [
         ("front after its best shift, rms [a]", FRONT.rms_shifted.into(), FRONT_SPREAD),
@@ -196,8 +206,16 @@ fn comparisons(tier: Tier, table: &Table) -> Comparisons {
     let mut all = compared(table, Group::Ladder, 0.005 / 2.25, &column, &measured_column);
     if tier == Tier::Full {
         let mut tank = vec![
-            ("tank: front at t = 2 [H]", FRONT_AWAY.at(2), vof("lobovsky", "front_at_2")[1]),
-            ("tank: level at H4, rms [H]", LEVEL_AWAY[3].into(), vof("lobovsky", "H4_at_5")[1]),
+            (
+                "tank: front at t = 2 [H]",
+                FRONT_AWAY.at(2),
+                vof("lobovsky", "front_at_2").uncertainty,
+            ),
+            (
+                "tank: level at H4, rms [H]",
+                LEVEL_AWAY[3].into(),
+                vof("lobovsky", "H4_at_5").uncertainty,
+            ),
         ];
         let [front, levels] = [
             "tank: front after its best shift, rms [H]",
@@ -209,8 +227,8 @@ fn comparisons(tier: Tier, table: &Table) -> Comparisons {
         ];
         let sensors = ["impulse on P1", "impulse on P2", "impulse on P3", "impulse on P4"];
         for (k, what) in sensors.into_iter().enumerate() {
-            let [value, uncertainty] = vof("lobovsky", &format!("impulse_P{}_1", k + 1));
-            tank.push((what, IMPULSE_AWAY[k].at(1), uncertainty / value));
+            let impulse = vof("lobovsky", &format!("impulse_P{}_1", k + 1));
+            tank.push((what, IMPULSE_AWAY[k].at(1), impulse.uncertainty / impulse.value));
             measured_tank.push((what, IMPULSE[k].at(1), IMPULSE_SPREAD));
         }
         all.extend(compared(table, Group::Tank, 0.5 / 300.0, &tank, &measured_tank));
@@ -218,8 +236,8 @@ fn comparisons(tier: Tier, table: &Table) -> Comparisons {
     Comparisons(all)
 }
 
-/// A value of the reference by volume of fluid and its uncertainty.
-fn vof(scene: &str, name: &str) -> [f64; 2] {
+/// A number of the reference by volume of fluid.
+fn vof(scene: &str, name: &str) -> Uncertain {
     Reference::summarised("dam_break_vof", &[("scene", scene), ("quantity", name)])
 }
 

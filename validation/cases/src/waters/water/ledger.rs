@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn momentum_that_no_force_explains_is_the_gap() {
-        let medium = modern().properties.medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
+        let medium = modern().properties.medium(Tait::new(1000.0, 20.0), 0.01, 0.015);
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
         // A free fall: gravity supplies the momentum of the water.
         let mut falling = particles(&medium, 0.0, Vector2::zeros());
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn energy_that_no_term_gave_is_the_gap_and_works_are_integrals_over_the_scale() {
-        let medium = modern().properties.medium(Tait::new(1000.0, 20.0), [0.01, 0.015]);
+        let medium = modern().properties.medium(Tait::new(1000.0, 20.0), 0.01, 0.015);
         let medium = Medium { acceleration: Vector2::new(0.0, -10.0), ..medium };
         let mut ledger = Ledger::default();
         // 6 kg/m: at rest; 0.2 m higher, 12 J/m; at 3 m/s, 27 J/m.

@@ -25,12 +25,13 @@ const ETA2: f64 = 0.01;
 pub fn limits(
     method: &Properties,
     medium: &Medium,
-    [h_over_dx, c0]: [f64; 2],
+    h_over_dx: f64,
+    c0: f64,
     n: usize,
 ) -> TimeStepLimits {
     let waves =
         touchstone_maths::theory::time_step::WaveMedium { c0, ..medium.waves(&method.uses) };
-    method.limits([h_over_dx, ETA2], n, &waves)
+    method.limits(&method.square(h_over_dx, ETA2), n, &waves)
 }
 
 /// Water of a medium at rest under its gravity.
@@ -125,10 +126,10 @@ impl WaterSettings {
         let medium = Medium {
             acceleration: down,
             wall_acceleration: down,
-            ..method.properties.medium(eos, [dx, h]).set_by(self)
+            ..method.properties.medium(eos, dx, h).set_by(self)
         };
         let step = Step::courant(self.courant, h, [c0, speed]);
-        let limits = limits(&method.properties, &medium, [self.h_over_dx, c0], 24);
+        let limits = limits(&method.properties, &medium, self.h_over_dx, c0, 24);
         let (step, limits) = (step.or_given(self.dt), limits.moving(h, speed, gravity));
         (medium, Rules { step, limits, sound_speed: c0, end })
     }
