@@ -43,14 +43,19 @@ pub struct Part {
 }
 
 impl Breakdown {
-    /// Seconds of the stepping and of observing \[s\].
-    pub fn totals(&self) -> [f64; 2] {
-        [&self.stepping, &self.observing].map(|parts| parts.iter().map(|part| part.seconds).sum())
+    /// Seconds of the stepping \[s\].
+    pub fn stepping_seconds(&self) -> f64 {
+        self.stepping.iter().map(|part| part.seconds).sum()
+    }
+
+    /// Seconds of observing \[s\].
+    pub fn observing_seconds(&self) -> f64 {
+        self.observing.iter().map(|part| part.seconds).sum()
     }
 
     /// The share of the stepping that these parts have together.
     pub fn share(&self, names: &[&str]) -> f64 {
         let named = self.stepping.iter().filter(|part| names.contains(&&*part.name));
-        named.map(|part| part.seconds).sum::<f64>() / self.totals()[0]
+        named.map(|part| part.seconds).sum::<f64>() / self.stepping_seconds()
     }
 }

@@ -15,7 +15,7 @@ use touchstone_harness::{
     gates::GateIndex,
     method::{Medium, MediumSetting, Properties},
     outline::Outline,
-    relation::Relation,
+    relation::{Relation, SI, Units},
     sealed,
 };
 
@@ -411,8 +411,8 @@ impl ExportedProblem {
 
     /// In which units numbers are.
     fn units(&self) -> String {
-        let units @ [length, time, mass] = self.outline.view.units();
-        if units == [1.0; 3] {
+        let units @ Units { length, time, mass } = self.outline.view.units();
+        if units == SI {
             return "All numbers are in SI units, in two dimensions, masses per unit depth.".into();
         }
         format!(

@@ -38,7 +38,7 @@ pub fn run(
         Ok(criterion.map_or(one.status == Status::Completed, |is_stable| is_stable(&one)))
     };
     match largest_stable(bisect.guess, bisect.resolution, is_stable) {
-        Ok(Some([stable, unstable])) => {
+        Ok(Some(Bracket { stable, unstable })) => {
             record.put(STABLE, stable);
             record.put(UNSTABLE, unstable);
         }
@@ -95,7 +95,14 @@ const FIRST_WIDTH: f64 = 0.04;
 /// The farthest that a limit may be from the guess, as a factor.
 const FARTHEST: f64 = 16.0;
 
-/// The longest stable step and the shortest unstable one that were tried, at most `resolution` times `guess`
+/// The longest stable step and the shortest unstable one that were tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Bracket {
+    stable: f64,
+    unstable: f64,
+}
+
+/// The bracket of the limit, at most `resolution` times `guess`
 /// apart. The guess affects the number of runs, not the result: the bracket grows until it contains the
 /// limit. `None` if there is no limit within a factor of 16 of the guess.
 ///
@@ -105,12 +112,12 @@ fn largest_stable(
     guess: f64,
     resolution: f64,
     mut is_stable: impl FnMut(f64) -> Result<bool, SearchEnd>,
-) -> Result<Option<[f64; 2]>, SearchEnd> {
+) -> Result<Option<Bracket>, SearchEnd> {
     let (mut width, mut longest, mut shortest) = (FIRST_WIDTH, None, None);
     let mut step = guess * (1.0 - width);
-    let [mut stable, mut unstable] = loop {
+    let Bracket { mut stable, mut unstable } = loop {
         if let (Some(stable), Some(unstable)) = (longest, shortest) {
-            break [stable, unstable];
+            break Bracket { stable, unstable };
         }
         if !(guess / FARTHEST..=guess * FARTHEST).contains(&step) {
             return Ok(None);
@@ -128,7 +135,7 @@ fn largest_stable(
         let middle = 0.5 * (stable + unstable);
         if is_stable(middle)? { stable = middle } else { unstable = middle }
     }
-    Ok(Some([stable, unstable]))
+    Ok(Some(Bracket { stable, unstable }))
 }
 
 /// Energy that counts as growth beyond doubt, in units of the energy at the start.
@@ -192,14 +199,15 @@ mod tests {
         guess: f64,
         resolution: f64,
         mut is_stable: impl FnMut(f64) -> bool,
-    ) -> Option<[f64; 2]> {
+    ) -> Option<Bracket> {
         largest_stable(guess, resolution, |x| Ok(is_stable(x))).expect("nothing fails")
     }
 
     #[test]
     fn bisection_finds_a_limit_far_from_the_guess() {
         for limit in [0.2, 0.9, 0.999, 1.0, 1.03, 1.5, 7.0] {
-            let [stable, unstable] = limit_of(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
+            let Bracket { stable, unstable } =
+                limit_of(1.0, 1e-3, |dt| dt <= limit).expect("a limit");
             assert!(stable <= limit && limit <= unstable, "{limit}: {stable} to {unstable}");
             assert!(unstable - stable <= 1e-3);
         }
@@ -213,7 +221,7 @@ mod tests {
             x <= limit
         };
         let found = limit_of(1.0, 0.5, is_stable);
-        assert!(found.is_none_or(|[stable, unstable]| stable <= limit && limit < unstable));
+        assert!(found.is_none_or(|of| of.stable <= limit && limit < of.unstable));
         tried
     }
 
@@ -390,7 +398,7 @@ mod tests {
             }
             !growth.grew()
         };
-        let [stable, unstable] = limit_of(1.6, 1e-3, is_stable).expect("a limit");
+        let Bracket { stable, unstable } = limit_of(1.6, 1e-3, is_stable).expect("a limit");
         let middle = 0.5 * (stable + unstable);
         assert!((middle / 1.7 - 1.0).abs() < 3e-3, "{middle}");
     }

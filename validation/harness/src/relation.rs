@@ -73,16 +73,33 @@ impl Relation {
 /// Why a relation does not hold for a scene.
 pub type NoSymmetry = &'static str;
 
-/// Exponents of length, time and mass per length.
-pub type Unit = [i32; 3];
+/// Numbers of length, time and mass per length.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units<T> {
+    /// Length \[m\].
+    pub length: T,
+    /// Time \[s\].
+    pub time: T,
+    /// Mass per length \[kg/m\].
+    pub mass: T,
+}
+
+/// SI units.
+pub const SI: Units<f64> = Units { length: 1.0, time: 1.0, mass: 1.0 };
+
+/// Inverses of 1/8 m, 1/32 s and 4 kg/m.
+const BINARY: Units<f64> = Units { length: 8.0, time: 32.0, mass: 0.25 };
+
+/// The unit of a quantity, by exponents.
+pub type Unit = Units<i32>;
 /// \[m\].
-pub const LENGTH: Unit = [1, 0, 0];
+pub const LENGTH: Unit = Unit { length: 1, time: 0, mass: 0 };
 /// \[s\].
-pub const TIME: Unit = [0, 1, 0];
+pub const TIME: Unit = Unit { length: 0, time: 1, mass: 0 };
 /// \[kg/m³\].
-pub const DENSITY: Unit = [-2, 0, 1];
-const SPEED: Unit = [1, -1, 0];
-const PRESSURE: Unit = [0, -2, 1];
+pub const DENSITY: Unit = Unit { length: -2, time: 0, mass: 1 };
+const SPEED: Unit = Unit { length: 1, time: -1, mass: 0 };
+const PRESSURE: Unit = Unit { length: 0, time: -2, mass: 1 };
 
 /// The frame of an observer: x' = (Q x + s + U t)/\[L\], v' = (Q v + U) \[T\]/\[L\], in units \[L\] m, \[T\]
 /// s and \[M\] kg/m.
@@ -93,14 +110,14 @@ pub struct View {
     shift: Vector2<f64>,
     boost: Vector2<f64>,
     /// 1/\[L\], 1/\[T\], 1/\[M\].
-    units: [f64; 3],
+    units: Units<f64>,
 }
 
 impl Default for View {
     /// Our own frame.
     fn default() -> Self {
         let (turn, shift, boost) = (Matrix2::identity(), Vector2::zeros(), Vector2::zeros());
-        Self { relation: Same, turn, shift, boost, units: [1.0; 3] }
+        Self { relation: Same, turn, shift, boost, units: SI }
     }
 }
 
@@ -132,21 +149,27 @@ impl View {
                 let boost = direction(medium, mirrors, moves)? * (0.5 * medium.sound_speed);
                 View { boost, ..same }
             }
-            BinaryUnits => View { units: [8.0, 32.0, 0.25], ..same },
+            BinaryUnits => View { units: BINARY, ..same },
             // 1 ft = 0.3048 m, 1 lb = 0.45359237 kg.
-            OtherUnits => View { units: [1.0 / 0.3048, 1.0 / 60.0, 0.3048 / 0.453_592_37], ..same },
+            OtherUnits => {
+                let units =
+                    Units { length: 1.0 / 0.3048, time: 1.0 / 60.0, mass: 0.3048 / 0.453_592_37 };
+                View { units, ..same }
+            }
             Shifted => View { shift: Vector2::new(along(0, 17.3), along(1, -11.9)), ..same },
         })
     }
 
     /// The units of length \[m\], of time \[s\] and of mass a depth \[kg/m\].
-    pub fn units(&self) -> [f64; 3] {
-        self.units.map(|inverse| 1.0 / inverse)
+    pub fn units(&self) -> Units<f64> {
+        let Units { length, time, mass } = self.units;
+        Units { length: 1.0 / length, time: 1.0 / time, mass: 1.0 / mass }
     }
 
     /// The factor of a quantity with this unit.
     pub fn scale(&self, unit: Unit) -> f64 {
-        (0..3).map(|k| self.units[k].powi(unit[k])).product()
+        let Units { length, time, mass } = self.units;
+        length.powi(unit.length) * time.powi(unit.time) * mass.powi(unit.mass)
     }
 
     /// The most of a speed \[m/s\].
@@ -180,7 +203,9 @@ impl View {
     /// The material and its forces.
     pub fn medium(&self, m: Medium) -> Medium {
         let in_unit = |number: f64, unit| number * self.scale(unit);
-        let turned = |acceleration| self.turn * acceleration * self.scale([1, -2, 0]);
+        let turned = |acceleration| {
+            self.turn * acceleration * self.scale(Unit { length: 1, time: -2, mass: 0 })
+        };
         Medium {
             eos: Tait {
                 density: in_unit(m.eos.density, DENSITY),
@@ -192,8 +217,8 @@ impl View {
             sound_speed: in_unit(m.sound_speed, SPEED),
             dx: in_unit(m.dx, LENGTH),
             h: in_unit(m.h, LENGTH),
-            w_at_spacing: in_unit(m.w_at_spacing, [-2, 0, 0]),
-            nu: in_unit(m.nu, [2, -1, 0]),
+            w_at_spacing: in_unit(m.w_at_spacing, Unit { length: -2, time: 0, mass: 0 }),
+            nu: in_unit(m.nu, Unit { length: 2, time: -1, mass: 0 }),
             shear_modulus: in_unit(m.shear_modulus, PRESSURE),
             acceleration: turned(m.acceleration),
             wall_acceleration: turned(m.wall_acceleration),
@@ -225,7 +250,9 @@ impl View {
             point: self.place(wall.point),
             normal: self.turn * wall.normal,
             velocity: self.velocity(wall.velocity),
-            curvature: self.turn * wall.curvature * self.scale([-1, -1, 0]),
+            curvature: self.turn
+                * wall.curvature
+                * self.scale(Unit { length: -1, time: -1, mass: 0 }),
         }
     }
 
@@ -237,7 +264,7 @@ impl View {
             X::of_stress(Symmetric::new(turned.m11, turned.m22, turned.m12))
         });
         let (position, velocity) = (self.place(p.position), self.velocity(p.velocity));
-        let (density, mass) = (p.density * self.scale(DENSITY), p.mass * self.units[2]);
+        let (density, mass) = (p.density * self.scale(DENSITY), p.mass * self.units.mass);
         Particle { position, velocity, density, mass, extra, ..*p }
     }
 
@@ -290,7 +317,7 @@ mod tests {
     /// 1 m/s is at most 6 m/s for an observer who moves with 5 m/s, in his units.
     #[test]
     fn the_largest_speed_is_that_against_the_observer() {
-        let (boost, units) = (Vector2::new(3.0, -4.0), [8.0, 32.0, 0.25]);
+        let (boost, units) = (Vector2::new(3.0, -4.0), BINARY);
         let view = View { boost, units, ..View::default() };
         assert_eq!(view.speed(1.0), 6.0 * 8.0 / 32.0);
     }
@@ -301,10 +328,10 @@ mod tests {
     fn the_stress_of_a_particle_is_turned_with_it() {
         let (c, s) = (0.8, 0.6);
         for (turn, units) in [
-            (Matrix2::new(c, -s, s, c), [1.0; 3]),
-            (Matrix2::new(-1.0, 0.0, 0.0, 1.0), [1.0; 3]),
-            (Matrix2::identity(), [8.0, 32.0, 0.25]),
-            (Matrix2::new(c, s, -s, c), [2.0, 0.5, 3.0]),
+            (Matrix2::new(c, -s, s, c), SI),
+            (Matrix2::new(-1.0, 0.0, 0.0, 1.0), SI),
+            (Matrix2::identity(), BINARY),
+            (Matrix2::new(c, s, -s, c), Units { length: 2.0, time: 0.5, mass: 3.0 }),
         ] {
             let view = View { turn, units, ..View::default() };
             let [xx, yy, xy] = [1.0, -2.0, 0.5];
@@ -314,7 +341,7 @@ mod tests {
             let seen = view.particle(&Particle { role, position, velocity, density, mass, extra });
             let matrix = |s: Symmetric| Matrix2::new(s.xx, s.xy, s.xy, s.yy);
             // N/m² is kg/m in a plane by m and s².
-            let unit = units[2] / (units[1] * units[1]);
+            let unit = units.mass / (units.time * units.time);
             for normal in [Vector2::x(), Vector2::y(), Vector2::new(0.28, 0.96)] {
                 let force = matrix(seen.extra) * (turn * normal);
                 let expected = turn * matrix(extra) * normal * unit;

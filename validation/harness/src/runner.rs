@@ -721,8 +721,9 @@ mod tests {
         let all = found.2.breakdown.as_ref().unwrap();
         // Both look at the clock, one after the other: one try in five without a pause between them.
         let adds_up = |cost: &Cost| {
-            let [stepping, observing] = cost.breakdown.as_ref().unwrap().totals();
-            let shares = [stepping / cost.wall_s, observing / cost.observing_s];
+            let all = cost.breakdown.as_ref().unwrap();
+            let stepping = all.stepping_seconds() / cost.wall_s;
+            let shares = [stepping, all.observing_seconds() / cost.observing_s];
             shares.iter().all(|share| (share - 1.0).abs() < 0.05)
         };
         assert!(adds_up(&found.2) || (0..4).any(|_| adds_up(&profiled(true).2)), "{found:?}");

@@ -10,7 +10,7 @@ use super::output;
 
 /// The parts of the time in percent, and the work of pair sweeps.
 pub fn tables(cost: &Cost, breakdown: &Breakdown) -> String {
-    let [stepping, observing] = breakdown.totals();
+    let (stepping, observing) = (breakdown.stepping_seconds(), breakdown.observing_seconds());
     let (steps, all) = (breakdown.steps as f64, stepping + observing);
     let row = |name: &str, spent: f64, times: String| {
         let nanoseconds = 1e9 * spent / (steps * cost.particles as f64);

@@ -19,12 +19,18 @@ use crate::{
     study::Study,
 };
 
-/// Roache's factor of safety for an order tested by levels, and the divisor that turns his index, which is
-/// one-sided, into a standard uncertainty (V&V 20, section 2).
-const TESTED: [f64; 2] = [1.25, 1.15];
-/// The factor of Eça & Hoekstra (2014) without a tested order, and the divisor that turns this two-sided
-/// uncertainty of 95 % into a standard one.
-const UNTESTED: [f64; 2] = [3.0, 2.0];
+/// From the distance to the limit of refinement to its uncertainty.
+struct Safety {
+    /// The factor to the uncertainty of 95 %.
+    factor: f64,
+    /// The divisor that turns this into a standard uncertainty.
+    coverage: f64,
+}
+
+/// Roache's factor for an order tested by levels; his index is one-sided (V&V 20, section 2).
+const TESTED: Safety = Safety { factor: 1.25, coverage: 1.15 };
+/// The factor of Eça & Hoekstra (2014) without a tested order, to a two-sided uncertainty.
+const UNTESTED: Safety = Safety { factor: 3.0, coverage: 2.0 };
 /// The largest order that differences of three levels may show: a higher one than the method has is a
 /// coincidence, not a limit that is approached.
 const FASTEST: f64 = 2.5;
@@ -235,48 +241,45 @@ fn magnitudes(levels: &[ErrorLevel]) -> Vec<ErrorLevel> {
 /// three times the distance from the limit of this order; else three times the range of the last three
 /// levels, or the distance of the only two.
 pub fn numerical(levels: &[ErrorLevel]) -> Numerical {
-    let found = |[limit, distance]: [f64; 2],
-                 [factor, coverage]: [f64; 2],
-                 order: Option<String>,
-                 how: &str| {
-        let (expanded, has_order) = (factor * distance, order.is_some());
+    let found = |limit: f64, distance: f64, safety: Safety, order: Option<String>, how: &str| {
+        let (expanded, has_order) = (safety.factor * distance, order.is_some());
         let how = order.map_or(how.into(), |order| format!("order {order}{how}"));
-        Numerical { expanded, standard: expanded / coverage, limit, has_order, how }
+        Numerical { expanded, standard: expanded / safety.coverage, limit, has_order, how }
     };
     let finest = &levels[levels.len().saturating_sub(3)..];
     let values = finest.iter().map(|level| level.value);
     let range = values.clone().fold(f64::NAN, f64::max) - values.fold(f64::NAN, f64::min);
-    let unknown = |how| found([f64::NAN; 2], UNTESTED, None, how);
+    let unknown = |how| found(f64::NAN, f64::NAN, UNTESTED, None, how);
     let [coarse, middle, fine] = match finest {
         levels if levels.iter().any(|level| !level.value.is_finite()) => {
             return unknown("a level is missing");
         }
         [] | [_] => return unknown("one level"),
-        [_, fine] => return found([fine.value, range], UNTESTED, None, "distance of two levels"),
+        [_, fine] => return found(fine.value, range, UNTESTED, None, "distance of two levels"),
         [coarse, middle, fine, ..] => [coarse, middle, fine],
     };
     let [first, last] = [middle.value - coarse.value, fine.value - middle.value];
     let [wide, ratio] = [coarse.spacing / middle.spacing, middle.spacing / fine.spacing];
-    let by_order = |order: f64| {
+    let by_order = |order: f64, safety, words, how| {
         let left = last / (powf(ratio, order) - 1.0);
-        [fine.value + left, left.abs()]
+        found(fine.value + left, left.abs(), safety, Some(words), how)
     };
     let is_of_one_sign = levels.iter().all(|level| level.value * fine.value > 0.0);
     let of_all = convergence(&magnitudes(levels), None).ok();
     let tested =
         of_all.filter(|of| of.label.is_one_order() && of.order >= SLOWEST && is_of_one_sign);
     if let Some(of) = tested {
-        return found(by_order(of.order), TESTED, Some(of.in_words()), "");
+        return by_order(of.order, TESTED, of.in_words(), "");
     }
-    match order_of_differences(first / last, [wide, ratio]) {
-        Some(order) => found(by_order(order), UNTESTED, Some(sig(order, 2)), " of differences"),
-        None => found([fine.value, range], UNTESTED, None, "no order: range of three levels"),
+    match order_of_differences(first / last, wide, ratio) {
+        Some(order) => by_order(order, UNTESTED, sig(order, 2), " of differences"),
+        None => found(fine.value, range, UNTESTED, None, "no order: range of three levels"),
     }
 }
 
 /// The order p of (h₁ᵖ − h₂ᵖ)/(h₂ᵖ − h₃ᵖ) = this ratio of differences, by Celik's iteration (2008); none if
 /// the differences do not shrink, change their sign, or shrink too slowly or too fast.
-fn order_of_differences(differences: f64, [wide, ratio]: [f64; 2]) -> Option<f64> {
+fn order_of_differences(differences: f64, wide: f64, ratio: f64) -> Option<f64> {
     let next = |p: f64| {
         let uneven = (powf(ratio, p) - 1.0) / (powf(wide, p) - 1.0);
         (ln(differences * uneven) / ln(ratio)).clamp(SLOWEST, FASTEST)
