@@ -22,6 +22,8 @@ pub struct Facts {
     pub of_methods: &'static [MetricKey],
     /// The metrics that are rates over a very short time, which results with few digits do not determine.
     pub of_all_digits: &'static [MetricKey],
+    /// A variant that was added after the first results of other codes.
+    pub late_variant: Option<&'static str>,
     /// Facts for another code in addition to the scene.
     pub statement: Statement,
     /// Metrics of a profile or a series from another code without particles.

@@ -1,4 +1,4 @@
-//! The look of a curve, by the variant or the code of which it is: one colour in all figures of a page.
+//! The look of a curve by its subject, a variant or a code: one colour in all figures of a page.
 
 use touchstone_report::{
     Colour, Dash, Look, Series,
@@ -43,10 +43,8 @@ const KNOWN: [(&str, Colour, Dash, Shape); 31] = [
     ("salva2d", Colour::SKY, Dotted, Diamond),
 ];
 
-/// The look of a curve whose name begins with a variant or a code, before a comma; that of the `k`th of many
-/// curves for any other name.
-pub fn look_of(name: &str, k: usize) -> Look {
-    let subject = name.split(',').next().unwrap_or_default();
+/// The look of curves of a variant or a code; for any other subject, of the `k`th of many curves.
+pub fn look_of(subject: &str, k: usize) -> Look {
     let cycled = Series::line("", Vec::new()).cycle(k).look;
     let known = KNOWN.iter().find(|known| known.0 == subject);
     known.map_or(cycled, |&(_, colour, dash, shape)| Look {
@@ -58,11 +56,9 @@ pub fn look_of(name: &str, k: usize) -> Look {
     })
 }
 
-/// A line with markers in the look of its name; see [`look_of`].
-pub fn line(name: impl Into<String>, points: Vec<(f64, f64)>, k: usize) -> Series {
-    let series = Series::line(name, points);
-    let look = look_of(&series.name, k);
-    Series { look, ..series }
+/// A line with markers that is named after its subject, in its look; see [`look_of`].
+pub fn line(subject: &str, points: Vec<(f64, f64)>, k: usize) -> Series {
+    Series { look: look_of(subject, k), ..Series::line(subject, points) }
 }
 
 #[cfg(test)]
@@ -70,8 +66,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_variant_has_one_colour_at_any_place_and_resolution() {
-        let looks = [look_of("seed", 0), look_of("seed, spacing 0.2 L", 5)];
+    fn a_variant_has_one_colour_at_any_place() {
+        let looks = [look_of("seed", 0), look_of("seed", 5)];
         assert_eq!(looks[0], looks[1]);
         assert_ne!(looks[0].colour, look_of("modern", 0).colour);
         assert_ne!(look_of("νt/L² = 1", 0), look_of("νt/L² = 1", 1));

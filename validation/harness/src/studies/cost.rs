@@ -336,7 +336,7 @@ pub(super) fn panel(
     for (k, Line { name, points }) in lines.iter().enumerate() {
         let own: Vec<&LadderPoint> = points.iter().filter(|p| p.error.is_finite()).collect();
         let line = own.iter().map(|p| (cost(p), p.error)).collect();
-        let mut series = looks::line(*name, line, k);
+        let mut series = looks::line(name, line, k);
         series.names = own.iter().map(|p| p.label.clone()).collect();
         if is_named {
             let last = own.len().saturating_sub(1);

@@ -62,6 +62,8 @@ pub struct CurveOf {
     pub points: PointsOf,
     /// Whether it is drawn thin and pale, behind others.
     pub is_pale: bool,
+    /// Whether the colour follows from the place of the name among all names, not from the variant.
+    pub is_cycled: bool,
 }
 
 /// Points of a curve from a record.
@@ -74,13 +76,24 @@ impl CurveOf {
         spec: RunSpec,
         points: impl Fn(&Record) -> Vec<(f64, f64)> + Send + Sync + 'static,
     ) -> Self {
-        Self { name: name.into(), spec, points: Box::new(points), is_pale: false }
+        Self { name: name.into(), spec, points: Box::new(points), is_pale: false, is_cycled: false }
     }
 
     /// The curve drawn thin and pale.
     #[must_use]
     pub fn pale(self) -> Self {
         Self { is_pale: true, ..self }
+    }
+
+    /// The curve in the colour of the place of its name among all names.
+    #[must_use]
+    pub fn cycled(self) -> Self {
+        Self { is_cycled: true, ..self }
+    }
+
+    /// Curves of one subject have one colour.
+    fn subject(&self) -> &str {
+        if self.is_cycled { &self.name } else { &self.spec.variant }
     }
 
     /// Two columns of a profile of a run.
@@ -137,14 +150,14 @@ impl Study for Curves {
     fn evaluate(&self, _: &str, runs: &Runs) -> Option<Section> {
         let columns = (self.panels.len() as f64).sqrt().ceil() as usize;
         let figure = Figure::new(&self.id, &self.caption).columns(columns.max(1));
-        let mut names: Vec<&str> = Vec::new();
+        let mut named: Vec<&CurveOf> = Vec::new();
         let lines = self.panels.iter().flat_map(|panel| &panel.lines);
         for line in lines.filter(|line| !line.is_pale) {
-            if !names.contains(&line.name.as_str()) {
-                names.push(&line.name);
+            if !named.iter().any(|of| of.name == line.name) {
+                named.push(line);
             }
         }
-        let panels = self.panels.iter().map(|of| panel(of, &names, runs));
+        let panels = self.panels.iter().map(|of| panel(of, &named, runs));
         let figure = panels.fold(figure, Figure::panel);
         Some(Section::new(&self.id, &self.title).block(figure.panel_size(300.0, 230.0)))
     }
@@ -163,13 +176,13 @@ fn reference(name: &str, all: &[(String, Vec<(f64, f64)>)], points: Vec<(f64, f6
     }
 }
 
-/// The look of a curve of a run, by its name among the names of all panels: the last of several curves of one
-/// variant is a solid line.
-fn look(name: &str, names: &[&str], symbols: bool) -> Look {
-    let subject = |name: &str| name.split(',').next().map(str::to_string);
-    let k = names.iter().position(|of| *of == name).unwrap_or_default();
-    let after = names[k..].iter().skip(1).filter(|of| subject(of) == subject(name)).count();
-    let look = looks::look_of(name, k);
+/// The look of a curve of a run, by its place among the named curves of all panels: the last of several curves
+/// of one subject is a solid line.
+fn look(line: &CurveOf, named: &[&CurveOf], symbols: bool) -> Look {
+    let subject = line.subject();
+    let k = named.iter().position(|of| of.name == line.name).unwrap_or_default();
+    let after = named[k..].iter().skip(1).filter(|of| of.subject() == subject).count();
+    let look = looks::look_of(subject, k);
     match symbols {
         true => Look { line: None, marker: Some(Shape::cycle(k)), open: true, ..look },
         false => {
@@ -182,15 +195,15 @@ fn look(name: &str, names: &[&str], symbols: bool) -> Look {
 /// Opacity of pale curves.
 const PALE: f64 = 0.35;
 
-/// A name has one look in all panels, by its position among `names`.
-fn panel(of: &CurvePanel, names: &[&str], runs: &Runs) -> Plot {
+/// A name has one look in all panels, by its position among the `named` curves.
+fn panel(of: &CurvePanel, named: &[&CurveOf], runs: &Runs) -> Plot {
     let plot = Plot::new(&of.title, of.x.clone(), of.y.clone());
     let references = of.references.iter();
     let references =
         references.map(|(name, points)| reference(name, &of.references, points.clone()));
     let lines = of.lines.iter().filter_map(|line| {
         let points = (line.points)(runs.record(&line.spec)?);
-        let look = look(&line.name, names, of.symbols);
+        let look = look(line, named, of.symbols);
         let look = match line.is_pale {
             true => {
                 Look { colour: look.colour.tint(PALE), line: Some(Dash::Solid), width: 0.8, ..look }
@@ -213,7 +226,7 @@ mod tests {
         let points = |record: &touchstone_base::record::Record| {
             vec![(1.0, record.value(ERROR).unwrap_or(f64::NAN))]
         };
-        CurveOf::new(name, spec(variant, n), points)
+        CurveOf::new(name, spec(variant, n), points).cycled()
     }
 
     fn panel_of(lines: Vec<CurveOf>, references: &[&str], symbols: bool) -> CurvePanel {

@@ -16,6 +16,7 @@ use crate::{
     runs::{Judged, JudgedRun, Runs},
     section::Section,
     study::Studies,
+    suite::CaseResults,
 };
 
 /// The code, its scheme and the variant of its problem; of a run of ours the variant.
@@ -157,7 +158,8 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
                 particles => particles.to_string(),
             });
             // Schemes of one code differ in line and marker.
-            let colour = looks::look_of(&all[0].name, k).colour;
+            let subject = if all[0].is_ours() { "ours" } else { &*all[0].of.code };
+            let colour = looks::look_of(subject, k).colour;
             Series::line(&all[0].name, points).cycle(k).colour(colour).labels(labels)
         };
         let (named, others) = named(marks);
@@ -175,11 +177,10 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
 /// Runs with fewer particles measure mostly the fixed cost of a step.
 const FEW: usize = 120;
 
-/// How to read runs of other codes; `of` are the runs of all cases.
-pub fn reading<'a>(of: impl Iterator<Item = &'a Runs> + Clone) -> Vec<String> {
-    let peers = of.flat_map(|runs| &runs.peers).map(|run| &run.record);
+/// How to read runs of other codes.
+pub fn reading(cases: &[CaseResults]) -> Vec<String> {
     let words = [MEASURED, DIVISIONS].map(String::from);
-    words.into_iter().chain(provenance(peers)).collect()
+    words.into_iter().chain(provenance(cases)).collect()
 }
 
 const MEASURED: &str = "Particles of other codes, measured by the code that measures our own runs and \
@@ -194,9 +195,10 @@ const DIVISIONS: &str = "Closed division: our particles, spacing and support of 
              coarser runs that the figure shows and no gate judges.";
 
 /// Place and time of the runs that the program contains, and notes for their reader.
-fn provenance<'a>(peers: impl Iterator<Item = &'a Record> + Clone) -> Option<String> {
-    let day = peers.clone().find_map(Record::session)?;
-    let of = peers.clone().filter_map(|record| record.run.submission.as_deref());
+fn provenance(cases: &[CaseResults]) -> Option<String> {
+    let peers = || cases.iter().flat_map(|of| &of.runs.peers).map(|run| &run.record);
+    let day = peers().find_map(Record::session)?;
+    let of = peers().filter_map(|record| record.run.submission.as_deref());
     let versions: BTreeSet<String> = of.map(|of| format!("{} {}", of.code, of.version)).collect();
     let versions = Vec::from_iter(versions).join("; ");
     let mut words = format!(
@@ -206,15 +208,22 @@ fn provenance<'a>(peers: impl Iterator<Item = &'a Record> + Clone) -> Option<Str
          than published results may be an error of the script.",
         plain(&versions)
     );
-    if peers.clone().any(|record| (1..=FEW).contains(&record.cost.particles)) {
+    if peers().any(|record| (1..=FEW).contains(&record.cost.particles)) {
         words += " Seconds with 60 to 120 particles measure the overhead of a step, not the speed of a code.";
     }
-    let is_ours = |of: &Submission| of.code == OURS;
-    let mut ours = peers.filter(|record| record.run.submission.as_deref().is_some_and(is_ours));
-    if ours.any(|record| record.run.variant == "curved") {
-        words += " Our `curved` was added after the first results of the others, of which two were better \
-                  than ours; omit it to compare first attempts.";
-    }
+    let late = cases.iter().filter_map(|of| {
+        let late = of.case.facts().late_variant?;
+        let is_ours = |of: &Submission| of.code == OURS;
+        let mut runs = of.runs.peers.iter().map(|run| &run.record.run);
+        runs.any(|run| run.variant == late && run.submission.as_deref().is_some_and(is_ours))
+            .then_some(late)
+    });
+    words.extend(late.map(|late| {
+        format!(
+            " Our `{late}` was added after the first results of the others, of which two were better than \
+             ours; omit it to compare first attempts."
+        )
+    }));
     Some(words)
 }
 

@@ -58,6 +58,7 @@ pub fn facts() -> Facts {
         is_stable: Some(is_stable),
         curve: Some(profile()),
         sealed: Some(SEALED),
+        late_variant: Some("curved"),
         ..Facts::default()
     }
 }
@@ -190,6 +191,7 @@ fn curves(flow: Flow) -> Curves {
                 (0..rows).map(|k| (shown(k), y[k] / settings.width)).collect()
             },
         )
+        .cycled()
     };
     let panel = |title: String, x: &str, lines: Vec<CurveOf>, references| {
         let (x, y) = (Axis::linear(x), Axis::linear("y/L [-]").range(0.0, 1.0));
