@@ -557,7 +557,7 @@ impl Entry {
         record.run.submission = Some(Box::new(self.submission(problem)));
         record.run.settings = problem.spec.settings.clone();
         self.leave_out_rounded(case, problem, &mut record);
-        suite::leave_out_ours(case, &mut record);
+        suite::mark_own_metrics_absent(case, &mut record);
         record.numerics.clear();
         record.numerics.insert(MACHINE.into(), self.system.machine.as_str().into());
         self.only_of_curve(case, problem, &mut record);

@@ -20,7 +20,7 @@ use crate::{
     detect,
     gates::GateIndex,
     jobs::{BatchOptions, BatchResult, Job},
-    runs::{Tier, entry},
+    runs::Tier,
     store::RunLease,
     tally::{Done, Tally},
 };
@@ -76,7 +76,7 @@ impl<'a> Batch<'a> {
             gates.entry(job.case.name()).or_insert_with(|| GateIndex::of(job.case));
         }
         let batch = Self { making, tally: Mutex::new(tally), made: Mutex::new(made), gates };
-        batch.tell(|_| ());
+        batch.update_tally(|_| ());
         batch
     }
 
@@ -101,7 +101,7 @@ impl<'a> Batch<'a> {
     }
 
     /// Changes the tally and reports the progress.
-    fn tell(&self, change: impl FnOnce(&mut Tally)) {
+    fn update_tally(&self, change: impl FnOnce(&mut Tally)) {
         let mut tally = lock(&self.tally);
         change(&mut tally);
         if let Some(progress) = self.making.progress {
@@ -116,7 +116,7 @@ impl<'a> Batch<'a> {
         let written = self.making.store.map(|store| store.write(&record));
         let mut made = lock(&self.made);
         if let Some(Err(error)) = written {
-            entry(&mut made.not_kept, record.run.key(), || error);
+            made.not_kept.entry(record.run.key()).or_insert(error);
         }
         made.records.insert(record.run.key(), record);
     }
@@ -135,7 +135,7 @@ impl<'a> Batch<'a> {
             let name = format!("{} {}", job.case.name(), record.run.variant);
             self.keep(record);
             let took = of_batch(job, self.making, threads as f64 * start.elapsed().as_secs_f64());
-            self.tell(|tally| tally.finish(&key, name, took));
+            self.update_tally(|tally| tally.finish(&key, name, took));
         }
         let is_last = lock(&self.tally).end(&key);
         let Some(finished) = self.making.finished.filter(|_| is_last) else { return };
@@ -167,7 +167,7 @@ impl<'a> Batch<'a> {
             }
             let part = progress.time / progress.end;
             let took = of_batch(job, self.making, threads as f64 * start.elapsed().as_secs_f64());
-            self.tell(|tally| tally.reach(&spec.key(), part, took));
+            self.update_tally(|tally| tally.reach(&spec.key(), part, took));
         };
         let (progress, allow_long) = (Some(&show as _), self.making.allow_long);
         let context =
@@ -183,7 +183,7 @@ impl<'a> Batch<'a> {
             }
             Err(failed) => {
                 begun.into_iter().for_each(|begun| begun.end(Some(&failed.to_string())));
-                entry(&mut lock(&self.made).failed, spec.key(), || failed);
+                lock(&self.made).failed.entry(spec.key()).or_insert(failed);
                 None
             }
         }

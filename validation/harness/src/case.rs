@@ -8,7 +8,7 @@ use touchstone_base::{
     spec::{RunSpec, SpecError, Task},
 };
 
-use crate::{context::Context, problem::Posed, study::Studies};
+use crate::{context::Context, problem::AnyProblem, study::Studies};
 pub use crate::{
     error::RunError,
     facts::{Drawn, Draws, Facts, Parameter, Statement, SubmittedCurve},
@@ -71,7 +71,7 @@ pub trait Case: Sync {
     ///
     /// # Errors
     /// The first setting that no run can have.
-    fn pose(&self, spec: &RunSpec) -> Result<Box<dyn Posed>, RunError> {
+    fn pose(&self, spec: &RunSpec) -> Result<Box<dyn AnyProblem>, RunError> {
         Err(RunError::NoRules(spec.case.clone()))
     }
     /// Simulates a run.

@@ -16,14 +16,14 @@ use crate::{
     context::Context,
     facts::Facts,
     method::{MediumSetting, Method},
-    problem::{Posed, Problem},
+    problem::{AnyProblem, Problem},
     rules::state_steps,
     studies::Change,
     study::Studies,
 };
 
 /// The run with settings, without their types.
-type Pose = dyn Fn(&dyn Values) -> Result<Box<dyn Posed>, RunError>;
+type Pose = dyn Fn(&dyn Values) -> Result<Box<dyn AnyProblem>, RunError>;
 
 /// A variant: its name, its method, and its settings before `--set`.
 pub struct Composition {
@@ -43,7 +43,7 @@ pub struct Compositions<T> {
 }
 
 /// The run of any of some methods with settings.
-type PoseBy<M, T> = dyn Fn(&M, &T) -> Result<Box<dyn Posed>, RunError>;
+type PoseBy<M, T> = dyn Fn(&M, &T) -> Result<Box<dyn AnyProblem>, RunError>;
 
 /// Variants that are run alike, one after another.
 pub struct Variants<T, M> {
@@ -334,7 +334,7 @@ impl<T: Settings> Case for Composed<T> {
         Composition::of_run(self.name, (self.variants)().all, spec)?.run(spec, context)
     }
 
-    fn pose(&self, spec: &RunSpec) -> Result<Box<dyn Posed>, RunError> {
+    fn pose(&self, spec: &RunSpec) -> Result<Box<dyn AnyProblem>, RunError> {
         let found = Composition::of_run(self.name, (self.variants)().all, spec)?;
         (found.pose)(&*found.settings)
     }

@@ -7,7 +7,7 @@ use touchstone_base::{files::FileError, record::Record, spec::RunKey};
 
 use crate::{
     case::{Case, RunError},
-    runs::{Planned, Sorted, Tier},
+    runs::{Planned, Tier},
     store::Store,
     tally::Done,
 };
@@ -83,11 +83,11 @@ pub struct BatchResult {
     pub of_other_sources: usize,
     /// Errors of the store for records that it could not keep. They are still among `records`: a full disk
     /// loses no result.
-    pub not_kept: Sorted<RunKey, FileError>,
+    pub not_kept: BTreeMap<RunKey, FileError>,
     /// Why records that the store had could not be read; these runs were made again.
-    pub unsound: Sorted<RunKey, FileError>,
+    pub unsound: BTreeMap<RunKey, FileError>,
     /// Why runs have no record. None of them costs another its record.
-    pub failed: Sorted<RunKey, RunError>,
+    pub failed: BTreeMap<RunKey, RunError>,
     /// Runs that other codes made of the cases of the plan, as the store has them.
     pub submissions: Vec<Record>,
     /// Runs that other codes made of these cases, as the program contains them.

@@ -4,17 +4,15 @@
 //! affects every variant alike. If a caller waits for the first complete case, one case is made in this way
 //! before all others.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use touchstone_base::{
     manifest::UNKNOWN,
     record::{Record, Status},
 };
 
 pub use crate::jobs::{BatchOptions, BatchResult, Finished, Job, OnProgress, jobs};
-use crate::{
-    batch::Batch,
-    runs::{Tier, entry},
-    studies::Card,
-};
+use crate::{batch::Batch, runs::Tier, studies::Card};
 
 /// The stored runs of a plan, and the missing ones.
 #[derive(Default)]
@@ -50,7 +48,7 @@ pub fn stored(jobs: &[Job], making: &BatchOptions) -> StoredRuns {
         };
         let made = &mut stored.made;
         let record = found.unwrap_or_else(|error| {
-            entry(&mut made.unsound, spec.key(), || error);
+            made.unsound.entry(spec.key()).or_insert(error);
             None
         });
         let sources = (making.sources)(&spec.case);
@@ -65,10 +63,8 @@ pub fn stored(jobs: &[Job], making: &BatchOptions) -> StoredRuns {
             stored.missing.push(job.clone());
         }
     }
-    let mut cases = Vec::new();
-    jobs.iter().for_each(|job| *entry(&mut cases, job.case.name(), || ()) = ());
-    let submissions =
-        |(case, ())| making.store.map(|store| store.submissions(case)).unwrap_or_default();
+    let cases: BTreeSet<_> = jobs.iter().map(|job| job.case.name()).collect();
+    let submissions = |case| making.store.map(|store| store.submissions(case)).unwrap_or_default();
     for read in cases.into_iter().flat_map(submissions) {
         match read {
             Ok(record) => stored.made.submissions.push(record),
@@ -92,11 +88,11 @@ pub fn make(StoredRuns { made, missing, .. }: StoredRuns, making: &BatchOptions)
 
 /// The main case (a case with a card) with the least total time of its runs.
 fn first(missing: &[Job], tier: Tier) -> Option<&'static str> {
-    let mut cases = Vec::new();
+    let mut cases = BTreeMap::new();
     for job in missing {
-        entry(&mut cases, job.case.name(), || (job.case, 0.0)).1 += job.planned.seconds;
+        cases.entry(job.case.name()).or_insert((job.case, 0.0)).1 += job.planned.seconds;
     }
-    cases.retain(|(_, (case, _))| case.studies(tier).first::<Card>().is_some());
+    cases.retain(|_, (case, _)| case.studies(tier).first::<Card>().is_some());
     let least = cases.iter().min_by(|(_, (_, a)), (_, (_, b))| a.total_cmp(b));
     least.map(|(name, _)| *name)
 }
@@ -282,7 +278,7 @@ mod tests {
         std::fs::write(&path, whole.replace("1.0", "1e-12")).unwrap();
         let again = made(&jobs, &making);
         assert_eq!((again.reused, again.unsound.len(), again.records.len()), (1, 1, 2));
-        let words = again.unsound[0].1.to_string();
+        let words = again.unsound.values().next().expect("one").to_string();
         assert!(words.contains("quick-v-") && words.contains("damaged"), "{words}");
         assert_eq!(made(&jobs, &making).reused, 2);
     }
@@ -300,9 +296,7 @@ mod tests {
         let alone = made(&jobs, &BatchOptions::new(Tier::Quick, &sources));
         std::panic::set_hook(hook);
         for made in [beside, alone] {
-            let failed: Vec<_> = [1, 3]
-                .map(|k| crate::runs::find(&made.failed, &jobs[k].planned.spec.key()).unwrap())
-                .into();
+            let failed: Vec<_> = [1, 3].map(|k| &made.failed[&jobs[k].planned.spec.key()]).into();
             assert!(matches!(failed[..], [RunError::Bug, RunError::Reference(_)]), "{failed:?}");
             let refused = &made.records[&jobs[5].planned.spec.key()].status;
             assert!(matches!(refused, Status::Refused { .. }), "{refused:?}");

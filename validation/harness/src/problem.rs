@@ -344,7 +344,7 @@ impl Steps {
 pub type AtTime<'a> = &'a mut dyn FnMut(f64, Profile);
 
 /// A run of a case without its types, with the operations of commands.
-pub trait Posed {
+pub trait AnyProblem {
     /// Facts that are known before its particles are made.
     fn brief(&self) -> Brief;
     /// The cost of these steps, for a run that is not refused.
@@ -370,7 +370,7 @@ pub trait Posed {
     /// Its scene in the frame of an observer, and the particles at a few early times before a divergence.
     ///
     /// # Errors
-    /// As [`Posed::outline`].
+    /// As [`AnyProblem::outline`].
     fn seen_by(
         &self,
         relation: Relation,
@@ -384,7 +384,7 @@ pub trait Posed {
     fn measure_frames(&self, spec: &RunSpec, foreign: &Foreign) -> Result<Record, RunError>;
 }
 
-impl<P: Problem> Posed for P {
+impl<P: Problem> AnyProblem for P {
     fn brief(&self) -> Brief {
         Problem::brief(self)
     }
@@ -401,7 +401,7 @@ impl<P: Problem> Posed for P {
         let scene = if Self::READS_START { &parts.particles[..] } else { &[] };
         let scene = Snapshot::of(0.0, scene);
         let mut simulation = self.built(parts, &View::default())?;
-        let record = self.begun(spec, threads, &brief);
+        let record = self.new_record(spec, threads, &brief);
         let times = self.times();
         let watch = self.watch(&scene, &Snapshot::ours(simulation.stepper()));
         drop(scene);
@@ -434,7 +434,7 @@ impl<P: Problem> Posed for P {
         relation: Option<Relation>,
         allow_long: bool,
     ) -> Result<Outline, RunError> {
-        Ok(self.stated(spec, relation, Steps::None, allow_long)?.1)
+        Ok(self.outlined(spec, relation, Steps::None, allow_long)?.1)
     }
 
     fn seen_by(
@@ -444,7 +444,7 @@ impl<P: Problem> Posed for P {
         at_time: AtTime,
     ) -> Result<Outline, RunError> {
         let (mut simulation, outline) =
-            self.stated(&context.spec, Some(relation), Steps::Early, context.allow_long)?;
+            self.outlined(&context.spec, Some(relation), Steps::Early, context.allow_long)?;
         let (simulation, pressure) = (simulation.stepper(), pressure(&Problem::brief(self).medium));
         for until in outline.times.iter().filter(|_| !context.is_interrupted()) {
             if simulation.advance(*until, outline.dt, &mut ()) != Outcome::Reached {
@@ -468,7 +468,7 @@ impl<P: Problem> Posed for P {
         let of_problem =
             || ParticleArrays::all(&sums.simulation.borrow_mut().stepper().particles());
         let mut start = own.unwrap_or_else(of_problem);
-        let mut record = self.begun(spec, 1, &brief);
+        let mut record = self.new_record(spec, 1, &brief);
         record.cost.particles = start.points.iter().filter(|point| point.is_fluid()).count();
         let mut last = Snapshot::given(0.0, start.clone(), &sums);
         let mut watch = self.watch(&Snapshot::given(0.0, scene, &sums), &last);
@@ -513,8 +513,8 @@ fn pressure(medium: &Medium) -> impl Fn(f64) -> f64 + use<> {
     move |density| touchstone_solver::EquationOfState::pressure(&eos, density)
 }
 
-/// The parts of the verbs.
-trait Parted: Problem {
+/// Private methods of every problem.
+trait PrivateMethods: Problem {
     /// Refuses a run before its particles are made; its size.
     fn checked(
         &self,
@@ -575,7 +575,7 @@ trait Parted: Problem {
     }
 
     /// The simulation in the frame of an observer, and its outline.
-    fn stated(
+    fn outlined(
         &self,
         spec: &RunSpec,
         relation: Option<Relation>,
@@ -613,7 +613,7 @@ trait Parted: Problem {
     }
 
     /// A record with the numerics of the run.
-    fn begun(&self, spec: &RunSpec, threads: usize, brief: &Brief) -> Record {
+    fn new_record(&self, spec: &RunSpec, threads: usize, brief: &Brief) -> Record {
         let mut record = Record::of(spec, threads.max(1));
         let method = &self.method().properties;
         let words =
@@ -642,7 +642,7 @@ trait Parted: Problem {
     }
 }
 
-impl<P: Problem> Parted for P {}
+impl<P: Problem> PrivateMethods for P {}
 
 /// The scene of a run.
 type Scenes<X> = Box<dyn Fn() -> Result<Parts<X>, RunError>>;

@@ -129,40 +129,23 @@ pub fn by_cause<'a, T>(
     judged: impl Fn(&T) -> &'a Judged,
 ) -> Vec<(&'a Cause, Vec<T>)> {
     static UNSTATED: Cause = Cause::new("No cause is stated.", "Stating one.");
-    let mut causes: Sorted<&Cause, Vec<T>> = Vec::new();
+    let mut causes: BTreeMap<&Cause, Vec<T>> = BTreeMap::new();
     for one in all.into_iter().filter(|one| judged(one).limitation().is_some()) {
         let cause = judged(&one).gate.cause.as_ref().unwrap_or(&UNSTATED);
-        entry(&mut causes, cause, Vec::new).push(one);
+        causes.entry(cause).or_default().push(one);
     }
+    let mut causes: Vec<_> = causes.into_iter().collect();
     causes.sort_by_key(|(_, gates)| Reverse(gates.len()));
     causes
-}
-
-/// Values by key, in order: a short list in place of a tree.
-pub type Sorted<K, V> = Vec<(K, V)>;
-
-/// The value of a key, which is made if missing.
-pub fn entry<K: Ord, V>(all: &mut Sorted<K, V>, key: K, make: impl FnOnce() -> V) -> &mut V {
-    let found = all.binary_search_by(|(other, _)| other.cmp(&key));
-    let place = found.unwrap_or_else(|place| {
-        all.insert(place, (key, make()));
-        place
-    });
-    &mut all[place].1
-}
-
-/// The value of a key, if present.
-pub fn find<'a, K: Ord, V>(all: &'a Sorted<K, V>, key: &K) -> Option<&'a V> {
-    all.binary_search_by(|(other, _)| other.cmp(key)).ok().map(|place| &all[place].1)
 }
 
 /// Each run once, at its first place, with all gates; timed if one of them is, and all of it measured if one
 /// of them asks for all.
 pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
     let mut merged: Vec<Planned> = Vec::new();
-    let mut places = Vec::new();
+    let mut places = BTreeMap::new();
     for planned in all {
-        let place = *entry(&mut places, planned.spec.key(), || merged.len());
+        let place = *places.entry(planned.spec.key()).or_insert(merged.len());
         let Some(first) = merged.get_mut(place) else {
             merged.push(planned);
             continue;
@@ -184,7 +167,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 pub struct Runs {
     /// All runs in the order of the plan.
     pub all: Vec<JudgedRun>,
-    by_key: Sorted<RunKey, usize>,
+    by_key: BTreeMap<RunKey, usize>,
     /// The runs that other codes made, as the store has them.
     pub submissions: Vec<JudgedRun>,
     /// The runs that other codes made, as the program contains them: they are shown, and decide nothing.
@@ -194,10 +177,7 @@ pub struct Runs {
 impl Runs {
     /// Runs in the order of the plan.
     pub fn new(all: Vec<JudgedRun>) -> Self {
-        let mut by_key = Vec::new();
-        for (k, run) in all.iter().enumerate() {
-            *entry(&mut by_key, run.planned.spec.key(), || k) = k;
-        }
+        let by_key = all.iter().enumerate().map(|(k, run)| (run.planned.spec.key(), k)).collect();
         Self { all, by_key, ..Self::default() }
     }
 
@@ -219,7 +199,7 @@ impl Runs {
 
     /// The judged run of a spec.
     pub fn judged(&self, spec: &RunSpec) -> Option<&JudgedRun> {
-        let found = find(&self.by_key, &spec.key()).map(|k| &self.all[*k]);
+        let found = self.by_key.get(&spec.key()).map(|k| &self.all[*k]);
         let found = found.filter(|run| run.planned.spec.measure >= spec.measure);
         // Without a plan, a store of submissions alone is judged.
         let is_planned = found.is_some() || self.all.is_empty();

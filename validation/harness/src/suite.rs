@@ -175,7 +175,7 @@ pub fn judge(plans: Plans, tier: Tier, mut made: BatchResult) -> Suite {
 /// The run of another code, judged by the gates of our plans for the same settings: see
 /// [`touchstone_base::gate::Gate::for_submission`].
 pub fn submitted(index: &GateIndex, mut record: Record) -> JudgedRun {
-    leave_out_ours(index.case, &mut record);
+    mark_own_metrics_absent(index.case, &mut record);
     let spec = record.spec();
     let of = spec.submission.as_deref();
     // Bounds of sealed problems apply to any method.
@@ -198,7 +198,7 @@ pub fn submitted(index: &GateIndex, mut record: Record) -> JudgedRun {
 
 /// Removes metrics that only our own runs have, such as `impulse` and `impulse@phase1`, from a run of another
 /// code.
-pub fn leave_out_ours(case: &dyn Case, record: &mut Record) {
+pub fn mark_own_metrics_absent(case: &dyn Case, record: &mut Record) {
     let Facts { costly, stepwise, of_methods, .. } = case.facts();
     for (metrics, why) in
         [(costly, Absent::OwnTerms), (stepwise, Absent::EveryStep), (of_methods, Absent::OwnTheory)]

@@ -43,15 +43,15 @@ impl Difference {
 }
 
 /// The problem in the frame of an observer, and the particles at its times, or at more.
-pub type Seen<'a> = (&'a Outline, &'a [Frame]);
+pub type ObservedRun<'a> = (&'a Outline, &'a [Frame]);
 
 fn moves(outline: &Outline) -> Vec<bool> {
     outline.particles.column("role").iter().map(|role| *role == 0.0).collect()
 }
 
-/// Moving particles at the k-th of the times of the problem as the first observer would have them, by their
-/// numbers there.
-fn told((outline, frames): Seen, k: usize) -> Vec<ForeignParticle> {
+/// Moving particles at the k-th of the times of the problem, transformed back to the first frame and sorted
+/// by their ids there.
+fn in_own_frame((outline, frames): ObservedRun, k: usize) -> Vec<ForeignParticle> {
     let (view, moves) = (&outline.view, moves(outline));
     let (numbers, time) = (view.numbers(&moves), outline.times[k]);
     let apart = |frame: &&Frame| (frame.time - time).abs();
@@ -109,7 +109,7 @@ pub struct FarPlace {
 }
 
 /// The first place that is too far away.
-pub fn far_away((outline, frames): Seen) -> Option<FarPlace> {
+pub fn far_away((outline, frames): ObservedRun) -> Option<FarPlace> {
     let places = frames.iter().enumerate().flat_map(|(k, frame)| {
         frame.particles.iter().enumerate().map(move |(row, placed)| (k, row, frame.time, placed))
     });
@@ -134,7 +134,7 @@ pub fn far_away((outline, frames): Seen) -> Option<FarPlace> {
 
 /// Compares two observers of one problem, the first in the original frame. `steps` is the number of steps to
 /// the last time.
-pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
+pub fn difference(base: ObservedRun, other: ObservedRun, steps: f64) -> Difference {
     let Outline { medium, times, domain, .. } = base.0;
     let near = |apart: Vector2<f64>| domain.nearest(apart).amax() / medium.h;
     let size = floor(base.0, other.0, 1.0);
@@ -142,7 +142,7 @@ pub fn difference(base: Seen, other: Seen, steps: f64) -> Difference {
     let mut worst = Difference { time: 0.0, value: 0.0, floor: size, quantity, particle };
     for (k, &time) in times.iter().enumerate() {
         let floor = size * (steps * time / times[times.len() - 1]).powi(2);
-        let (ours, theirs) = (told(base, k), told(other, k));
+        let (ours, theirs) = (in_own_frame(base, k), in_own_frame(other, k));
         let ids = |all: &[ForeignParticle]| all.iter().map(|placed| placed.id).collect::<Vec<_>>();
         if ours.is_empty() || ids(&ours) != ids(&theirs) {
             // One run diverged.
@@ -214,7 +214,7 @@ pub type RelationResult = (Relation, Result<Difference, RunError>);
 /// to underflow.
 ///
 /// # Errors
-/// If the run is refused, or is none of a scene.
+/// If the run is refused or has no scene.
 pub fn battery(case: &dyn Case, spec: &RunSpec) -> Result<Vec<RelationResult>, RunError> {
     // A relation is tested at a few early times, which a scene passes even if it fails later.
     let spec = &spec.clone().allow_unstable();

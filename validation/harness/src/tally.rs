@@ -1,10 +1,8 @@
 //! How far the runs of a plan are, and how long the rest will take.
 
-use std::ops::AddAssign;
+use std::{collections::BTreeMap, ops::AddAssign};
 
 use touchstone_base::spec::RunKey;
-
-use crate::runs::{Sorted, entry};
 
 /// How far the runs of a plan are.
 #[derive(Clone, Copy, Debug)]
@@ -55,7 +53,7 @@ pub(crate) struct RunTally {
 /// How much of a batch is done.
 #[derive(Debug, Default)]
 pub(crate) struct Tally {
-    pub(crate) runs: Sorted<RunKey, RunTally>,
+    pub(crate) runs: BTreeMap<RunKey, RunTally>,
     /// Runs that have a record.
     pub(crate) done: usize,
     /// Name of the last of them.
@@ -66,19 +64,19 @@ impl Tally {
     /// A run is to be made, which is expected to take so long.
     pub(crate) fn plan(&mut self, run: RunKey, case: &'static str, expected: f64) {
         let times = Times { expected, ..Times::default() };
-        entry(&mut self.runs, run, || RunTally { case, times, has_ended: false });
+        self.runs.entry(run).or_insert(RunTally { case, times, has_ended: false });
     }
 
     fn run(&mut self, key: &RunKey) -> Option<&mut RunTally> {
-        self.runs.iter_mut().find(|(other, _)| other == key).map(|(_, run)| run)
+        self.runs.get_mut(key)
     }
 
     /// The times of all runs, and by case: the error of the expected times differs between cases.
-    fn times(&self) -> (Times, Sorted<&'static str, Times>) {
-        let (mut all, mut cases) = (Times::default(), Vec::new());
-        for (_, run) in &self.runs {
+    fn times(&self) -> (Times, BTreeMap<&'static str, Times>) {
+        let (mut all, mut cases) = (Times::default(), BTreeMap::<_, Times>::new());
+        for run in self.runs.values() {
             all += run.times;
-            *entry(&mut cases, run.case, Times::default) += run.times;
+            *cases.entry(run.case).or_default() += run.times;
         }
         (all, cases)
     }
@@ -93,11 +91,11 @@ impl Tally {
     pub(crate) fn left(&self) -> Option<f64> {
         let (all, cases) = self.times();
         let weight = OF_ALL_CASES * all.expected;
-        let of_case = |(_, times): &(&str, Times)| {
+        let of_case = |times: &Times| {
             let factor = (times.took + weight * all.took / all.done) / (times.done + weight);
             factor * (times.expected - times.done).max(0.0)
         };
-        (self.share() >= FIRST_ESTIMATE).then(|| cases.iter().map(of_case).sum())
+        (self.share() >= FIRST_ESTIMATE).then(|| cases.values().map(of_case).sum())
     }
 
     /// Sets the completed part of a run and its time so far; repetitions of a run count no further.
@@ -119,7 +117,7 @@ impl Tally {
         let Some(run) = self.run(run) else { return false };
         run.has_ended = true;
         let case = run.case;
-        self.runs.iter().filter(|(_, run)| run.case == case).all(|(_, run)| run.has_ended)
+        self.runs.values().filter(|run| run.case == case).all(|run| run.has_ended)
     }
 }
 

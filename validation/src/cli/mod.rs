@@ -229,11 +229,11 @@ fn print_problems(lines: &[String]) {
 
 /// Reports records that could not be read, kept or made.
 fn report_problems(made: &BatchResult) {
-    let again = |(_, error): &(RunKey, FileError)| format!("{error}; this record is ignored");
-    print_problems(&made.unsound.iter().map(again).collect::<Vec<_>>());
-    let lost = |(_, error): &(RunKey, FileError)| format!("a record could not be stored: {error}");
-    print_problems(&made.not_kept.iter().map(lost).collect::<Vec<_>>());
-    let failed = |(key, failed): &(RunKey, RunError)| format!("run {key} has no record: {failed}");
+    let again = |error: &FileError| format!("{error}; this record is ignored");
+    print_problems(&made.unsound.values().map(again).collect::<Vec<_>>());
+    let lost = |error: &FileError| format!("a record could not be stored: {error}");
+    print_problems(&made.not_kept.values().map(lost).collect::<Vec<_>>());
+    let failed = |(key, failed): (&RunKey, &RunError)| format!("run {key} has no record: {failed}");
     print_problems(&made.failed.iter().map(failed).collect::<Vec<_>>());
     let unread = |error: &FileError| format!("{error}; the submission is ignored");
     print_problems(&made.unread.iter().map(unread).collect::<Vec<_>>());
@@ -241,7 +241,7 @@ fn report_problems(made: &BatchResult) {
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.
 fn trouble(made: &BatchResult) -> Option<Exit> {
-    match made.failed.iter().any(|(_, failed)| matches!(failed, RunError::Bug)) {
+    match made.failed.values().any(|failed| matches!(failed, RunError::Bug)) {
         true => Some(Exit::Bug),
         false => (!made.failed.is_empty() || !made.not_kept.is_empty()).then_some(Exit::Usage),
     }

@@ -7,7 +7,6 @@ use touchstone_base::spec::RunKey;
 use touchstone_harness::{
     case::{self, Tier},
     make::{self, BatchResult, Job, StoredRuns},
-    runs,
     section::Section,
     store::{Pending, Store},
     suite::{self, Plans, Suite},
@@ -51,7 +50,7 @@ pub fn partial(
 }
 
 fn lacking(missing: Vec<Job>, path: &Path, made: &BatchResult) -> BTreeMap<RunKey, MissingRun> {
-    let why = |job: &Job| match runs::find(&made.unsound, &job.planned.spec.key()) {
+    let why = |job: &Job| match made.unsound.get(&job.planned.spec.key()) {
         Some(error) => Pending::Failed(error.to_string()),
         None => Store::to_read(path).pending(&job.planned.spec),
     };

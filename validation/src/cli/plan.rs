@@ -148,7 +148,7 @@ pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, session: &Ses
     let making = BatchOptions { store: Some(&store), allow_long, ..session.making(Tier::Quick) };
     let made = session.make(&jobs, making, arguments.threads, None)?;
     // Records that the store could not keep are printed.
-    for record in made.not_kept.iter().filter_map(|(key, _)| made.records.get(key)) {
+    for record in made.not_kept.keys().filter_map(|key| made.records.get(key)) {
         output::print_whole(&record.to_json().map_err(Failure::bug)?)?;
     }
     let (runs, lines) = (counted(jobs.len(), "run", "runs"), counted(lines, "line", "lines"));

@@ -394,7 +394,7 @@ impl Answer<'_> {
         let found = convergence(&levels, accuracy.slope);
         let found = found.map_err(|_| format!("{} resolutions", levels.len()))?;
         let compared = self.shown[0].as_ref().and_then(|spec| self.compared(spec));
-        let is_sure = compared.is_none_or(|found| found.tells());
+        let is_sure = compared.is_none_or(|found| found.is_conclusive());
         if !is_sure || found.label == Label::FloorReached || found.interval[0] <= 0.0 {
             return Err("not determined".into());
         }

@@ -1,5 +1,7 @@
 //! The smallest error of each constant that the gates of a case detect.
 
+use std::collections::BTreeSet;
+
 use touchstone_base::{
     gate::{Bound, Cause, Evidence, Gate},
     mutation::{Constant, Detect, Mutation},
@@ -12,7 +14,7 @@ use super::anchor;
 use crate::{
     columns::TableColumns,
     detect::{DETECTED, GATES, UNDETECTED},
-    runs::{Planned, Runs, Tier, entry},
+    runs::{Planned, Runs, Tier},
     section::Section,
     study::Study,
 };
@@ -226,7 +228,7 @@ fn row<'a>(sensitivity: &Sensitivity, watched: &'a Watched, runs: &'a Runs) -> S
 
 /// The gates of the runs that fail with a gross fault, without gates that compare the program with itself.
 fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> usize {
-    let mut failed = Vec::new();
+    let mut failed = BTreeSet::new();
     for (healthy, spec) in sensitivity.faulty(of, factor) {
         let Some((record, healthy)) = runs.record(&spec).zip(runs.judged(healthy)) else {
             continue;
@@ -234,7 +236,7 @@ fn failed(sensitivity: &Sensitivity, of: Constant, factor: f64, runs: &Runs) -> 
         let gates = healthy.planned.gates.iter();
         let outside = gates.filter(|gate| gate.evidence != Evidence::Regression);
         let fails = outside.filter(|gate| gate.judge_record(record).verdict.is_failure());
-        fails.for_each(|gate| *entry(&mut failed, gate.id.as_str(), || ()) = ());
+        failed.extend(fails.map(|gate| gate.id.as_str()));
     }
     failed.len()
 }

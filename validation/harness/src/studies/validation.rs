@@ -169,7 +169,7 @@ impl ComparisonResult {
     }
 
     /// Whether the ladder shows an order and the uncertainty is small enough to say something of the error.
-    pub fn tells(&self) -> bool {
+    pub fn is_conclusive(&self) -> bool {
         !matches!(
             self.conclusion(),
             Conclusion::TooUncertain | Conclusion::LadderDoesNotTell | Conclusion::Unknown
