@@ -706,7 +706,7 @@ fn a_field_that_is_wrong_everywhere_fails_a_gate() {
 fn a_front_that_falls_back_fails() {
     let own = Entry::foreign("dam_break");
     let honest = own.submit(&own.head, &own.rows).record.expect("a record");
-    let [t, front] = ["t", "front"].map(|name| honest.column("series", name).to_vec());
+    let [t, front] = ["t", "front"].map(|name| honest.profiles["series"].column(name).to_vec());
     fs::remove_file(own.folder.join("results.csv")).unwrap();
     let submit = |edit: &dyn Fn(usize, f64) -> f64| {
         let rows = t.iter().zip(&front).enumerate();
@@ -946,8 +946,8 @@ fn no_absurd_number_evades_its_verdict() {
 fn a_force_that_another_code_does_not_state_is_in_no_series() {
     let own = Entry::own("periodic_hill --set n=4 --set end=0.5");
     let record = own.submit(&own.head, &own.rows).record.expect("a record");
-    assert!(record.column("series", "flux").len() > 1);
-    assert!(record.column("series", "force").is_empty());
+    assert!(record.profiles["series"].column("flux").len() > 1);
+    assert!(record.profiles["series"].column("force").is_empty());
 }
 
 /// The measured particles are the code's own: twice as many a side.

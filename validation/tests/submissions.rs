@@ -170,7 +170,7 @@ fn our_own_profile_or_path_is_measured_as_the_run_was() {
             .iter()
             .flat_map(|(name, curve)| curve.columns.iter().map(move |column| (name, column)))
         {
-            let own = own.column(name, &column.name);
+            let own = own.profiles[name].column(&column.name);
             let is_near =
                 |(found, own): (&f64, &f64)| (found - own).abs() <= 1e-12 * own.abs().max(1.0);
             let is_own = own.len() == column.values.len();

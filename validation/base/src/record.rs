@@ -241,6 +241,11 @@ impl MetricKey {
         Self { name, unit, formula }
     }
 
+    /// The column of this name, in a profile and a unit.
+    pub const fn column(self, profile: &'static str, unit: &'static str) -> ColumnKey {
+        ColumnKey::new(profile, self.name, unit)
+    }
+
     /// The metric at a time, a station or another mark: `name@mark`.
     pub fn at(self, mark: impl fmt::Display) -> MetricName {
         MetricName { key: self, name: marked(self.name, mark), what: String::new() }
@@ -249,6 +254,37 @@ impl MetricKey {
     /// The metric with `what` in place of `{}` in its formula.
     pub fn of(self, what: impl fmt::Display) -> MetricName {
         MetricName { what: what.to_string(), ..self.into() }
+    }
+}
+
+/// A column of a profile as a case declares it: profile, name and unit are stated once, and every use names the
+/// constant.
+///
+/// ```
+/// use touchstone_base::record::{ColumnKey, Record};
+/// const TIME: ColumnKey = ColumnKey::new("series", "t", "s");
+/// const FRONT: ColumnKey = ColumnKey::new("series", "front", "m");
+/// let mut record = Record::new("dam_break", "seed", serde_json::json!({}), 1);
+/// let rows = [(0.0, 1.0), (0.5, 1.2)];
+/// record.put_column(TIME, &rows, |(time, _)| *time);
+/// record.put_column(FRONT, &rows, |(_, front)| *front);
+/// assert_eq!(record.column(FRONT), [1.0, 1.2]);
+/// assert_eq!(record.curve([TIME, FRONT]), rows);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ColumnKey {
+    /// name of the profile, without a mark
+    pub profile: &'static str,
+    /// name of the column
+    pub name: &'static str,
+    /// SI unit, `-` for none
+    pub unit: &'static str,
+}
+
+impl ColumnKey {
+    /// A column of a profile with its unit.
+    pub const fn new(profile: &'static str, name: &'static str, unit: &'static str) -> Self {
+        Self { profile, name, unit }
     }
 }
 
@@ -414,20 +450,6 @@ impl Profile {
         self.with(name, unit, rows.iter().map(value).collect())
     }
 
-    /// Adds a column of this name and unit, if its value is known in all rows.
-    pub fn put_known<R>(
-        self,
-        rows: &[R],
-        name: &str,
-        unit: &str,
-        value: impl Fn(&R) -> Result<f64, Absent>,
-    ) -> Self {
-        match rows.iter().map(value).collect() {
-            Ok(values) => self.with(name, unit, values),
-            Err(_) => self,
-        }
-    }
-
     /// Adds a column.
     pub fn with(mut self, name: &str, unit: &str, values: Vec<f64>) -> Self {
         self.columns.push(ProfileColumn { name: name.into(), unit: unit.into(), values });
@@ -572,9 +594,43 @@ impl Record {
         self.metric(&metric.into().name)
     }
 
-    /// The values of a column of a profile, none if there is no such profile or column.
-    pub fn column(&self, profile: &str, name: &str) -> &[f64] {
-        self.profiles.get(profile).map_or(&[], |profile| profile.column(name))
+    /// Adds a column to its profile, with a value of each row.
+    pub fn put_column<R>(&mut self, key: ColumnKey, rows: &[R], value: impl Fn(&R) -> f64) {
+        self.put_known_column(key, rows, |row| Ok(value(row)));
+    }
+
+    /// Adds a column to its profile, if its value is known in all rows.
+    pub fn put_known_column<R>(
+        &mut self,
+        key: ColumnKey,
+        rows: &[R],
+        value: impl Fn(&R) -> Result<f64, Absent>,
+    ) {
+        let ColumnKey { profile, name, unit } = key;
+        let Ok(values) = rows.iter().map(value).collect() else { return };
+        let column = ProfileColumn { name: name.into(), unit: unit.into(), values };
+        self.profiles.entry(profile.into()).or_default().columns.push(column);
+    }
+
+    /// The values of a column, none if the record does not have it.
+    pub fn column(&self, key: ColumnKey) -> &[f64] {
+        self.profiles.get(key.profile).map_or(&[], |profile| profile.column(key.name))
+    }
+
+    /// Removes all columns but these, of profiles with any mark, and all profiles without columns.
+    pub fn keep_columns(&mut self, kept: &[ColumnKey]) {
+        self.profiles.retain(|name, profile| {
+            let of = name_and_mark(name).0;
+            let is_kept =
+                |c: &ProfileColumn| kept.iter().any(|k| k.profile == of && k.name == c.name);
+            profile.columns.retain(is_kept);
+            !profile.columns.is_empty()
+        });
+    }
+
+    /// The points (x, y) of two columns.
+    pub fn curve(&self, [x, y]: [ColumnKey; 2]) -> Vec<(f64, f64)> {
+        self.column(x).iter().copied().zip(self.column(y).iter().copied()).collect()
     }
 
     /// The document, indented, with its digest and a newline at its end.

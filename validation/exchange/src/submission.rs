@@ -378,11 +378,7 @@ impl Entry {
                 record.absent.entry(name.clone()).or_insert_with(|| why.clone());
             }
         }
-        let (shown, columns) = curve.shown;
-        record.profiles.retain(|name, _| record::name_and_mark(name).0 == shown);
-        for profile in record.profiles.values_mut() {
-            profile.columns.retain(|column| columns.contains(&&*column.name));
-        }
+        record.keep_columns(curve.shown);
         record.state = None;
         record.cost.particles = match self.method.division {
             Division::Closed => problem.moving().len(),

@@ -4,7 +4,7 @@
 use nalgebra::Vector2;
 use touchstone_base::{
     gate::Gate,
-    record::{MetricKey, MetricName, Record},
+    record::{ColumnKey, MetricKey, MetricName, Record},
     spec::{Measure, RunSpec},
 };
 
@@ -94,8 +94,8 @@ pub struct SubmittedCurve {
     /// The run in whose coarse scene it is measured, if neither its rows nor its times depend on the
     /// resolution. Then `export --solve` writes it in place of particles.
     pub coarsen: Option<fn(&RunSpec) -> RunSpec>,
-    /// The name of the profiles of a record that show it, without the time, and their columns.
-    pub shown: (&'static str, &'static [&'static str]),
+    /// The columns of a record that show it, in one profile, whose name may have a time as mark.
+    pub shown: &'static [ColumnKey],
 }
 
 /// Drawn settings of the sealed problems of a case, and their judgement.

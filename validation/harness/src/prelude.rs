@@ -3,7 +3,7 @@
 
 pub use touchstone_base::{
     gate::{Bound, Evidence, Gate},
-    record::{Profile, Record},
+    record::{ColumnKey, Record},
 };
 pub use touchstone_solver::{Domain, Particle, Stepper};
 

@@ -158,10 +158,9 @@ fn declined(error: RunError) -> Failure {
 /// The series from which a case measures more than from particles at its few times, if it has one.
 fn series(case: &dyn Case, record: &Record) -> Option<Profile> {
     let curve = case.facts().curve.filter(|curve| curve.coarsen.is_some())?;
-    let (name, columns) = curve.shown;
-    let mut series = record.profiles.get(name)?.clone();
-    series.columns.retain(|column| columns.contains(&&*column.name));
-    Some(series)
+    let mut record = record.clone();
+    record.keep_columns(curve.shown);
+    record.profiles.into_values().next()
 }
 
 /// Puts the rows of an interrupted solution before its other rows.

@@ -44,6 +44,12 @@ touchstone_base::settings! {
     }
 }
 
+/// Place along each mid-line, and the velocity across it.
+const MID_LINES: [[ColumnKey; 2]; 2] = [
+    [ColumnKey::new("u", "place", "L"), ColumnKey::new("u", "u", "U")],
+    [ColumnKey::new("v", "place", "L"), ColumnKey::new("v", "v", "U")],
+];
+
 touchstone_base::metrics! {
     all ALL;
     U_RMS = "u_rms" ["U"] "rms of mean u - finite differences at the inner places of Ghia et al. on x = L/2";
@@ -208,11 +214,9 @@ fn measure(places: &[Place], means: &[f64], record: &mut Record) {
         for (k, metric) in metrics.into_iter().enumerate() {
             record.put(metric, rms(of().map(|(mean, place)| mean - place.2[k])));
         }
-        let name = ["u", "v"][component];
-        let profile = Profile::default()
-            .with("place", "L", of().map(|(_, place)| place.0[1 - component]).collect())
-            .with(name, "U", of().map(|(mean, _)| *mean).collect());
-        record.profiles.insert(name.into(), profile);
+        let (rows, [place, velocity]) = (of().collect::<Vec<_>>(), MID_LINES[component]);
+        record.put_column(place, &rows, |(_, place)| place.0[1 - component]);
+        record.put_column(velocity, &rows, |(mean, _)| **mean);
     }
     let sum = |of: fn(f64, f64) -> f64| all().map(|(m, p)| of(*m, p.2[0])).sum::<f64>();
     let least = |of: fn(f64, f64) -> f64| {
@@ -456,10 +460,8 @@ fn facts() -> Facts {
 fn curves(table: &table::Table<Cavity, f64>) -> Curves {
     let finest = table.rows.iter().map(|row| row.settings.n).max().unwrap_or_default();
     let panel = |(re, k): (f64, usize)| {
-        let name = ["u", "v"][k];
         let rows = table.of(re).filter(|row| row.settings.n == finest);
-        let line =
-            |row: &Row| CurveOf::columns(row.variant, row.run.spec.clone(), name, ["place", name]);
+        let line = |row: &Row| CurveOf::columns(row.variant, row.run.spec.clone(), MID_LINES[k]);
         let known = places(re).unwrap_or_default().into_iter().filter(|place| place.1 == k);
         let known = known.map(|place| (place.0[1 - k], place.2[0])).collect();
         let axes = [["y/L [-]", "u/U [-]"], ["x/L [-]", "v/U [-]"]][k];

@@ -55,6 +55,14 @@ const EXTRAPOLATING: &str = "extrapolating-wall";
 /// The settings on which time and memory of a run depend.
 const DECISIVE: &str = "end, viscous, layers or ratio";
 
+const fn velocity(name: &'static str, unit: &'static str) -> ColumnKey {
+    ColumnKey::new("velocity", name, unit)
+}
+
+const RADIUS: ColumnKey = velocity("r", "inner radius");
+const VELOCITY: ColumnKey = velocity("u", "V");
+const EXACT_VELOCITY: ColumnKey = velocity("u_exact", "V");
+
 touchstone_base::metrics! {
     all ALL;
     L2 = "l2" ["-"] "rms(u - u_exact)/rms(u_exact) over particles, u the velocity around the axis";
@@ -157,11 +165,9 @@ fn measure(flow: &TaylorCouette, fluid: &[Point], record: &mut Record) {
     record.put(L2, l2(&around, &exact));
     record.put(RADIAL_RMS, square.sqrt() / flow.speed);
     record.put(OUTSIDE, outside as f64);
-    let velocity = Profile::default()
-        .put(&fluid, "r", "inner radius", |f| f.radius / flow.inner)
-        .put(&fluid, "u", "V", |f| f.around / flow.speed)
-        .put(&fluid, "u_exact", "V", |f| flow.velocity(f.radius) / flow.speed);
-    record.profiles.insert("velocity".into(), velocity);
+    record.put_column(RADIUS, &fluid, |f| f.radius / flow.inner);
+    record.put_column(VELOCITY, &fluid, |f| f.around / flow.speed);
+    record.put_column(EXACT_VELOCITY, &fluid, |f| flow.velocity(f.radius) / flow.speed);
 }
 
 fn variants() -> Compositions<CylinderSettings> {
@@ -268,12 +274,11 @@ fn profiles(table: &Table<CylinderSettings, ()>) -> Curves {
     let flow = TaylorCouette { inner: 1.0, outer: CylinderSettings::default().ratio, speed: 1.0 };
     let line = |row: &Row<CylinderSettings, ()>, is_difference: bool| {
         CurveOf::new(row.variant, row.run.spec.clone(), move |record: &Record| {
-            let [r, u] = ["r", "u"].map(|name| record.column("velocity", name));
-            let shown = |(r, u): (&f64, &f64)| match is_difference {
-                true => (*r, 100.0 * (u - flow.velocity(*r))),
-                false => (*r, *u),
+            let shown = |(r, u): (f64, f64)| match is_difference {
+                true => (r, 100.0 * (u - flow.velocity(r))),
+                false => (r, u),
             };
-            r.iter().zip(u).step_by(17).map(shown).collect()
+            record.curve([RADIUS, VELOCITY]).into_iter().step_by(17).map(shown).collect()
         })
     };
     let lines = |is_difference: bool| {
@@ -325,8 +330,7 @@ mod tests {
         assert_relative_eq!(value(&record, L2), 0.02, max_relative = 1e-12);
         assert_relative_eq!(value(&record, RADIAL_RMS), 0.01, max_relative = 1e-12);
         assert_eq!(value(&record, OUTSIDE), 3.0);
-        let column = |name| record.column("velocity", name).to_vec();
-        let (r, u, exact) = (column("r"), column("u"), column("u_exact"));
+        let [r, u, exact] = [RADIUS, VELOCITY, EXACT_VELOCITY].map(|key| record.column(key));
         assert!(r.len() == 7 && r.is_sorted());
         assert_relative_eq!(r[2], 1.5, max_relative = 1e-12);
         // A r + B/r with A = -1/3 and B = 4/3 of V and the inner radius.

@@ -109,6 +109,9 @@ struct VortexSetup {
     flow: UnitFlow,
 }
 
+const TIME: ColumnKey = ColumnKey::new("series", "t", "L/U");
+const ERROR: ColumnKey = ColumnKey::new("series", "error", "-");
+
 touchstone_base::metrics! {
     all ALL;
     L2 = "l2" ["-"] "(sum |v - v_exact|^2/sum |v_exact|^2)^(1/2) over particles at the end";
@@ -234,13 +237,8 @@ impl Problem for VortexSetup {
         }
         // The exact flow may have decayed to 0.
         errors.retain(|[_, error]| error.is_finite());
-        let series = Profile::default().put(&errors, "t", "L/U", |[time, _]| *time).put(
-            &errors,
-            "error",
-            "-",
-            |[_, error]| *error,
-        );
-        record.profiles.insert("series".into(), series);
+        record.put_column(TIME, &errors, |[time, _]| *time);
+        record.put_column(ERROR, &errors, |[_, error]| *error);
     }
 }
 
@@ -459,8 +457,7 @@ fn histories(tier: Tier, table: &Table) -> Curves {
 
 /// The error over time, without the start, at which there is none.
 fn error(record: &Record) -> Vec<(f64, f64)> {
-    let [t, error] = ["t", "error"].map(|name| record.column("series", name).iter().copied());
-    t.zip(error).skip(1).collect()
+    record.curve([TIME, ERROR]).into_iter().skip(1).collect()
 }
 
 /// Particles at the end, by their error.

@@ -122,6 +122,15 @@ const RECOMMENDED: Recommended = Recommended {
     papers: None,
 };
 
+const fn amplitude(name: &'static str, unit: &'static str) -> ColumnKey {
+    ColumnKey::new("amplitudes", name, unit)
+}
+
+const TIME: ColumnKey = amplitude("t", "s");
+const PRESSURE: ColumnKey = amplitude("p", "rho c0^2");
+const V_ALONG: ColumnKey = amplitude("v_along", "c0");
+const V_ACROSS: ColumnKey = amplitude("v_across", "c0");
+
 touchstone_base::metrics! {
     all ALL;
     // Error of the frequency of a sound wave.
@@ -352,12 +361,10 @@ impl Problem for Wave {
             Polarisation::Shear => WaveAmplitudes { across: s.amplitude, ..none },
         };
         let rows: Vec<_> = once(&start).chain(&series).enumerate().collect();
-        let profile = Profile::default()
-            .put(&rows, "t", "s", |(step, _)| *step as f64 * self.rules.dt())
-            .put(&rows, "p", "rho c0^2", |(_, of)| of.pressure)
-            .put(&rows, "v_along", "c0", |(_, of)| of.along)
-            .put(&rows, "v_across", "c0", |(_, of)| of.across);
-        record.profiles.insert("amplitudes".into(), profile);
+        record.put_column(TIME, &rows, |(step, _)| *step as f64 * self.rules.dt());
+        record.put_column(PRESSURE, &rows, |(_, of)| of.pressure);
+        record.put_column(V_ALONG, &rows, |(_, of)| of.along);
+        record.put_column(V_ACROSS, &rows, |(_, of)| of.across);
         // Of every step, not of the last one.
         let all: Vec<f64> = series.iter().flat_map(WaveAmplitudes::all).collect();
         record.state = Some(digest(&all));
@@ -582,7 +589,7 @@ mod tests {
     fn growth(variant: &str) -> [f64; 2] {
         let spec = ACOUSTIC_WAVE.spec(variant, |s| (s.nu, s.courant, s.kx) = (0.0, 0.5, 5));
         let record = ACOUSTIC_WAVE.run(&spec, &Context::default()).expect("a run");
-        let [p, v] = ["p", "v_along"].map(|name| record.column("amplitudes", name));
+        let [p, v] = [PRESSURE, V_ALONG].map(|key| record.column(key));
         let energy = |k: usize| p[k] * p[k] + v[k] * v[k];
         let steps = p.len() - 1;
         let omega_dt = record.numerics["omega dt"].as_f64().expect("a number");

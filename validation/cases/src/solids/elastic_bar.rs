@@ -325,17 +325,14 @@ impl Watch<BarSettings> for Motion {
         let change = after.and_then(|after| Ok(after.total() / self.energy.clone()? - 1.0));
         record.put_or_absent(ENERGY_CHANGE, change);
         // Bars that collide have no momentum together, and so no centre of it; a pulse has one side.
-        let motion = Profile::default().put(&self.series, "t", "s", |at| at.time);
-        let motion = match s.collide {
-            true => motion.put(&self.series, "left mean velocity", "m/s", |at| at.left).put(
-                &self.series,
-                "right mean velocity",
-                "m/s",
-                |at| at.right,
-            ),
-            false => motion.put(&self.series, "centre of velocity", "m", |at| at.centre),
-        };
-        record.profiles.insert("motion".into(), motion);
+        let column = |name, unit| ColumnKey::new("motion", name, unit);
+        record.put_column(column("t", "s"), &self.series, |at| at.time);
+        if s.collide {
+            record.put_column(column("left mean velocity", "m/s"), &self.series, |at| at.left);
+            record.put_column(column("right mean velocity", "m/s"), &self.series, |at| at.right);
+        } else {
+            record.put_column(column("centre of velocity", "m"), &self.series, |at| at.centre);
+        }
     }
 }
 

@@ -216,7 +216,8 @@ impl Watch<PlateSettings> for Tip {
         let stiffness = || solid::lagrangian::bending(s.n, s.solid.poisson);
         let bent = error.map(|error| (1.0 + error) * stiffness().sqrt() - 1.0);
         record.put_or(BENDING_PERIOD_ERROR, bent, "no error, or no theory of its layers");
-        record.profiles.insert("tip".into(), self.path.profile(["along", "tip"]));
+        let tip = |name, unit| ColumnKey::new("tip", name, unit);
+        self.path.put([tip("t", "s"), tip("along", "m"), tip("tip", "m")], record);
     }
 }
 

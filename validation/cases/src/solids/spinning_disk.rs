@@ -244,14 +244,16 @@ fn metrics(series: &[SpinSample], revolutions: f64, scale: f64, record: &mut Rec
     let energies = series.iter().map(|at| at.energy.clone()).collect::<Result<Vec<f64>, Absent>>();
     let change = energies.map(|all| all[all.len() - 1] / all[0] - 1.0);
     record.put_or_absent(ENERGY_DRIFT, change.map(|change| change / revolutions));
-    let shown = Profile::default()
-        .put(series, "t", "s", |at| at.time)
-        .put(series, "angular momentum", "of the start", |at| at.spin / first.spin)
-        .put_known(series, "energy", "of the start", |at| {
-            Ok(at.energy.clone()? / first.energy.clone()?)
-        })
-        .put_known(series, "stress", "rho U^2", |at| Ok(at.stress.clone()?.sqrt() / scale));
-    record.profiles.insert("spin".into(), shown);
+    let column = |name, unit| ColumnKey::new("spin", name, unit);
+    let spin = column("angular momentum", "of the start");
+    record.put_column(column("t", "s"), series, |at| at.time);
+    record.put_column(spin, series, |at| at.spin / first.spin);
+    record.put_known_column(column("energy", "of the start"), series, |at| {
+        Ok(at.energy.clone()? / first.energy.clone()?)
+    });
+    record.put_known_column(column("stress", "rho U^2"), series, |at| {
+        Ok(at.stress.clone()?.sqrt() / scale)
+    });
 }
 
 /// Purpose of a run.

@@ -207,13 +207,12 @@ impl DropHistory {
         record.put(VELOCITY_RMS, (self.velocity / samples.len() as f64).sqrt());
         record.put(MOMENTUM_ERROR, self.momentum);
         record.put(CENTRE_ERROR, self.centre);
-        let series = Profile::default()
-            .put(samples, "t", "s", |at| at.time)
-            .put(samples, "a", "m", |at| at.axes[0])
-            .put(samples, "b", "m", |at| at.axes[1])
-            .put(samples, "a_exact", "m", |at| at.exact[0])
-            .put(samples, "b_exact", "m", |at| at.exact[1]);
-        record.profiles.insert("series".into(), series);
+        let column = |name, unit| ColumnKey::new("series", name, unit);
+        record.put_column(column("t", "s"), samples, |at| at.time);
+        record.put_column(column("a", "m"), samples, |at| at.axes[0]);
+        record.put_column(column("b", "m"), samples, |at| at.axes[1]);
+        record.put_column(column("a_exact", "m"), samples, |at| at.exact[0]);
+        record.put_column(column("b_exact", "m"), samples, |at| at.exact[1]);
     }
 }
 
@@ -484,8 +483,8 @@ mod tests {
             for record in [&still, &falling] {
                 assert!(record.value(MOMENTUM_ERROR).unwrap() < 1e-13);
                 assert!(record.value(CENTRE_ERROR).unwrap() < 1e-13);
-                let [kinetic, work] =
-                    ["kinetic", "work_viscosity"].map(|c| record.column("energy", c));
+                let [kinetic, work] = [ledger::KINETIC, ledger::column(ledger::WORK_VISCOSITY)]
+                    .map(|c| record.column(c));
                 let share = work[work.len() - 1] / kinetic[0];
                 let taken = record.value(ledger::WORK_VISCOSITY).unwrap();
                 assert!((taken - share).abs() < 1e-12, "{variant}: {taken} of {share}");

@@ -331,13 +331,12 @@ impl ColumnHistory {
             record.put(OUTSIDE, self.outside);
             record.put(SPREAD, self.spread);
         }
-        let history = Profile::default()
-            .put(&self.samples, "t", "4 H/c0", |at| at.time)
-            .put_known(&self.samples, "p_l2", "-", |at| at.pressure.clone())
-            .put(&self.samples, "level_drift", "H", |at| at.level)
-            .put(&self.samples, "gap", "dx", |at| at.gap)
-            .put(&self.samples, "kinetic", "M g H", |at| at.kinetic);
-        record.profiles.insert("history".into(), history);
+        let (samples, column) = (&self.samples, |name, unit| ColumnKey::new("history", name, unit));
+        record.put_column(column("t", "4 H/c0"), samples, |at| at.time);
+        record.put_known_column(column("p_l2", "-"), samples, |at| at.pressure.clone());
+        record.put_column(column("level_drift", "H"), samples, |at| at.level);
+        record.put_column(column("gap", "dx"), samples, |at| at.gap);
+        record.put_column(column("kinetic", "M g H"), samples, |at| at.kinetic);
     }
 }
 

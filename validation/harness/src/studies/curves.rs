@@ -1,6 +1,9 @@
 //! Profiles or histories, plotted together with their reference.
 
-use touchstone_base::{record::Record, spec::RunSpec};
+use touchstone_base::{
+    record::{ColumnKey, Record},
+    spec::RunSpec,
+};
 use touchstone_maths::metrics::history::differences;
 use touchstone_report::{Axis, Colour, Dash, Figure, Look, Plot, Series, Shape};
 
@@ -96,18 +99,9 @@ impl CurveOf {
         if self.is_cycled { &self.name } else { &self.spec.variant }
     }
 
-    /// Two columns of a profile of a run.
-    pub fn columns(
-        name: impl Into<String>,
-        spec: RunSpec,
-        profile: &'static str,
-        [x, y]: [&'static str; 2],
-    ) -> Self {
-        let points = move |record: &Record| {
-            let [x, y] = [x, y].map(|name| record.column(profile, name).iter().copied());
-            x.zip(y).collect()
-        };
-        Self::new(name, spec, points)
+    /// Two columns of a run.
+    pub fn columns(name: impl Into<String>, spec: RunSpec, columns: [ColumnKey; 2]) -> Self {
+        Self::new(name, spec, move |record: &Record| record.curve(columns))
     }
 
     /// The differences of this curve from a reference, which is sampled at the drawn places x, times

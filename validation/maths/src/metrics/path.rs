@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::{
     functions::{cos, sin},
-    record::Profile,
+    record::{ColumnKey, Record},
 };
 
 /// Points between the two times, at which the path is taken for averages and harmonics.
@@ -53,12 +53,11 @@ impl Path {
         self.0.iter().map(|at| (at.time, at.displacement.y))
     }
 
-    /// A profile with these names of both displacements.
-    pub fn profile(&self, [x, y]: [&str; 2]) -> Profile {
-        Profile::default()
-            .put(&self.0, "t", "s", |at| at.time)
-            .put(&self.0, x, "m", |at| at.displacement.x)
-            .put(&self.0, y, "m", |at| at.displacement.y)
+    /// Puts its times \[s\] and displacements \[m\] as these columns.
+    pub fn put(&self, [t, x, y]: [ColumnKey; 3], record: &mut Record) {
+        record.put_column(t, &self.0, |at| at.time);
+        record.put_column(x, &self.0, |at| at.displacement.x);
+        record.put_column(y, &self.0, |at| at.displacement.y);
     }
 
     /// Where the place is at a time \[s\], between two points; `None` before the first and after the last.

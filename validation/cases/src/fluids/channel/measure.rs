@@ -3,7 +3,7 @@
 use touchstone_base::{
     absent::Absent,
     functions::cos,
-    record::{self, Profile, Record},
+    record::{self, ColumnKey, Profile, Record},
     settings,
 };
 use touchstone_harness::snapshot::{Point, Snapshot};
@@ -52,7 +52,7 @@ pub fn compare(setup: &ChannelSetup, fluid: &[Point], tau: f64, record: &mut Rec
     record.put(LINF.at(tau), linf(&u, &exact, setup.v));
     record.put(SHEAR_LOWER.at(tau), shear_error(setup, fluid, 0, t));
     record.put(SHEAR_UPPER.at(tau), shear_error(setup, fluid, 1, t));
-    record.profiles.insert(profile_at(tau), row_profile(setup, fluid, t));
+    record.profiles.insert(record::marked(PROFILE, tau), row_profile(setup, fluid, t));
     if tau >= WORST_FROM {
         let so_far = record.value(L2_WORST).unwrap_or(0.0);
         // NaN must stay: max() would drop it.
@@ -62,26 +62,31 @@ pub fn compare(setup: &ChannelSetup, fluid: &[Point], tau: f64, record: &mut Rec
 }
 
 /// Name of the profiles without their times.
-pub const PROFILE: &str = "u";
+const PROFILE: &str = "u";
+/// Distance of a row from the lower plate.
+pub const Y: ColumnKey = ColumnKey::new(PROFILE, "y", "m");
+/// Mean velocity of a row.
+pub const U: ColumnKey = ColumnKey::new(PROFILE, "u", "m/s");
+/// Exact velocity at this distance.
+pub const U_EXACT: ColumnKey = ColumnKey::new(PROFILE, "u_exact", "m/s");
 
-/// Name of the profile at νt/L² = `tau`.
-pub fn profile_at(tau: f64) -> String {
-    record::marked(PROFILE, tau)
+/// The profile at νt/L² = `tau`.
+pub fn profile_at(record: &Record, tau: f64) -> Option<&Profile> {
+    record.profiles.get(&record::marked(PROFILE, tau))
 }
 
 /// The velocity across a channel at all times of a record; none of a record without channel.
 pub fn velocities(record: &Record) -> Option<Profile> {
     let settings: ChannelSettings = settings::of_json(&record.run.settings).ok()?;
-    let at =
-        |tau: f64| Some((tau * settings.unit_of_time(), record.profiles.get(&profile_at(tau))?));
+    let at = |tau: f64| Some((tau * settings.unit_of_time(), profile_at(record, tau)?));
     let profiles: Vec<(f64, &Profile)> = settings.compared().into_iter().filter_map(at).collect();
     let column = |name: &str| -> Vec<f64> {
         profiles.iter().flat_map(|(_, of)| of.column(name)).copied().collect()
     };
-    let times = profiles.iter().flat_map(|(time, of)| of.column("y").iter().map(|_| *time));
+    let times = profiles.iter().flat_map(|(time, of)| of.column(Y.name).iter().map(|_| *time));
     let all = Profile::default().with("t", "s", times.collect());
-    let units = [("y", "m"), ("u", "m/s"), ("u_exact", "m/s")].into_iter();
-    let all = units.fold(all, |all, (name, unit)| all.with(name, unit, column(name)));
+    let columns = [Y, U, U_EXACT].into_iter();
+    let all = columns.fold(all, |all, key| all.with(key.name, key.unit, column(key.name)));
     (!profiles.is_empty()).then_some(all)
 }
 
@@ -118,9 +123,9 @@ fn row_profile(setup: &ChannelSetup, fluid: &[Point], t: f64) -> Profile {
     };
     let rows: Vec<&[Point]> = fluid.chunks(setup.columns).collect();
     Profile::default()
-        .put(&rows, "y", "m", |row| mean(row, &|p| p.position.y))
-        .put(&rows, "u", "m/s", |row| mean(row, &|p| p.velocity.x))
-        .put(&rows, "u_exact", "m/s", |row| mean(row, &|p| setup.exact(p.position.y, t)))
+        .put(&rows, Y.name, Y.unit, |row| mean(row, &|p| p.position.y))
+        .put(&rows, U.name, U.unit, |row| mean(row, &|p| p.velocity.x))
+        .put(&rows, U_EXACT.name, U_EXACT.unit, |row| mean(row, &|p| setup.exact(p.position.y, t)))
 }
 
 /// Error of the slope of u at a wall \[V/L\]: u = u_w + a d + b d² is fitted to the particles within 3 dx of
@@ -139,8 +144,10 @@ fn shear_error(setup: &ChannelSetup, fluid: &[Point], wall: usize, t: f64) -> f6
 
 /// How much of the end the pressure mode is kept of \[L/c0\].
 pub const WINDOW: f64 = 60.0;
-/// Name of the curve of the pressure mode; it is missing if the run was over before the window was full.
-pub const MODE: &str = "mode";
+/// Time since the end; the pressure mode is missing if the run was over before the window was full.
+pub const MODE_TIME: ColumnKey = ColumnKey::new("mode", "t", "L/c0");
+/// Amplitude of the pressure mode.
+pub const MODE: ColumnKey = ColumnKey::new("mode", "amplitude", "rho V^2");
 
 /// Amplitude \[ρV²\] of the lowest pressure mode cos(πy/L), which is 0 in the exact flow: the waves of
 /// hypothesis H3.
@@ -159,22 +166,18 @@ pub fn pressure_mode(setup: &ChannelSetup, now: &Snapshot) -> Result<f64, Absent
     Ok(mode / count)
 }
 
-/// The last [`WINDOW`] of the times \[s\] and amplitudes after every step, of a run that ended at `end`
-/// \[s\].
-pub fn last_of_mode(setup: &ChannelSetup, series: &[[f64; 2]], end: f64) -> Option<Profile> {
+/// Puts the last [`WINDOW`] of the times \[s\] and amplitudes after every step, of a run that ended at
+/// `end` \[s\].
+pub fn last_of_mode(setup: &ChannelSetup, series: &[[f64; 2]], end: f64, record: &mut Record) {
     let crossing = setup.settings.width / setup.medium.eos.sound_speed;
     let since_end = |t: f64| (t - end) / crossing;
     if since_end(0.0) > -WINDOW {
-        return None;
+        return;
     }
     let all = series.iter().map(|[t, amplitude]| [since_end(*t), *amplitude]);
     let rows: Vec<[f64; 2]> = all.filter(|[t, _]| *t >= -WINDOW).collect();
-    Some(Profile::default().put(&rows, "t", "L/c0", |[t, _]| *t).put(
-        &rows,
-        "amplitude",
-        "rho V^2",
-        |[_, amplitude]| *amplitude,
-    ))
+    record.put_column(MODE_TIME, &rows, |[t, _]| *t);
+    record.put_column(MODE, &rows, |[_, amplitude]| *amplitude);
 }
 
 #[cfg(test)]
@@ -222,7 +225,8 @@ mod tests {
             for metric in [L2, LINF, SHEAR_LOWER, SHEAR_UPPER] {
                 assert_near(&none, metric.at(0.1), 0.0, 1e-12);
             }
-            let [u, exact_u] = ["u", "u_exact"].map(|name| none.column(&profile_at(0.1), name));
+            let [u, exact_u] =
+                [U, U_EXACT].map(|key| profile_at(&none, 0.1).expect("put").column(key.name));
             assert!(u.len() == 20 && u.iter().zip(exact_u).all(|(u, e)| (u - e).abs() < 1e-9 * v));
             let faster = compared(&setup, 0.1, &|y, t| 1.02 * exact(y, t));
             assert_near(&faster, L2.at(0.1), 0.02, 1e-9);
@@ -279,10 +283,14 @@ mod tests {
         // A sample in every crossing of the channel by sound: the last 60 and the end are kept.
         let crossing = s.width / eos.sound_speed;
         let series: Vec<_> = (0..=100).map(|k| [f64::from(k) * crossing, f64::from(k)]).collect();
-        let until = |end: f64| last_of_mode(&setup, &series, end * crossing);
-        let last = until(100.001).expect("long enough");
-        assert_eq!(last.column("amplitude").first(), Some(&41.0));
-        assert!((last.column("t")[0] + 59.001).abs() < 1e-9);
-        assert!(until(59.0).is_none());
+        let until = |end: f64| {
+            let mut record = Record::default();
+            last_of_mode(&setup, &series, end * crossing, &mut record);
+            record
+        };
+        let last = until(100.001);
+        assert_eq!(last.column(MODE).first(), Some(&41.0));
+        assert!((last.column(MODE_TIME)[0] + 59.001).abs() < 1e-9);
+        assert!(until(59.0).profiles.is_empty());
     }
 }

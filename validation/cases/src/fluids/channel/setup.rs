@@ -10,10 +10,7 @@ use touchstone_harness::{case::Step, method::FirstRow, snapshot::Snapshot};
 use touchstone_maths::exact::StartUp;
 use touchstone_solver::{DivergenceBounds, PlaneWall, Role, Tait};
 
-use super::{
-    COUETTE, ChannelCase, POISEUILLE, TIMES,
-    measure::{self, MODE},
-};
+use super::{COUETTE, ChannelCase, POISEUILLE, TIMES, measure};
 use crate::{fluids::unit_flow::LIMIT_BOX, stabilisation::Stabilisation};
 
 touchstone_base::settings! {
@@ -330,8 +327,7 @@ impl Problem for ChannelSetup {
             measure::at_the_end(self, end, record);
         }
         if self.settings.watch_mode {
-            let last = measure::last_of_mode(self, &mode, end.time());
-            record.profiles.extend(last.map(|last| (MODE.into(), last)));
+            measure::last_of_mode(self, &mode, end.time(), record);
         }
     }
 }

@@ -23,7 +23,9 @@ use touchstone_report::Axis;
 
 use super::{
     ChannelSettings, ChannelTable, Flow, Group, ladder, maps,
-    measure::{ALL, L2, L2_WORST, LINF, PROFILE, SHEAR_LOWER, SHEAR_UPPER, V_RMS, profile_at},
+    measure::{
+        ALL, L2, L2_WORST, LINF, SHEAR_LOWER, SHEAR_UPPER, U, U_EXACT, V_RMS, Y, profile_at,
+    },
     plan, stiff, waves,
 };
 
@@ -89,7 +91,7 @@ fn profile() -> SubmittedCurve {
         },
         metrics: vec![L2, LINF, SHEAR_LOWER, SHEAR_UPPER, L2_WORST],
         coarsen: None,
-        shown: (PROFILE, &["y", "u", "u_exact"]),
+        shown: &[Y, U, U_EXACT],
     }
 }
 
@@ -180,8 +182,8 @@ fn curves(flow: Flow) -> Curves {
             flow.case().spec(variant, |s| s.rows = 20),
             move |record: &Record| {
                 let settings: ChannelSettings = record.run.settings_as();
-                let [u, exact, y] =
-                    ["u", "u_exact", "y"].map(|name| record.column(&profile_at(tau), name));
+                let Some(profile) = profile_at(record, tau) else { return Vec::new() };
+                let [u, exact, y] = [U, U_EXACT, Y].map(|key| profile.column(key.name));
                 let shown = |k: usize| match is_difference {
                     true => 100.0 * (u[k] - exact[k]) / settings.speed(),
                     false => u[k] / settings.speed(),

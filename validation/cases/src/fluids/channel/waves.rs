@@ -12,7 +12,10 @@ use touchstone_harness::{
 };
 use touchstone_maths::metrics::spectrum::dominant_period;
 
-use super::{ChannelTable, Group, Row, measure::MODE};
+use super::{
+    ChannelTable, Group, Row,
+    measure::{MODE, MODE_TIME},
+};
 
 /// Adds the runs at Re 20, to νt/L² = 1.5, for waves are judged by the end of a run: two sound speeds \[V\].
 /// The instability grows from the disorder of the start, 1e-4 dx, or from round-off if there is none.
@@ -26,9 +29,8 @@ pub fn runs(table: &mut ChannelTable) {
 /// The dominant period \[2L/c0\] of the mode; NaN, which fails a gate, if the run ended too early to
 /// determine it.
 fn period(record: Option<&Record>) -> f64 {
-    let Some(mode) = record.and_then(|record| record.profiles.get(MODE)) else { return f64::NAN };
-    let [times, values] = ["t", "amplitude"].map(|name| mode.column(name).iter().copied());
-    0.5 * dominant_period(&times.zip(values).collect::<Vec<_>>())
+    let mode = record.map(|record| record.curve([MODE_TIME, MODE])).filter(|mode| !mode.is_empty());
+    mode.map_or(f64::NAN, |mode| 0.5 * dominant_period(&mode))
 }
 
 /// Periods \[2L/c0\] that count as a bouncing wave: the next modes have 0.5 and, between a wall and a free

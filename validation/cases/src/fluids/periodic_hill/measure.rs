@@ -1,11 +1,13 @@
 //! Metrics: the field at stations and along the walls, averaged over the end of the run.
 
+use std::ops::{AddAssign, Div};
+
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::hypot,
-    record::{MetricKey, Profile, Record},
+    record::{MetricKey, Record},
 };
 use touchstone_harness::{
     pictures,
@@ -18,7 +20,7 @@ use touchstone_maths::metrics::{
 };
 use touchstone_solver::EquationOfState;
 
-use super::{HillSetup, reference::KNOWN_SETTINGS};
+use super::{HillSetup, columns, reference::KNOWN_SETTINGS};
 
 /// Points across a section.
 pub const POINTS: usize = 200;
@@ -53,9 +55,6 @@ touchstone_base::metrics! {
         "integral over a period of the pressure times slope of the hill";
 }
 
-/// Parts of the drag, named as in the reference.
-pub const DRAGS: [MetricKey; 3] = [HILL_SHEAR_DRAG, LID_SHEAR_DRAG, HILL_PRESSURE_DRAG];
-
 /// Metrics of the field at stations and walls.
 const OF_FIELD: &[MetricKey] = &[
     SECTION_FLUX,
@@ -87,24 +86,51 @@ pub struct Drive {
 /// Sums over samples of the last part of the run.
 #[derive(Default, Serialize, Deserialize)]
 pub struct Window {
-    /// u and v at the points of the stations.
-    sections: Vec<[f64; 2]>,
-    /// Shear stress on the hill and on the lid, pressure on the hill.
-    wall: Vec<[f64; 3]>,
-    /// Of every stretch.
+    /// Velocities at the points of the stations.
+    sections: Vec<Vector2<f64>>,
+    /// Stresses along the walls.
+    wall: Vec<WallSample>,
+    /// One for each stretch.
     pub drives: Vec<Drive>,
     samples: usize,
     /// Why there are no samples of the field.
     absent: Option<Absent>,
 }
 
-/// The places of the stations: x, y, weight of the section's height.
-fn places(setup: &HillSetup) -> Vec<[f64; 2]> {
+/// Stresses on the walls at a place along them.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct WallSample {
+    /// Along the tangent of the hill.
+    hill_shear: f64,
+    lid_shear: f64,
+    /// On the hill.
+    pressure: f64,
+}
+
+impl AddAssign for WallSample {
+    fn add_assign(&mut self, other: Self) {
+        self.hill_shear += other.hill_shear;
+        self.lid_shear += other.lid_shear;
+        self.pressure += other.pressure;
+    }
+}
+
+impl Div<f64> for WallSample {
+    type Output = Self;
+
+    fn div(self, by: f64) -> Self {
+        let Self { hill_shear, lid_shear, pressure } = self;
+        Self { hill_shear: hill_shear / by, lid_shear: lid_shear / by, pressure: pressure / by }
+    }
+}
+
+/// The points of the stations.
+fn places(setup: &HillSetup) -> Vec<Vector2<f64>> {
     let lid = setup.hill.lid();
     let at = |x: f64| {
         let floor = setup.floor(x);
         let y = move |k: usize| floor + (lid - floor) * (k as f64 + 0.5) / POINTS as f64;
-        (0..POINTS).map(move |k| [x, y(k)])
+        (0..POINTS).map(move |k| Vector2::new(x, y(k)))
     };
     STATIONS.into_iter().flat_map(at).collect()
 }
@@ -114,10 +140,10 @@ fn along(k: usize) -> f64 {
     9.0 * k as f64 / (WALL - 1) as f64
 }
 
-fn add<const N: usize>(sums: &mut Vec<[f64; N]>, values: impl Iterator<Item = [f64; N]>) {
+fn add<T: AddAssign>(sums: &mut Vec<T>, values: impl Iterator<Item = T>) {
     for (k, value) in values.enumerate() {
         match sums.get_mut(k) {
-            Some(sum) => sum.iter_mut().zip(value).for_each(|(s, v)| *s += v),
+            Some(sum) => *sum += value,
             None => sums.push(value),
         }
     }
@@ -143,19 +169,19 @@ impl Window {
     /// Adds a sample of these particles, with the weight of a squared distance.
     fn add(&mut self, setup: &HillSetup, points: Vec<FieldPoint>, weight: &dyn Fn(f64) -> f64) {
         let field = FittedField::new((weight, setup.flow.support), points, setup.hill.lid());
-        let sections = places(setup).into_iter().map(|place| field.at(place.into()).0.into());
+        let sections = places(setup).into_iter().map(|place| field.at(place).0);
         add(&mut self.sections, sections);
         self.samples += 1;
         add(&mut self.wall, (0..WALL).map(|k| wall(setup, &field, along(k))));
     }
 
-    fn mean<const N: usize>(&self, sums: &[[f64; N]]) -> Vec<[f64; N]> {
-        sums.iter().map(|s| s.map(|x| x / self.samples as f64)).collect()
+    fn mean<T: Copy + Div<f64, Output = T>>(&self, sums: &[T]) -> Vec<T> {
+        sums.iter().map(|sum| *sum / self.samples as f64).collect()
     }
 }
 
-/// Shear stress on the hill (along its tangent) and on the lid, pressure on the hill, at x.
-fn wall(setup: &HillSetup, field: &FittedField, x: f64) -> [f64; 3] {
+/// The stresses at x.
+fn wall(setup: &HillSetup, field: &FittedField, x: f64) -> WallSample {
     let (x, nu, lid) = (x.rem_euclid(setup.hill.period()), setup.flow.medium.nu, setup.hill.lid());
     let (floor, slope) = (setup.floor(x), setup.slope(x));
     let length = hypot(1.0, slope);
@@ -163,7 +189,7 @@ fn wall(setup: &HillSetup, field: &FittedField, x: f64) -> [f64; 3] {
     let (foot, above) = (Vector2::new(x, floor), |at: Vector2<f64>| at.y - setup.floor(at.x));
     let hill = field.slope_at(foot, above, tangent) * length;
     let top = field.slope_at(Vector2::new(x, lid), |at| lid - at.y, Vector2::x());
-    [nu * hill, nu * top, field.at(foot).1]
+    WallSample { hill_shear: nu * hill, lid_shear: nu * top, pressure: field.at(foot).1 }
 }
 
 /// Mean velocity along x over the fluid's area \[m/s\].
@@ -196,12 +222,11 @@ pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Recor
     }
     record.put_or(SECTION_FLUX, relative(section_flux(setup, &sections)), none);
     let drags = drags(setup, &wall);
-    for (part, drag) in DRAGS.into_iter().zip(drags) {
-        record.put(part, drag);
-    }
+    drags.iter().for_each(|(part, drag)| record.put(*part, *drag));
+    let drag: f64 = drags.iter().map(|(_, drag)| drag).sum();
     let balance = force.and_then(|force| {
         let none = || Absent::because("no body force has acted yet");
-        (force != 0.0).then(|| drags.iter().sum::<f64>() / (force * area) - 1.0).ok_or_else(none)
+        (force != 0.0).then(|| drag / (force * area) - 1.0).ok_or_else(none)
     });
     record.put_or_absent(DRAG_BALANCE, balance);
     let [separation, reattachment] = bubble(&wall);
@@ -209,44 +234,42 @@ pub fn measure(setup: &HillSetup, window: &Window, area: f64, record: &mut Recor
     record.put_or(SEPARATION, separation, none);
     record.put_or(REATTACHMENT, reattachment, none);
     compare(setup, &sections, record);
-    let stations: Vec<_> =
-        places(setup).iter().zip(&sections).map(|([x, y], [u, v])| [*x, *y, *u, *v]).collect();
-    let stations = Profile::default()
-        .put(&stations, "x", "H", |[x, ..]| *x)
-        .put(&stations, "y", "H", |[_, y, ..]| *y)
-        .put(&stations, "u", "U_b", |[.., u, _]| *u)
-        .put(&stations, "v", "U_b", |[.., v]| *v);
-    record.profiles.insert("stations".into(), stations);
-    let wall: Vec<_> = (0..).zip(&wall).collect();
-    let wall = Profile::default()
-        .put(&wall, "x", "H", |(k, _)| along(*k))
-        .put(&wall, "hill shear", "rho U_b^2", |(_, [hill, ..])| *hill)
-        .put(&wall, "lid shear", "rho U_b^2", |(_, [_, lid, _])| *lid)
-        .put(&wall, "pressure", "rho U_b^2", |(_, [.., pressure])| *pressure);
-    record.profiles.insert("wall".into(), wall);
+    let places = places(setup);
+    record.put_column(columns::X, &places, |place| place.x);
+    record.put_column(columns::Y, &places, |place| place.y);
+    record.put_column(columns::U, &sections, |velocity| velocity.x);
+    record.put_column(columns::V, &sections, |velocity| velocity.y);
+    record.put_column(columns::ALONG, &(0..WALL).collect::<Vec<_>>(), |k| along(*k));
+    record.put_column(columns::HILL_SHEAR, &wall, |at| at.hill_shear);
+    record.put_column(columns::LID_SHEAR, &wall, |at| at.lid_shear);
+    record.put_column(columns::PRESSURE, &wall, |at| at.pressure);
 }
 
-/// The largest error of the flux through a station, relative to the flux wanted; sections are the means of u
-/// and v at the points of the stations.
-fn section_flux(setup: &HillSetup, sections: &[[f64; 2]]) -> f64 {
+/// The largest error of the flux through a station, relative to the flux wanted; sections are the mean
+/// velocities at the points of the stations.
+fn section_flux(setup: &HillSetup, sections: &[Vector2<f64>]) -> f64 {
     let through = |k: usize| {
         let u = &sections[k * POINTS..(k + 1) * POINTS];
         let gap = setup.hill.lid() - setup.floor(STATIONS[k]);
-        u.iter().map(|u| u[0]).sum::<f64>() / POINTS as f64 * gap
+        u.iter().map(|u| u.x).sum::<f64>() / POINTS as f64 * gap
     };
     largest((0..STATIONS.len()).map(|k| (through(k) / setup.flux() - 1.0).abs()))
 }
 
-/// [`DRAGS`], by the trapezoidal rule over the period, whose ends are one point.
-fn drags(setup: &HillSetup, wall: &[[f64; 3]]) -> [f64; 3] {
+/// Parts of the drag, by the trapezoidal rule over the period, whose ends are one point.
+fn drags(setup: &HillSetup, wall: &[WallSample]) -> [(MetricKey, f64); 3] {
     let over = |f: &dyn Fn(usize) -> f64| (0..WALL - 1).map(f).sum::<f64>() * along(1);
-    [over(&|k| wall[k][0]), over(&|k| wall[k][1]), over(&|k| wall[k][2] * setup.slope(along(k)))]
+    [
+        (HILL_SHEAR_DRAG, over(&|k| wall[k].hill_shear)),
+        (LID_SHEAR_DRAG, over(&|k| wall[k].lid_shear)),
+        (HILL_PRESSURE_DRAG, over(&|k| wall[k].pressure * setup.slope(along(k)))),
+    ]
 }
 
 /// Where the longest stretch of backward flow on the hill starts and where it ends, of at least three places.
 /// One that reaches to the last crest does not count, and one that starts at the first has no start.
-fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
-    let shear: Vec<f64> = wall.iter().map(|[hill, ..]| *hill).collect();
+fn bubble(wall: &[WallSample]) -> [Option<f64>; 2] {
+    let shear: Vec<f64> = wall.iter().map(|at| at.hill_shear).collect();
     let zero = |after: usize| {
         let before = after.checked_sub(1)?;
         let (a, b) = (shear[before], shear[after]);
@@ -257,14 +280,14 @@ fn bubble(wall: &[[f64; 3]]) -> [Option<f64>; 2] {
 }
 
 /// Distances from the reference.
-fn compare(setup: &HillSetup, sections: &[[f64; 2]], record: &mut Record) {
+fn compare(setup: &HillSetup, sections: &[Vector2<f64>], record: &mut Record) {
     let Some(reference) = setup.reference else {
         let reason = format!("no reference exists for these settings, only for {KNOWN_SETTINGS}");
         return record.leave_all_out(&COMPARED, &Absent::because(reason));
     };
     let exact = || reference.stations.iter().flat_map(|s| &s.v);
-    record.put(L2_U, rms(sections.iter().zip(exact()).map(|(f, e)| f[0] - e.x)));
-    record.put(L2_V, rms(sections.iter().zip(exact()).map(|(f, e)| f[1] - e.y)));
+    record.put(L2_U, rms(sections.iter().zip(exact()).map(|(f, e)| f.x - e.x)));
+    record.put(L2_V, rms(sections.iter().zip(exact()).map(|(f, e)| f.y - e.y)));
     let gap = |metric: MetricKey| Some(record.value(metric)? - reference.number(metric)?);
     let force = gap(FORCE).zip(reference.number(FORCE)).map(|(gap, exact)| gap / exact);
     let (separation, reattachment) = (gap(SEPARATION), gap(REATTACHMENT));
@@ -422,18 +445,19 @@ mod tests {
         };
         let slope = |x: f64| (hill.wall(x + 1e-4) - hill.wall(x - 1e-4)) / 2e-4;
         let drags = [
-            integral(&|x| shear(&setup, x)[0]),
-            integral(&|x| shear(&setup, x)[1]),
-            integral(&|x| PRESSURE * sin(TAU * x / 9.0) * slope(x)),
+            (HILL_SHEAR_DRAG, integral(&|x| shear(&setup, x)[0])),
+            (LID_SHEAR_DRAG, integral(&|x| shear(&setup, x)[1])),
+            (HILL_PRESSURE_DRAG, integral(&|x| PRESSURE * sin(TAU * x / 9.0) * slope(x))),
         ];
-        for (metric, drag) in DRAGS.into_iter().zip(drags) {
+        for (metric, drag) in drags {
             assert_near(&record, metric, drag, 0.003 * drag.abs());
         }
         assert!((area / integral(&|x| hill.lid() - hill.wall(x)) - 1.0).abs() < 1e-4);
-        let balance = drags.iter().sum::<f64>() / (0.04 * area) - 1.0;
+        let balance = drags.iter().map(|(_, drag)| drag).sum::<f64>() / (0.04 * area) - 1.0;
         assert_near(&record, DRAG_BALANCE, balance, 0.003);
         // Profiles are where they say they are.
-        let [x, y, u, v] = ["x", "y", "u", "v"].map(|name| record.column("stations", name));
+        let [x, y, u, v] =
+            [columns::X, columns::Y, columns::U, columns::V].map(|key| record.column(key));
         let off = |k: usize| {
             let [exact_u, exact_v, _] = made_up(&setup, x[k], y[k]);
             (u[k] - exact_u).abs().max((v[k] - exact_v).abs())
@@ -441,7 +465,7 @@ mod tests {
         let off = (0..x.len()).map(off).fold(0.0, f64::max);
         assert!(off < 2.5e-3, "{off}");
         let [x, hill, lid] =
-            ["x", "hill shear", "lid shear"].map(|name| record.column("wall", name));
+            [columns::ALONG, columns::HILL_SHEAR, columns::LID_SHEAR].map(|key| record.column(key));
         assert_eq!((x.len(), x[40], x[360]), (WALL, 1.0, 9.0));
         let worst = |column: &[f64], wall: usize| {
             let off = |k: usize| (column[k] - shear(&setup, x[k])[wall]).abs();
@@ -461,9 +485,9 @@ mod tests {
         record.put(SEPARATION, number(SEPARATION) - 0.03);
         record.put(REATTACHMENT, number(REATTACHMENT) + 0.04);
         let exact = reference.stations.iter().flat_map(|station| &station.v);
-        let sections: Vec<[f64; 2]> = exact.map(|v| [v.x + 0.01, v.y - 0.02]).collect();
+        let sections: Vec<_> = exact.map(|v| v + Vector2::new(0.01, -0.02)).collect();
         let heights = reference.stations.iter().flat_map(|station| &station.y);
-        assert!(places(&setup).iter().zip(heights).all(|(p, y)| (p[1] - y).abs() < 1e-4));
+        assert!(places(&setup).iter().zip(heights).all(|(p, y)| (p.y - y).abs() < 1e-4));
         compare(&setup, &sections, &mut record);
         for (metric, exact) in [
             (L2_U, 0.01),

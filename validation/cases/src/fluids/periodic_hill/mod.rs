@@ -5,6 +5,7 @@
 //! Judged against finite elements (`references/periodic_hill`), because no published numbers exist for this
 //! flow.
 
+mod columns;
 mod measure;
 mod plan;
 mod reference;

@@ -7,7 +7,10 @@ use touchstone_base::{
     record::MetricKey,
     reference::{Reference, ReferenceError, Uncertain},
 };
-use touchstone_maths::{geometry::Hill, metrics::norms::rms};
+use touchstone_maths::{
+    geometry::Hill,
+    metrics::{curve::Points, norms::rms},
+};
 
 use super::HillSettings;
 
@@ -38,8 +41,8 @@ pub struct HillReference {
     pub stations: Vec<Station>,
     /// More of them, to start from: not to compare with.
     starts: Vec<Station>,
-    /// x \[H\], shear stress on the hill, on the lid \[ρ U_b²\].
-    pub wall: Vec<[f64; 3]>,
+    /// Shear stress on the hill \[ρ U_b²\] over x \[H\].
+    pub hill_shear: Points,
     re: f64,
     /// Root mean square of the uncertainty of u over all points of the profiles \[U_b\].
     pub uncertainty: f64,
@@ -59,7 +62,7 @@ impl HillReference {
     fn read(re: f64) -> Result<Self, ReferenceError> {
         let (package, text) = (Reference::load("periodic_hill")?, re.to_string());
         let of = [("re", &*text)];
-        let wall = package.table("wall")?.select(&of, ["x", "hill_shear", "lid_shear"])?;
+        let hill_shear = package.table("wall")?.select(&of, ["x", "hill_shear"])?.into_iter();
         let profiles = package.table("profiles")?;
         let uncertainty = profiles.select(&of, ["u_uncertainty"])?;
         let profiles = profiles.select(&of, ["x", "y", "u", "v"])?;
@@ -70,7 +73,7 @@ impl HillReference {
         Ok(Self {
             stations: stations(&profiles),
             starts: stations(&starts),
-            wall,
+            hill_shear: hill_shear.map(|[x, shear]| (x, shear)).collect(),
             re,
             uncertainty: rms(uncertainty.into_iter().map(|[u]| u)),
         })
@@ -180,7 +183,7 @@ mod tests {
         let at = |re| HillReference::of(&HillSettings { re, ..HillSettings::default() });
         for re in [10.0, 50.0, 100.0] {
             let reference = at(re).expect("sound").expect("computed");
-            assert_eq!((reference.stations.len(), reference.wall.len()), (10, 361));
+            assert_eq!((reference.stations.len(), reference.hill_shear.len()), (10, 361));
             assert!(reference.stations.iter().all(|s| s.y.len() == 200));
             assert_eq!(reference.number(SEPARATION).is_some(), re > 10.0);
             // The start: its own stations unchanged, and the finer profiles as far as it contains them.

@@ -13,7 +13,7 @@ use touchstone_schemes::hill::{Driving, HillMethod};
 use touchstone_solver::Role;
 
 use super::{
-    HillSettings,
+    HillSettings, columns,
     measure::{Drive, Window, mean_velocity, measure, particles},
     reference::{HillReference, KNOWN_SETTINGS},
 };
@@ -272,12 +272,10 @@ impl Problem for HillSetup {
             measure(self, &window, area, record);
             particles(self, end, OptionalOutput::of(&record.run).particles, record);
         }
-        let series = Profile::default()
-            .put(&series, "t", "H/U_b", |at| at.time)
-            .put_known(&series, "force", "U_b^2/H", |at| at.drive.force.clone())
-            .put_known(&series, "flux", "U_b H", |at| at.drive.flux.clone())
-            .put(&series, "kinetic energy", "rho U_b^2 H^2", |at| at.kinetic);
-        record.profiles.insert("series".into(), series);
+        record.put_column(columns::TIME, &series, |at| at.time);
+        record.put_known_column(columns::FORCE, &series, |at| at.drive.force.clone());
+        record.put_known_column(columns::FLUX, &series, |at| at.drive.flux.clone());
+        record.put_column(columns::KINETIC_ENERGY, &series, |at| at.kinetic);
     }
 }
 

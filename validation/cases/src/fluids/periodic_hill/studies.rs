@@ -19,7 +19,7 @@ use touchstone_maths::metrics::{history::differences, norms::rms};
 use touchstone_report::{Axis, ColourMap, percent};
 
 use super::{
-    CASE, HillSettings, NAME, RECOMMENDED,
+    CASE, HillSettings, NAME, RECOMMENDED, columns,
     measure::{
         ALL, DRAG_BALANCE, FORCE, FORCE_ERROR, L2_U, L2_V, OUTSIDE, POINTS, REATTACHMENT_ERROR,
         SEPARATION_ERROR,
@@ -241,7 +241,7 @@ fn profile(row: &Row, reference: &HillReference, is_difference: bool) -> CurvePa
     let line = |(k, station): (usize, &Station)| {
         let known = known(station);
         let points = move |record: &Record| {
-            let [x, y, u] = ["x", "y", "u"].map(|name| record.column("stations", name));
+            let [x, y, u] = [columns::X, columns::Y, columns::U].map(|key| record.column(key));
             let subtracted = |j: usize| match is_difference {
                 true => differences(&known, &[(y[j], 0.0)]).map_or(f64::NAN, |found| found[0]),
                 false => 0.0,
@@ -271,12 +271,11 @@ fn profile(row: &Row, reference: &HillReference, is_difference: bool) -> CurvePa
 
 /// Shear stress along the hill.
 fn shear(rows: &[&Row], reference: &HillReference) -> CurvePanel {
-    let columns = ["x", "hill shear"];
     let line = |row: &&Row| {
         let name = format!("{}, {}", row.variant, name(row));
-        CurveOf::columns(name, row.run.spec.clone(), "wall", columns)
+        CurveOf::columns(name, row.run.spec.clone(), [columns::ALONG, columns::HILL_SHEAR])
     };
-    let exact = reference.wall.iter().map(|w| (w[0], w[1])).collect();
+    let exact = reference.hill_shear.clone();
     let title = format!("Re {}: shear on the hill", rows[0].settings.re);
     let axes = ["x/H", "shear stress [ρ U_b²]"];
     CurvePanel::linear(&title, axes, rows.iter().map(line).collect(), ("finite elements", exact))
@@ -285,7 +284,7 @@ fn shear(rows: &[&Row], reference: &HillReference) -> CurvePanel {
 /// Completed, and no sample of the kinetic energy exceeds twice the first one after the start, which is near
 /// the solution.
 pub fn is_stable(record: &Record) -> bool {
-    let energy = record.column("series", "kinetic energy").get(1..).unwrap_or_default();
+    let energy = record.column(columns::KINETIC_ENERGY).get(1..).unwrap_or_default();
     let bounded = |first: &f64| energy.iter().all(|e| *e <= 2.0 * first);
     record.status == Status::Completed && energy.first().is_some_and(bounded)
 }
@@ -360,7 +359,7 @@ fn starts(table: &Table) -> Option<impl Study + use<>> {
                        averages.";
         let section = Section::new("periodic-hill-starts", "Whether the start matters");
         pairs.iter().fold(section, |section, (re, [rest, other])| {
-            let u = |run: &Planned| Some(runs.completed(&run.spec)?.column("stations", "u"));
+            let u = |run: &Planned| Some(runs.completed(&run.spec)?.column(columns::U));
             let both = u(rest).zip(u(other));
             let found = both.map_or(f64::NAN, |(a, b)| rms(a.iter().zip(b).map(|(a, b)| a - b)));
             let metric = "rms over stations of the difference of u [U_b]";

@@ -13,6 +13,13 @@ use touchstone_harness::snapshot::{Point, Snapshot, kinetic};
 use touchstone_maths::metrics::history::passes;
 use touchstone_solver::Symmetric;
 
+/// Times and displacements of the end.
+pub const COLUMNS: [ColumnKey; 3] = [
+    ColumnKey::new("end", "t", "s"),
+    ColumnKey::new("end", "x", "m"),
+    ColumnKey::new("end", "y", "m"),
+];
+
 touchstone_base::metrics! {
     all OF_PATH;
     MEAN_X = "mean_x" ["m"]
@@ -138,13 +145,12 @@ impl Watch<CantileverSettings> for End {
         let changes = changes.collect::<Result<Vec<f64>, Absent>>();
         let change = changes.map(|all| all.into_iter().fold(0.0, most) / kinetic);
         record.put_or_absent(ENERGY_CHANGE, change);
-        let energies = Profile::default()
-            .put(&self.energies, "t", "s", |of| of.time)
-            .put(&self.energies, "kinetic", "J/m", |of| of.kinetic)
-            .put_known(&self.energies, "change", "J/m", |of| of.change.clone());
-        record.profiles.insert("energy".into(), energies);
+        let energy = |name, unit| ColumnKey::new("energy", name, unit);
+        record.put_column(energy("t", "s"), &self.energies, |of| of.time);
+        record.put_column(energy("kinetic", "J/m"), &self.energies, |of| of.kinetic);
+        record.put_known_column(energy("change", "J/m"), &self.energies, |of| of.change.clone());
         let path = self.path;
-        record.profiles.insert("end".into(), path.profile(["x", "y"]));
+        path.put(COLUMNS, record);
         if path.0.len() < LEAST_POINTS {
             let why = Absent::NotGiven(format!("{LEAST_POINTS} times, for the path of the end"));
             let all = COMPARED.into_iter().flat_map(|(metric, error)| [metric, error]);

@@ -158,6 +158,6 @@ fn path_of_end() -> SubmittedCurve {
             let coarse = CantileverSettings { n: 2, ..run.settings_as() };
             RunSpec { settings: settings::to_json(&coarse), ..run.clone() }
         }),
-        shown: ("end", &["t", "x", "y"]),
+        shown: &end::COLUMNS,
     }
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use touchstone_base::{
     absent::Absent,
     functions::hypot,
-    record::{Profile, Record, Status},
+    record::{Record, Status},
 };
 use touchstone_harness::{
     pictures,
@@ -19,6 +19,7 @@ use touchstone_solver::{EquationOfState, Symmetric};
 
 use super::{
     RingSettings,
+    columns::{HEIGHT, PLACE, TIME, VELOCITY, WIDTH, series},
     metrics::{
         ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX, HOLES_LEAST, IMPULSE, MOMENTUM, PHASES,
         PIECES_MOST, RESTITUTION, STRETCH_MOST, T_IMPULSE_1, T_IMPULSE_99, TORN_AT, VOLUME_LEAST,
@@ -192,19 +193,19 @@ impl RingHistory {
     }
 
     /// The series, with the energies if they are known.
-    fn profile(&self) -> Profile {
-        Profile::default()
-            .put(&self.samples, "t", "L/c0", |at| at.time)
-            .put(&self.samples, "x_c", "L", |at| at.place)
-            .put(&self.samples, "v_c", "c0", |at| at.velocity)
-            .put(&self.samples, "width", "L", |at| at.extents.x)
-            .put(&self.samples, "height", "L", |at| at.extents.y)
-            .put(&self.samples, "pieces", "1", |at| at.pieces)
-            .put_known(&self.samples, "kinetic", "J/m", |at| at.energies[0].clone())
-            .put_known(&self.samples, "compression", "J/m", |at| at.energies[1].clone())
-            .put_known(&self.samples, "shear", "J/m", |at| at.energies[2].clone())
-            .put(&self.samples, "holes", "1", |at| at.holes)
-            .put(&self.samples, "stretch", "dx", |at| at.stretch)
+    fn put_series(&self, record: &mut Record) {
+        let samples = &self.samples;
+        record.put_column(TIME, samples, |at| at.time);
+        record.put_column(PLACE, samples, |at| at.place);
+        record.put_column(VELOCITY, samples, |at| at.velocity);
+        record.put_column(WIDTH, samples, |at| at.extents.x);
+        record.put_column(HEIGHT, samples, |at| at.extents.y);
+        record.put_column(series("pieces", "1"), samples, |at| at.pieces);
+        for (k, energy) in ["kinetic", "compression", "shear"].into_iter().enumerate() {
+            record.put_known_column(series(energy, "J/m"), samples, |at| at.energies[k].clone());
+        }
+        record.put_column(series("holes", "1"), samples, |at| at.holes);
+        record.put_column(series("stretch", "dx"), samples, |at| at.stretch);
     }
 
     /// The sum of the energies of each sample \[J/m\].
@@ -221,8 +222,9 @@ impl RingHistory {
         self.samples.iter().map(|at| (at.time, of(at))).collect()
     }
 
-    /// Metrics of the whole run, and the distances of a variant from finite elements.
+    /// The series and metrics of the whole run, and the distances of a variant from finite elements.
     pub fn put(&self, s: &RingSettings, record: &mut Record) {
+        self.put_series(record);
         let all = || self.samples.iter();
         let least = |of: fn(&RingSample) -> f64| all().map(of).fold(f64::INFINITY, f64::min);
         let most = |of: fn(&RingSample) -> f64| all().map(of).fold(0.0, f64::max);
@@ -253,9 +255,7 @@ impl RingHistory {
         let phases = ContactPhase::all(&velocity, mass, ROUND_OFF * s.speed);
         let last = velocity.last().map_or(f64::NAN, |(_, velocity)| *velocity);
         put_contact(&phases, last / s.speed, record);
-        let [place, width] = [self.points(|at| at.place), self.points(|at| at.extents.x)];
-        let found = [place, velocity, width, self.points(|at| at.extents.y)];
-        reference::compare(s, &phases, &found, record);
+        reference::compare(s, &phases, record);
     }
 }
 
@@ -295,17 +295,17 @@ impl Watch<RingSettings> for RingHistory {
     }
 
     fn measure(mut self, s: &RingSettings, end: &Snapshot<Symmetric>, record: &mut Record) {
-        if record.status == Status::Completed {
-            if self.samples.last().is_some_and(|last| last.time < end.time() * s.c0()) {
-                self.sample(s, end);
-            }
-            self.put(s, record);
-            let particles = along_flight(s, end.all());
-            let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
-            let of_ring = 0.5 * mass * s.speed().max(f64::MIN_POSITIVE);
-            record.put(MOMENTUM, momentum(&particles).norm() / of_ring);
+        if record.status != Status::Completed {
+            return self.put_series(record);
         }
-        record.profiles.insert("series".into(), self.profile());
+        if self.samples.last().is_some_and(|last| last.time < end.time() * s.c0()) {
+            self.sample(s, end);
+        }
+        self.put(s, record);
+        let particles = along_flight(s, end.all());
+        let mass = particles.iter().fold(0.0, |sum, p| sum + p.mass);
+        let of_ring = 0.5 * mass * s.speed().max(f64::MIN_POSITIVE);
+        record.put(MOMENTUM, momentum(&particles).norm() / of_ring);
     }
 }
 
@@ -404,10 +404,10 @@ mod tests {
             let set = |s: &mut RingSettings| (s.spacing, s.end, s.dt) = (0.5, 5.0, dt);
             let spec = RUBBER_RINGS.spec("leapfrog", set);
             let record = RUBBER_RINGS.run(&spec, &Context::default()).expect("a run");
-            let times = record.column("series", "t");
+            let times = record.column(TIME);
             assert_eq!((times.first(), times.last()), (Some(&0.0), Some(&5.0)));
             assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
-            assert_eq!(record.column("series", "x_c")[0], 5.0);
+            assert_eq!(record.column(PLACE)[0], 5.0);
         }
     }
 }

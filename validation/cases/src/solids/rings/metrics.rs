@@ -71,7 +71,7 @@ pub const COMPARED: [(MetricKey, MetricKey); 3] = [
     (HEIGHT_MAX, HEIGHT_MAX_ERROR),
 ];
 
-/// Distances of the columns of [`super::reference::RingReference::COLUMNS`].
+/// Distances of the histories of place, velocity, width and height.
 pub const RMS: [MetricKey; 4] = [X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS];
 
 /// The mark of the metrics of a phase of contact, counted from 0.

@@ -4,6 +4,7 @@
 //! Judged against conservation and an independent finite-element run of one ring
 //! against a frictionless plane (`references/rubber_rings`), which is half of this problem.
 
+mod columns;
 mod measure;
 mod metrics;
 mod plan;

@@ -192,7 +192,7 @@ impl Distances<'_> {
     /// When finite elements touch first, and when they part \[L/c0\].
     fn contact(&self) -> [f64; 2] {
         let phases = &self.exact.phases;
-        [phases[0][1], phases[phases.len() - 1][2]]
+        [phases[0].begin, phases[phases.len() - 1].end]
     }
 
     /// Restitution, largest height, least width, and the path of the centre of mass.
@@ -206,7 +206,7 @@ impl Distances<'_> {
         if flatter > allowed {
             gates[2] = faces::soft(gates[2].clone(), Bound::Within(-flatter, allowed));
         }
-        let [x, v, ..] = &self.exact.histories;
+        let (x, v) = (&self.exact.place, &self.exact.velocity);
         let least = x.iter().map(|(_, x)| *x).fold(f64::INFINITY, f64::min);
         let last = x.len() - 1;
         let allowed = allowed * (x[0].1 - least + x[last].1 - least);

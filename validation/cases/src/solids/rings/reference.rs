@@ -5,11 +5,12 @@ use touchstone_base::{
     record::{MetricKey, Record},
     reference::{Reference, Uncertain},
 };
-use touchstone_maths::metrics::{contact::ContactPhase, history, norms::rms};
+use touchstone_maths::metrics::{contact::ContactPhase, curve::Points, history, norms::rms};
 use touchstone_solver::lagrangian::{Hencky, Law as _};
 
 use super::{
     RingSettings,
+    columns::{HEIGHT, PLACE, TIME, VELOCITY, WIDTH},
     metrics::{
         COMPARED, CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, HEIGHT_RMS, HISTORIES, IMPULSE_ERROR,
         OF_HISTORIES, RMS, WIDTH_RMS, X_C_RMS, X_C_WORST, phase,
@@ -21,17 +22,34 @@ const PACKAGE: &str = "rubber_rings";
 /// The law of (10) to (12), as the tables name it.
 const JAUMANN: &str = "jaumann";
 
+/// A phase of contact.
+#[derive(Clone, Debug)]
+pub struct Phase {
+    /// \[ρ c₀ L²\].
+    pub impulse: f64,
+    /// When 1 % of the impulse has passed \[L/c0\].
+    pub begin: f64,
+    /// When 99 % of the impulse have passed \[L/c0\].
+    pub end: f64,
+}
+
 /// Results of finite elements for one law and speed.
 #[derive(Clone, Debug)]
 pub struct RingReference {
     quantities: Quantities,
-    /// Phases of contact: impulse \[ρ c₀ L²\] and the times when 1 and 99 % of it have passed \[L/c0\].
-    pub phases: Vec<[f64; 3]>,
-    /// The uncertainty of the last of these times \[L/c0\].
+    /// Phases of contact.
+    pub phases: Vec<Phase>,
+    /// The uncertainty of the end of the last phase \[L/c0\].
     pub doubt: f64,
-    /// The columns of [`RingReference::COLUMNS`] over t \[L/c0\].
-    pub histories: Histories,
-    /// The uncertainty of [`HISTORIES`], from the uncertainties of the columns.
+    /// [`PLACE`] over t \[L/c0\].
+    pub place: Points,
+    /// [`VELOCITY`] over t \[L/c0\].
+    pub velocity: Points,
+    /// [`WIDTH`] over t \[L/c0\].
+    pub width: Points,
+    /// [`HEIGHT`] over t \[L/c0\].
+    pub height: Points,
+    /// The uncertainty of [`HISTORIES`], from the uncertainties of the histories.
     pub uncertainty: f64,
     /// Least distance of the ring from the plane \[L\] over t \[L/c0\].
     gap: Vec<(f64, f64)>,
@@ -51,11 +69,9 @@ pub fn outlines(speed: f64, time: f64) -> Vec<Vec<(f64, f64)>> {
     ["outer", "inner"].map(face).into_iter().filter(|line| !line.is_empty()).collect()
 }
 
-/// Points of [`RingReference::COLUMNS`] over t \[L/c0\].
-type Histories = [Vec<(f64, f64)>; 4];
-
-/// Adds the distances from finite elements to the metrics of a measured run, or the reason for their absence.
-pub fn compare(s: &RingSettings, phases: &[ContactPhase], found: &Histories, record: &mut Record) {
+/// Adds the distances from finite elements to a record with metrics and series, or the reason for their
+/// absence.
+pub fn compare(s: &RingSettings, phases: &[ContactPhase], record: &mut Record) {
     let Some(exact) = RingReference::of(&record.run.variant, s) else {
         let errors = COMPARED.map(|(_, error)| error);
         let lacks = Absent::because(
@@ -69,13 +85,10 @@ pub fn compare(s: &RingSettings, phases: &[ContactPhase], found: &Histories, rec
         record.put_or(error, value, "the run has no number to compare");
     }
     exact.compare_phases(phases, record);
-    exact.compare_histories(found, record);
+    exact.compare_histories(record);
 }
 
 impl RingReference {
-    /// Columns of the series: centre of mass, its velocity, extents.
-    pub const COLUMNS: [&'static str; 4] = ["x_c", "v_c", "width", "height"];
-
     /// The reference of the law of a variant with these settings; `None` where nothing was computed for them.
     pub fn of(variant: &str, settings: &RingSettings) -> Option<Self> {
         let rings = |s: &RingSettings| (s.inner, s.outer, s.centre, s.shear_modulus, s.end);
@@ -86,7 +99,8 @@ impl RingReference {
         let speed = settings.speed.to_string();
         let of = [("law", law), ("speed", &*speed)];
         let curve = |table, columns| Reference::curve(PACKAGE, table, columns, &of);
-        let histories = Self::COLUMNS.map(|name| curve("series", ["t", name]));
+        let [place, velocity, width, height] =
+            [PLACE, VELOCITY, WIDTH, HEIGHT].map(|column| curve("series", ["t", column.name]));
         let doubts = ["x_c_uncertainty", "width_uncertainty", "height_uncertainty"]
             .map(|name| rms(curve("series", ["t", name]).into_iter().map(|(_, doubt)| doubt)));
         let begins = curve("phases", ["impulse_1", "impulse"]);
@@ -97,10 +111,15 @@ impl RingReference {
         let strains = Reference::curve(PACKAGE, "checks", ["mesh", "value"], &strain);
         Some(Self {
             quantities: quantities(PACKAGE, &of)?,
-            phases: phases.map(|((begin, impulse), (end, _))| [impulse, begin, end]).collect(),
+            phases: phases
+                .map(|((begin, impulse), (end, _))| Phase { impulse, begin, end })
+                .collect(),
             doubt,
-            uncertainty: largest(doubts) / diameter(&histories),
-            histories,
+            uncertainty: largest(doubts) / diameter(&width),
+            place,
+            velocity,
+            width,
+            height,
             gap: curve("series", ["t", "gap"]),
             // The finest mesh comes last.
             strain: strains.last().map_or(f64::NAN, |(_, strain)| *strain),
@@ -115,17 +134,24 @@ impl RingReference {
     /// When the ring of finite elements is farther than this distance \[L\] from the plane after the last
     /// phase \[L/c₀\].
     pub fn leaves(&self, reach: f64) -> f64 {
-        let end = self.phases[self.phases.len() - 1][2];
+        let end = self.phases[self.phases.len() - 1].end;
         let mut gaps = self.gap.iter();
         gaps.find(|(t, gap)| *t > end && *gap > reach).map_or(f64::NAN, |(t, _)| *t)
     }
 
     /// Distances of centre, velocity and extents over the times of finite elements, all of which a run must
     /// have.
-    fn compare_histories(&self, found: &Histories, record: &mut Record) {
-        let pairs = found.iter().zip(&self.histories);
-        let found: Result<Vec<Vec<f64>>, _> =
-            pairs.map(|(found, exact)| history::differences(found, exact)).collect();
+    fn compare_histories(&self, record: &mut Record) {
+        let histories = [
+            (PLACE, &self.place),
+            (VELOCITY, &self.velocity),
+            (WIDTH, &self.width),
+            (HEIGHT, &self.height),
+        ];
+        let found: Result<Vec<Vec<f64>>, _> = histories
+            .map(|(column, exact)| history::differences(&record.curve([TIME, column]), exact))
+            .into_iter()
+            .collect();
         let found = match found {
             Ok(found) => found,
             Err(why) => return record.leave_all_out(&OF_HISTORIES, &Absent::because(why)),
@@ -135,7 +161,7 @@ impl RingReference {
         }
         let lengths = [X_C_RMS, WIDTH_RMS, HEIGHT_RMS].map(|key| record.value(key));
         let lengths = lengths.map(|length| length.unwrap_or(f64::NAN));
-        record.put(HISTORIES, largest(lengths) / diameter(&self.histories));
+        record.put(HISTORIES, largest(lengths) / diameter(&self.width));
         let path = &found[0];
         let worst = path.iter().copied().max_by(|a, b| a.abs().total_cmp(&b.abs()));
         record.put(X_C_WORST, worst.unwrap_or(f64::NAN));
@@ -148,7 +174,7 @@ impl RingReference {
                               at the end";
         let is_same = found.len() == self.phases.len();
         let is_over = |found: &&ContactPhase| found.is_over;
-        for (k, [impulse, begin, end]) in self.phases.iter().enumerate() {
+        for (k, Phase { impulse, begin, end }) in self.phases.iter().enumerate() {
             let same = found.get(k).filter(|_| is_same).filter(is_over);
             let first = if k == 0 { found.first() } else { same };
             let is_last = k + 1 == self.phases.len();
@@ -165,7 +191,7 @@ impl RingReference {
 }
 
 /// The outer diameter \[L\]: the width before the rings touch.
-fn diameter([_, _, width, _]: &Histories) -> f64 {
+fn diameter(width: &Points) -> f64 {
     width.first().map_or(f64::NAN, |(_, width)| *width)
 }
 
@@ -180,13 +206,13 @@ mod tests {
         for time in [32.0, 60.0, 80.0, 120.0, 200.0] {
             let lines = outlines(0.059, time);
             assert_eq!(lines.len(), 2);
-            let series = &paper.histories;
-            let at = series[0].iter().position(|(t, _)| *t == time).expect("a time of the series");
+            let at =
+                paper.place.iter().position(|(t, _)| *t == time).expect("a time of the series");
             let extent = |of: fn(&(f64, f64)) -> f64| {
                 let all = || lines[0].iter().map(of);
                 all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
             };
-            let (width, height) = (series[2][at].1, series[3][at].1);
+            let (width, height) = (paper.width[at].1, paper.height[at].1);
             let (found_width, found_height) = (extent(|p| p.0), extent(|p| p.1));
             // Every fourth node of the face is there.
             assert!((found_width - width).abs() < 0.02, "{found_width} for {width} at {time}");
@@ -204,8 +230,8 @@ mod tests {
         let restitution = paper.number(RESTITUTION).expect("measured");
         assert!((restitution.value - 0.8004).abs() < 1e-3 && restitution.uncertainty < 0.01);
         assert!(at(0.03).is_some() && at(0.12).is_none());
-        assert!((paper.phases[0][0] - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
-        let start = paper.histories.iter().map(|points| points[0].1).collect::<Vec<f64>>();
+        assert!((paper.phases[0].impulse - 1.19129).abs() < 1e-4 && paper.phases.len() == 2);
+        let start = [&paper.place, &paper.velocity, &paper.width, &paper.height].map(|of| of[0].1);
         assert_eq!(start, [5.0, -0.059, 8.0, 8.0]);
         let other = RingReference::of(LAGRANGIAN, &RingSettings::default()).expect("its law");
         assert_eq!(other.number(RESTITUTION).map(|found| found.value), Some(0.795617));

@@ -14,10 +14,13 @@ use touchstone_harness::{
         causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
     },
 };
+use touchstone_maths::metrics::curve::Points;
 use touchstone_report::{Colour, ColourMap, sig};
 
 use super::{
-    RUBBER_RINGS, RingSettings, is_stable,
+    RUBBER_RINGS, RingSettings,
+    columns::{HEIGHT, PLACE, TIME, VELOCITY, WIDTH},
+    is_stable,
     measure::{PICTURES, halves},
     metrics::{
         self, HISTORIES, HOLES_LEAST, PIECES_MOST, RESTITUTION, RESTITUTION_ERROR, TORN_AT,
@@ -58,7 +61,7 @@ fn path_and_extents() -> SubmittedCurve {
         },
         metrics: [&metrics::OF_HISTORIES[..], &metrics::OF_EXTENTS].concat(),
         coarsen: None,
-        shown: ("series", &["t", "x_c", "v_c", "width", "height"]),
+        shown: &[TIME, PLACE, VELOCITY, WIDTH, HEIGHT],
     }
 }
 
@@ -208,24 +211,26 @@ fn card(accuracy: &Accuracy) -> Card {
 fn histories(table: &Table) -> Curves {
     let settings = RingSettings::default();
     let exact = RingReference::of(LAGRANGIAN, &settings);
-    let shown = [(0, "centre of mass"), (2, "width"), (3, "height")];
-    let lines = |k: usize| {
+    let exact = exact.map(|exact| [exact.place, exact.width, exact.height]).unwrap_or_default();
+    let [place, width, height] = exact;
+    let shown =
+        [(PLACE, "centre of mass", place), (WIDTH, "width", width), (HEIGHT, "height", height)];
+    let lines = |column: ColumnKey| {
         let rows = SHOWN.map(|of| table.of(Group::Paper).filter(move |row| row.variant == of));
         rows.into_iter().flatten().map(move |row| {
             let name = format!("{}, spacing {} L", row.variant, row.settings.spacing);
-            CurveOf::columns(name, row.run.spec.clone(), "series", ["t", RingReference::COLUMNS[k]])
+            CurveOf::columns(name, row.run.spec.clone(), [TIME, column])
         })
     };
-    let known =
-        |k: usize| exact.as_ref().map(|exact| exact.histories[k].clone()).unwrap_or_default();
     let time = "t [L/c0]";
-    let path = |(k, name): (usize, &str)| {
+    let path = |(column, name, exact): &(ColumnKey, &str, Points)| {
         let axes = [time, &format!("{name} [L]")];
-        CurvePanel::linear(name, axes, lines(k).collect(), ("finite elements", known(k)))
+        let exact = ("finite elements", exact.clone());
+        CurvePanel::linear(name, axes, lines(*column).collect(), exact)
     };
-    let difference = |(k, name): (usize, &str)| {
+    let difference = |(column, name, exact): &(ColumnKey, &str, Points)| {
         let share = 100.0 / (2.0 * settings.outer);
-        let lines = lines(k).map(|line| line.minus(known(k), share)).collect();
+        let lines = lines(*column).map(|line| line.minus(exact.clone(), share)).collect();
         let title = format!("{name} minus finite elements");
         let axes = [time, "difference [% of the diameter]"];
         CurvePanel::of_differences(&title, axes, lines, [0.0, settings.end])
@@ -234,7 +239,7 @@ fn histories(table: &Table) -> Curves {
                    across the line of flight of one of two rings that collide at 0.059 c0 each. Finite \
                    elements have the law of the recommended variant, and are uncertain by less than the \
                    width of the line.";
-    let panels = shown.map(path).into_iter().chain(shown.map(difference)).collect();
+    let panels = shown.iter().map(path).chain(shown.iter().map(difference)).collect();
     Curves::new("rubber-rings-histories", "Path, width and height of a ring", caption, panels)
 }
 

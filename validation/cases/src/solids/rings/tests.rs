@@ -6,13 +6,14 @@ use approx::assert_abs_diff_eq;
 use nalgebra::Vector2;
 use touchstone_base::{
     functions::exp,
-    record::{MetricName, Record, Status},
+    record::{ColumnKey, MetricName, Record, Status},
 };
 use touchstone_harness::{case::Case, context::Context, snapshot::Snapshot};
 use touchstone_solver::{Particle, Symmetric};
 
 use super::{
     RUBBER_RINGS, RingSettings,
+    columns::{HEIGHT, PLACE, TIME, VELOCITY, WIDTH},
     measure::{self, RingHistory},
     metrics::{
         CONTACT_BEGIN_ERROR, CONTACT_END_ERROR, ENERGY_GAINED, ENERGY_LOST, HEIGHT_MAX,
@@ -146,8 +147,8 @@ fn finite_elements(speed: f64, late: f64) -> impl Fn(f64) -> [f64; 4] {
     move |time| {
         let place = ((time - late) / 0.5).clamp(0.0, 400.0);
         let (k, part) = (place as usize, place.fract());
-        [0, 1, 2, 3].map(|column: usize| {
-            let [a, b] = [k, (k + 1).min(400)].map(|k| exact.histories[column][k].1);
+        [&exact.place, &exact.velocity, &exact.width, &exact.height].map(|history| {
+            let [a, b] = [k, (k + 1).min(400)].map(|k| history[k].1);
             a + part * (b - a)
         })
     }
@@ -212,9 +213,9 @@ fn run(variant: &str, set: fn(&mut RingSettings)) -> Record {
 }
 
 /// Largest difference of a column of the series.
-fn apart(a: &Record, b: &Record, column: &str) -> f64 {
-    let [a, b] = [a, b].map(|record| record.column("series", column));
-    assert!(a.len() == b.len() && a.len() > 10, "{column}: {} and {} samples", a.len(), b.len());
+fn apart(a: &Record, b: &Record, column: ColumnKey) -> f64 {
+    let [a, b] = [a, b].map(|record| record.column(column));
+    assert!(a.len() == b.len() && a.len() > 10, "{column:?}: {} and {} samples", a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
@@ -227,9 +228,9 @@ fn rings_that_nothing_acts_on_keep_their_shape() {
     ];
     for set in set {
         let record = run("seed", set);
-        for column in ["width", "height"] {
-            let found = record.column("series", column);
-            assert!(found.iter().all(|x| (x - found[0]).abs() < 1e-9), "{column}: {found:?}");
+        for column in [WIDTH, HEIGHT] {
+            let found = record.column(column);
+            assert!(found.iter().all(|x| (x - found[0]).abs() < 1e-9), "{column:?}: {found:?}");
         }
     }
 }
@@ -239,9 +240,9 @@ fn rings_that_nothing_acts_on_keep_their_shape() {
 fn rings_that_are_a_hundred_times_as_stiff_move_alike() {
     let soft = run("leapfrog", |s| (s.spacing, s.end) = (0.33, 80.0));
     let stiff = run("leapfrog", |s| (s.spacing, s.end, s.bulk_modulus) = (0.33, 80.0, 100.0));
-    for column in ["t", "x_c", "v_c", "width", "height"] {
+    for column in [TIME, PLACE, VELOCITY, WIDTH, HEIGHT] {
         let apart = apart(&soft, &stiff, column);
-        assert!(apart < 1e-10, "{column}: {apart:e}");
+        assert!(apart < 1e-10, "{column:?}: {apart:e}");
     }
 }
 

@@ -13,7 +13,7 @@ use touchstone_maths::metrics::{
 };
 use touchstone_solver::EquationOfState;
 
-use super::{Dam, metrics};
+use super::{Dam, columns, metrics};
 
 /// Heights of the sensors on the far wall \[m\], and their diameter (Lobovsky et al. 2014).
 pub const SENSORS: [f64; 4] = [0.003, 0.015, 0.030, 0.080];
@@ -211,16 +211,13 @@ impl Samples {
         record.put(metrics::RELEASED, self.released);
         record.put(metrics::FRONT_BACK, self.fallen_back(dam) / dam.settings.width);
         record.put(metrics::MACH, self.fastest / dam.medium.eos.sound_speed);
-        let series = Profile::default()
-            .put(&self.series, "t", "s", |at| at.time)
-            .put(&self.series, "front", "m", |at| at.front)
-            .put_known(&self.series, "height", "m", |at| at.height.clone())
-            .put_known(&self.series, "H1", "m", |at| at.levels[0].clone())
-            .put_known(&self.series, "H2", "m", |at| at.levels[1].clone())
-            .put_known(&self.series, "H3", "m", |at| at.levels[2].clone())
-            .put_known(&self.series, "H4", "m", |at| at.levels[3].clone())
-            .put(&self.series, "potential", "M g H/2", |at| at.potential);
-        record.profiles.insert("series".into(), series);
+        record.put_column(columns::TIME, &self.series, |at| at.time);
+        record.put_column(columns::FRONT, &self.series, |at| at.front);
+        record.put_known_column(columns::HEIGHT, &self.series, |at| at.height.clone());
+        for (k, level) in columns::LEVELS.into_iter().enumerate() {
+            record.put_known_column(level, &self.series, |at| at.levels[k].clone());
+        }
+        record.put_column(columns::POTENTIAL, &self.series, |at| at.potential);
     }
 }
 
@@ -274,14 +271,12 @@ impl Gauge {
         let block = |(time, _): &(f64, Vec<f64>)| (time / (BLOCK * unit)).floor();
         let blocks: Vec<_> = self.rows.chunk_by(|a, b| block(a) == block(b)).collect();
         let middle = |rows: &&[_]| (block(&rows[0]) + 0.5) * (BLOCK * unit) / unit;
-        let mut means = Profile::default().put(&blocks, "t", "(H/g)^(1/2)", middle);
-        for (k, name) in ["P1", "P2", "P3", "P4"].into_iter().enumerate() {
-            let mean = |rows: &&[(f64, Vec<f64>)]| {
+        record.put_column(columns::PRESSURE_TIME, &blocks, middle);
+        for (k, sensor) in columns::PRESSURES.into_iter().enumerate() {
+            record.put_column(sensor, &blocks, |rows| {
                 rows.iter().map(|(_, p)| p[k]).sum::<f64>() / rows.len() as f64 / scale
-            };
-            means = means.with(name, "rho g H", blocks.iter().map(mean).collect());
+            });
         }
-        record.profiles.insert("pressure".into(), means);
     }
 }
 
@@ -516,8 +511,8 @@ mod tests {
         };
         let gauge = Gauge::made_up((0..20).map(row).collect());
         let record = record(&tank, |record| gauge.measure(&tank, record));
-        let [t, one, two, four] =
-            ["t", "P1", "P2", "P4"].map(|name| record.column("pressure", name));
+        let t = record.column(columns::PRESSURE_TIME);
+        let [one, two, _, four] = columns::PRESSURES.map(|sensor| record.column(sensor));
         assert_eq!(t.len(), 4);
         for k in 0..4 {
             is(t[k], 0.01 * k as f64 + 0.005);

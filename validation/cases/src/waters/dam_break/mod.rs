@@ -5,6 +5,7 @@
 //! fluid, and against conservation: mass is exact, momentum follows gravity and the force of the walls, and
 //! the energy budget closes over all terms.
 
+mod columns;
 mod curves;
 mod ensembles;
 mod measure;

@@ -5,7 +5,7 @@ use std::{f64::consts::SQRT_2, sync::LazyLock};
 
 use touchstone_base::{
     absent::Absent,
-    record::{MetricName, Record},
+    record::{ColumnKey, MetricName, Record},
     reference::Reference as Package,
 };
 use touchstone_harness::snapshot::Snapshot;
@@ -14,7 +14,7 @@ use touchstone_maths::metrics::curve::{
 };
 
 use super::{
-    Dam, DamSettings,
+    Dam, DamSettings, columns,
     metrics::{
         ARRIVAL, Distance, FRONT, FRONT_AWAY, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
         LEVEL_AWAY, LEVELS, PEAK, POTENTIAL_AWAY, PRESSURE_AWAY, RINGING, Z,
@@ -108,40 +108,40 @@ impl OfTank {
     }
 }
 
-/// A column of a profile of a run over time, each in a unit.
-fn history(record: &Record, profile: &str, name: &str, units: [f64; 2]) -> Points {
-    let points = record.column(profile, "t").iter().zip(record.column(profile, name));
-    points.map(|(t, y)| (t / units[0], y / units[1])).collect()
+/// A column of the series of a run over time, each in a unit \[s\], \[unit of the column\].
+fn history(record: &Record, column: ColumnKey, (time, unit): (f64, f64)) -> Points {
+    let points = record.curve([columns::TIME, column]).into_iter();
+    points.map(|(t, y)| (t / time, y / unit)).collect()
 }
 
 /// Z over T of a run of the column of Martin & Moyce.
 pub fn front(record: &Record) -> Points {
     let DamSettings { width: a, gravity: g, .. } = record.run.settings_as();
-    history(record, "series", "front", [(0.5 * a / g).sqrt(), a])
+    history(record, columns::FRONT, ((0.5 * a / g).sqrt(), a))
 }
 
 /// The residual height \[H\] over time in a unit \[s\].
 pub fn height(record: &Record, unit: f64) -> Points {
     let height = record.run.settings_as::<DamSettings>().height;
-    history(record, "series", "height", [unit, height])
+    history(record, columns::HEIGHT, (unit, height))
 }
 
 /// The front in the tank \[H\] over time \[(H/g)^(1/2)\], from a place \[m\].
 pub fn front_from(record: &Record, place: f64) -> Points {
     let s: DamSettings = record.run.settings_as();
-    let front = history(record, "series", "front", [s.unit_time(), 1.0]);
+    let front = history(record, columns::FRONT, (s.unit_time(), 1.0));
     front.into_iter().map(|(t, x)| (t, (x - place) / s.height)).collect()
 }
 
 /// The level at a probe \[H\] over time \[(H/g)^(1/2)\].
 pub fn depth(record: &Record, probe: usize) -> Points {
     let s: DamSettings = record.run.settings_as();
-    history(record, "series", &format!("H{}", probe + 1), [s.unit_time(), s.height])
+    history(record, columns::LEVELS[probe], (s.unit_time(), s.height))
 }
 
 /// The pressure on a sensor \[ρ g H\] over time \[(H/g)^(1/2)\].
 pub fn pressure(record: &Record, sensor: usize) -> Points {
-    history(record, "pressure", &format!("P{}", sensor + 1), [1.0, 1.0])
+    record.curve([columns::PRESSURE_TIME, columns::PRESSURES[sensor]])
 }
 
 /// T = t (2g/a)^(1/2) at which the fronts of the column of Martin & Moyce are compared.
@@ -246,7 +246,7 @@ pub fn compare(dam: &Dam, end: &Snapshot, record: &mut Record) {
 
 /// The distance of the potential energy from a scene by volume of fluid until a time.
 fn with_potential(model: &[(f64, f64)], end: f64, s: &DamSettings, record: &mut Record) {
-    let computed = history(record, "series", "potential", [s.unit_time(), 1.0]);
+    let computed = history(record, columns::POTENTIAL, (s.unit_time(), 1.0));
     record.put(POTENTIAL_AWAY, distance(&computed, &until(model, end.min(s.end)), 0.0));
 }
 

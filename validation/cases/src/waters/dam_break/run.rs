@@ -280,7 +280,7 @@ fn stops(dam: &Dam) -> (Vec<f64>, Vec<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::waters::dam_break::{DAM_BREAK, lobovsky, metrics};
+    use crate::waters::dam_break::{DAM_BREAK, columns, lobovsky, metrics};
     use crate::waters::water::{WaterSettings, ledger::WORK_VISCOSITY};
     use touchstone_base::{
         absent::Absent,
@@ -458,12 +458,12 @@ mod tests {
         assert_eq!((value(metrics::REACHED), value(metrics::MASS_ERROR)), (1.0, 0.0));
         let (a, g) = (0.05715_f64, 9.81);
         let fall = 0.5 * (2000.0 * a * a) * g * (2.0 * a);
-        let work = record.column("energy", "work_viscosity").last().expect("a series") / fall;
+        let work = record.column(ledger::column(WORK_VISCOSITY)).last().expect("a series") / fall;
         assert!((value(WORK_VISCOSITY) / work - 1.0).abs() < 5e-3, "{work}");
         let front = reference::front(&record);
         let (t, z) = front[front.len() - 1];
         assert!((t / (0.5 * 2.0) - 1.0).abs() < 1e-9, "0.5 (H/g)^(1/2) is T = 1, not {t}");
-        let start = record.column("series", "front")[0];
+        let start = record.column(columns::FRONT)[0];
         assert!((start / a - 1.0).abs() < 1e-12 && (front[0].1 - 1.0).abs() < 1e-12 && z > 1.05);
     }
 }

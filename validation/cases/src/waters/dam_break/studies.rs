@@ -22,7 +22,7 @@ use touchstone_report::{ColourMap, sig};
 use touchstone_solver::Numbers;
 
 use super::{
-    DAM_BREAK, DamSettings, Experiment, NAME, curves, ensembles,
+    DAM_BREAK, DamSettings, Experiment, NAME, columns, curves, ensembles,
     metrics::{
         self, FRONT, FRONT_AWAY, FRONT_BACK, HEIGHT, HEIGHT_AWAY, IMPULSE, IMPULSE_AWAY,
         LEVEL_AWAY, LEVELS, MACH, Z,
@@ -179,7 +179,7 @@ fn front() -> SubmittedCurve {
         },
         metrics: vec![Z, FRONT_AWAY, FRONT_BACK, FRONT.rms, FRONT.rms_shifted, FRONT.shift],
         coarsen: None,
-        shown: ("series", &["t", "front"]),
+        shown: &[columns::TIME, columns::FRONT],
     }
 }
 

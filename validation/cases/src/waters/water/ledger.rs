@@ -23,6 +23,19 @@ touchstone_base::metrics! {
     WORK_WALLS = "work_walls" ["-"] "energy that walls has added until the end/{}";
 }
 
+/// The profile of the energies.
+const PROFILE: &str = "energy";
+const TIME: ColumnKey = ColumnKey::new(PROFILE, "t", "s");
+/// Kinetic energy.
+pub const KINETIC: ColumnKey = ColumnKey::new(PROFILE, "kinetic", "J/m");
+const POTENTIAL: ColumnKey = ColumnKey::new(PROFILE, "potential", "J/m");
+const COMPRESSION: ColumnKey = ColumnKey::new(PROFILE, "compression", "J/m");
+
+/// The energy that a term has added, over time, as its metric is named.
+pub const fn column(work: MetricKey) -> ColumnKey {
+    work.column(PROFILE, "J/m")
+}
+
 /// The energy of a term.
 type WorkOf = fn(&EnergyItems) -> f64;
 
@@ -143,17 +156,14 @@ impl Ledger {
         }
         record.put(ENERGY_GAP.of(of_what), self.gap() / scale);
         let works = self.samples.last().map(|of| of.works).unwrap_or_default();
-        let mut series = Profile::default()
-            .put(&self.samples, "t", "s", |of| of.time)
-            .put(&self.samples, "kinetic", "J/m", |of| of.energy.kinetic)
-            .put(&self.samples, "potential", "J/m", |of| of.energy.potential)
-            .put(&self.samples, "compression", "J/m", |of| of.energy.compression);
+        record.put_column(TIME, &self.samples, |of| of.time);
+        record.put_column(KINETIC, &self.samples, |of| of.energy.kinetic);
+        record.put_column(POTENTIAL, &self.samples, |of| of.energy.potential);
+        record.put_column(COMPRESSION, &self.samples, |of| of.energy.compression);
         for (metric, work) in WORKS {
             record.put(metric.of(of_what), work(&works) / scale);
-            let column = self.samples.iter().map(|of| work(&of.works)).collect();
-            series = series.with(&String::from(metric), "J/m", column);
+            record.put_column(column(metric), &self.samples, |of| work(&of.works));
         }
-        record.profiles.insert("energy".into(), series);
     }
 }
 
