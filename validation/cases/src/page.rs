@@ -22,7 +22,10 @@ use touchstone_report::{
     VERDICTS, code, counted, percent, plain,
 };
 
-use crate::{limitations, probes, stiffness, time};
+use crate::{
+    fluids::taylor_green::{CASE, is_modern_from_lattice},
+    limitations, probes, stiffness, time,
+};
 
 /// The whole report; `made` is the time at which it is made, for people.
 pub fn assemble(suite: &Suite, made: &str) -> Page {
@@ -88,10 +91,8 @@ fn without_a_row(others: &[&CaseResults]) -> Vec<String> {
 /// Meaning of *recommended*, with the largest error of a variant that is recommended elsewhere.
 fn recommended(suite: &Suite) -> Vec<String> {
     let worst =
-        suite.cases.iter().find(|results| results.case.name() == "taylor_green").and_then(|of| {
-            let is_shown = |record: &&Record| {
-                record.run.variant == "modern" && record.run.settings["perturb"] == 0.0
-            };
+        suite.cases.iter().find(|results| results.case.name() == CASE.name).and_then(|of| {
+            let is_shown = |record: &&Record| is_modern_from_lattice(record);
             let error = |record: &Record| record.value(of.studies.error()?.clone());
             let all =
                 of.runs.simulations().filter(is_shown).filter_map(|record| {

@@ -16,7 +16,7 @@ use touchstone_harness::{
     method::FirstRow,
     pictures,
     snapshot::{Point, Snapshot},
-    studies::{Accuracy, CurveOf, CurvePanel, Curves, Sensitivity, Spacing, Watched},
+    studies::{Accuracy, CurveOf, CurvePanel, Curves, ORDER, Sensitivity, Spacing, Watched},
     table,
 };
 use touchstone_maths::metrics::norms::rms;
@@ -419,7 +419,7 @@ fn studies(tier: Tier) -> Studies {
         "Mirror particles and sums are of second order, and nothing of first order is left.";
     let bound = Bound::Above(1.8);
     let id = format!("{NAME}.{RECOMMENDED}.order");
-    let order = Gate::new(id, "order", bound, Evidence::Theory, because);
+    let order = Gate::new(id, ORDER, bound, Evidence::Theory, because);
     let ladders = |re: f64| {
         let mut ladders = table.ladders(&[re], &["carried", CONSISTENT, RECOMMENDED], spacing);
         let judged = ladders.last_mut().filter(|_| re == 100.0);

@@ -11,7 +11,7 @@ use touchstone_harness::{
     runs::Runs,
     section::Section,
     snapshot::{Point, Snapshot},
-    studies::CustomStudy,
+    studies::{CustomStudy, ORDER},
     table,
 };
 use touchstone_maths::{exact::manufactured, metrics::norms::rms};
@@ -202,7 +202,7 @@ fn gate(of: Group, variant: &str) -> Gate {
     let (low, because) = if has_ghosts(variant) { (1.6, smooth) } else { (1.2, slip) };
     let run = if of == Group::Strained { "strained" } else { "mixed" };
     let id = format!("{NAME}.{variant}.{run}.order");
-    let gate = Gate::new(id, "order", Bound::Within(low, 2.4), Evidence::Theory, because);
+    let gate = Gate::new(id, ORDER, Bound::Within(low, 2.4), Evidence::Theory, because);
     let (reason, least, cause) = match of {
         Group::Mixed if !CONSISTENT.contains(&variant) => (noise, -1.25, &MIXED),
         Group::Strained if SEED.contains(&variant) => (floor, 0.0, &LATTICE),

@@ -9,7 +9,7 @@ use touchstone_harness::{
     case::Statement,
     problem::Simple,
     snapshot::{Point, Snapshot},
-    studies::{Accuracy, Ladder, Spacing},
+    studies::{Accuracy, Ladder, ORDER, Spacing},
     table::Table,
 };
 use touchstone_maths::metrics::norms::l2;
@@ -50,7 +50,7 @@ touchstone_base::metrics! {
         "-ln(a)/(pi^2 nu t/L^2), a = 2 mean(u cos(pi y/L))/U over particles at the end";
 }
 
-/// A step so short that its error, of first order in dt and second in dx, does not cancel that of the sums.
+/// A step whose error, of first order in dt and second in dx, is too small to cancel the error of the sums.
 fn short_steps(s: &mut SlipSettings) {
     s.numerics.viscous = 0.05;
 }
@@ -192,7 +192,7 @@ fn accuracy(table: &Table<SlipSettings, ()>) -> Accuracy {
     let spacing = Spacing::count(|s: &mut SlipSettings| &mut s.n, "{} rows");
     let ladder = |variant: &'static str| {
         let (bound, id) = (Bound::Within(1.8, 2.5), format!("{NAME}.{variant}.order"));
-        let order = Gate::new(id, "order", bound, Evidence::Theory, because);
+        let order = Gate::new(id, ORDER, bound, Evidence::Theory, because);
         Ladder { order: Some(order), ..table.ladder(&[()], variant, spacing) }
     };
     Accuracy {

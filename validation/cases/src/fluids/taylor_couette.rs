@@ -6,7 +6,7 @@ use touchstone_harness::{
     case::{Draws, Statement, Step},
     problem::Simple,
     snapshot::{Point, Snapshot},
-    studies::{Accuracy, CurveOf, CurvePanel, Curves, Ladder, Spacing},
+    studies::{Accuracy, CurveOf, CurvePanel, Curves, Ladder, ORDER, Spacing},
     table::{Row, Table},
 };
 use touchstone_maths::{
@@ -250,7 +250,7 @@ fn accuracy(table: &Table<CylinderSettings, ()>) -> Accuracy {
     let ladder = |(variant, expected): (&'static str, f64)| {
         let bound = Bound::Within(expected - 0.3, expected + 0.3);
         let id = format!("{NAME}.{variant}.order");
-        let order = Gate::new(id, "order", bound, Evidence::Theory, because);
+        let order = Gate::new(id, ORDER, bound, Evidence::Theory, because);
         Ladder { order: Some(order), ..table.ladder(&[()], variant, spacing) }
     };
     let about = "Flow between cylinders, steady after t = d²/ν, at Re = V d/ν = 0.5; the gap d equals the \

@@ -11,7 +11,7 @@ use touchstone_harness::{
     case::{Drawn, Draws, Statement},
     pictures, rules,
     snapshot::{self, Point, Snapshot},
-    studies::{Accuracy, Budgets, CurveOf, CurvePanel, Curves, Heading, Picture, Spacing},
+    studies::{Accuracy, Budgets, CurveOf, CurvePanel, Curves, Heading, ORDER, Picture, Spacing},
     table,
 };
 use touchstone_maths::{
@@ -385,7 +385,7 @@ fn studies(tier: Tier) -> Studies {
                        otherwise and partly cancel them, so theory gives no order at these spacings.";
         let (id, bound) =
             (format!("{NAME}.{RECOMMENDED}.{DISTURBED}.order"), Bound::Within(1.6, 2.3));
-        ladder.order = Some(Gate::new(id, "order", bound, Evidence::Regression, because));
+        ladder.order = Some(Gate::new(id, ORDER, bound, Evidence::Regression, because));
     }
     let accuracy = Accuracy {
         about: "Taylor-Green vortices at Re 100 from the disturbed lattice, at t = 2 L/U.".into(),
@@ -458,6 +458,11 @@ fn histories(tier: Tier, table: &Table) -> Curves {
 /// The error over time, without the start, at which there is none.
 fn error(record: &Record) -> Vec<(f64, f64)> {
     record.curve([TIME, ERROR]).into_iter().skip(1).collect()
+}
+
+/// Whether this is a run of `modern` from a lattice.
+pub fn is_modern_from_lattice(record: &Record) -> bool {
+    record.run.variant == "modern" && record.run.settings_as::<VortexSettings>().perturb == 0.0
 }
 
 /// Particles at the end, by their error.

@@ -435,7 +435,7 @@ fn pulse(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
     }
 }
 
-/// Of two bars.
+/// Gates of two bars that collide.
 fn meeting(row: &Row<BarSettings, Group>, gates: &RunGates) -> Vec<Gate> {
     let jump = "The jump conditions hold with any dissipation: equal bars exchange their velocities, and \
                 meanwhile the contact bears a constant stress. Waves on the lattice differ from c_p by 2 %.";

@@ -173,8 +173,8 @@ struct MistakenShear {
     rim: f64,
 }
 
-/// The shear inside of this radius and outside. A step along tangents dilates a rotation by (W dt)²/2, which
-/// is no shear.
+/// The shear inside of this radius and outside. A step along tangents dilates a rotation by (W dt)²/2,
+/// without shear.
 ///
 /// # Errors
 /// Without stresses.

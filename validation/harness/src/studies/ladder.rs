@@ -104,6 +104,9 @@ impl<T: Settings> Spacing<T> {
     }
 }
 
+/// Metric of a gate on the order of a ladder.
+pub const ORDER: &str = "order";
+
 /// A run with its spacing multiplied by a factor, as a level of a ladder; none if the case has no such run.
 pub type Refine = Arc<dyn Fn(&RunSpec, f64) -> Option<Level> + Send + Sync>;
 

@@ -17,6 +17,9 @@ use crate::{
     study::Study,
 };
 
+/// Metric of a gate on a step limit.
+pub const OF_THEORY: &str = "measured/theory";
+
 /// Largest stable time steps against theory.
 #[derive(Default)]
 pub struct StepLimits {
@@ -83,7 +86,7 @@ impl Study for StepLimits {
             .code("variant", |limit| limit.spec.variant.clone())
             .text("scene", |limit| limit.scene.clone())
             .num(["theory", "s"], |limit| Cell::sci(limit.theory, 3))
-            .num(["measured/theory", "-"], |limit| ratio(of_theory(limit, runs)))
+            .num([OF_THEORY, "-"], |limit| ratio(of_theory(limit, runs)))
             .num(["default/theory", "-"], |limit| ratio(Some(limit.default_at / limit.theory_at)))
             .table(caption, &self.of);
         let mut section = Section::new(&anchor(case, "time-step"), "Largest stable time step");

@@ -1,7 +1,7 @@
 //! Poiseuille flow of the paper's variant, which becomes unstable, beside the recommended one: hypotheses H4
 //! and H5 of the paper, that waves grow with the Reynolds number until the run is unstable (H4) and that a
 //! lower sound speed stabilises (H5), and remedies of the instability. It grows from the disorder of the
-//! start, or from round-off if there is none. A single run of a chaotic flow is no evidence, so a cell of a
+//! start, or from round-off if there is none. One run of a chaotic flow proves nothing, so a cell of a
 //! map has several starts.
 
 use std::cmp::Ordering;

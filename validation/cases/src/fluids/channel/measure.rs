@@ -75,7 +75,7 @@ pub fn profile_at(record: &Record, tau: f64) -> Option<&Profile> {
     record.profiles.get(&record::marked(PROFILE, tau))
 }
 
-/// The velocity across a channel at all times of a record; none of a record without channel.
+/// The velocity across a channel at all times of a record; `None` without a channel.
 pub fn velocities(record: &Record) -> Option<Profile> {
     let settings: ChannelSettings = settings::of_json(&record.run.settings).ok()?;
     let at = |tau: f64| Some((tau * settings.unit_of_time(), profile_at(record, tau)?));

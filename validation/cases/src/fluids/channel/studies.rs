@@ -14,7 +14,8 @@ use touchstone_harness::{
     case::{Case, Drawn, Draws, Statement, SubmittedCurve},
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
-        Curves, Ladder, Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
+        Curves, Ladder, OF_THEORY, ORDER, Sensitivity, Spacing, Stated, StepLimit, StepLimits,
+        Watched,
         causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
     },
 };
@@ -145,7 +146,7 @@ fn at_half(flow: Flow, tier: Tier, table: &ChannelTable) -> Accuracy {
     };
     let order = |variant: &str| {
         let id = format!("{}.{variant}.order", flow.case().name);
-        Gate::new(id, "order", Bound::Within(1.8, 2.2), Evidence::Theory, because)
+        Gate::new(id, ORDER, Bound::Within(1.8, 2.2), Evidence::Theory, because)
     };
     let spacing = Spacing::count(|s: &mut ChannelSettings| &mut s.rows, "{} rows");
     let of = |variant| Ladder {
@@ -311,7 +312,7 @@ fn limit(flow: Flow, variant: &'static str) -> StepLimit {
     let because = "The default step must be below the measured limit; the bound is the default step over \
                    the limit of theory.";
     let (id, bound) = (format!("{name}.stable"), Bound::Above(rules.dt() / theory));
-    let gate = Gate::new(id, "measured/theory", bound, Evidence::Theory, because);
+    let gate = Gate::new(id, OF_THEORY, bound, Evidence::Theory, because);
     StepLimit {
         scene: "20 rows".into(),
         spec: spec.bisect(bisect),
@@ -324,7 +325,7 @@ fn limit(flow: Flow, variant: &'static str) -> StepLimit {
 
 const SOUND: &str =
     "At Mach 0.1 compressibility changes the velocity by less than the spacing does.";
-const ORDER: &str =
+const STRAIGHT_ROWS: &str =
     "At Re 0.5 particles stay in straight rows, and this term acts on disorder alone.";
 const REACH: &str = "The error that a longer reach adds to a parabolic profile at 20 rows is inside the \
                      bounds until the reach is wrong by 20 %.";
@@ -349,9 +350,10 @@ fn sensitivity(flow: Flow, tier: Tier) -> Sensitivity {
         Watched::new(Constant::Normalisation),
         reach,
         Watched::blind_up_to(Constant::TimeStep, 1.0, STEP, &SAFETY_MARGIN),
-        Watched::blind_up_to(Constant::DensityDiffusion, 1.0, ORDER, &ENOUGH_OR_IDLE)
+        Watched::blind_up_to(Constant::DensityDiffusion, 1.0, STRAIGHT_ROWS, &ENOUGH_OR_IDLE)
             .faults(&[-1.0]),
-        Watched::blind_up_to(Constant::Shifting, 1.0, ORDER, &ENOUGH_OR_IDLE).faults(&[-1.0]),
+        Watched::blind_up_to(Constant::Shifting, 1.0, STRAIGHT_ROWS, &ENOUGH_OR_IDLE)
+            .faults(&[-1.0]),
         Watched::blind_up_to(Constant::ListLifetime, 1.0, LISTS, &SAFETY_MARGIN).faults(&[100.0]),
     ];
     let runs = [case.spec("plain", |_| {}), case.spec("modern", |s| s.end = 1.5)];

@@ -10,8 +10,8 @@ use touchstone_harness::{
     section::Section,
     studies::{
         Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, CurveOf, CurvePanel,
-        Curves, CustomStudy, Heading, Picture, PicturePanel, Sensitivity, Spacing, Stated,
-        StepLimit, StepLimits, Study, Watched,
+        Curves, CustomStudy, Heading, OF_THEORY, ORDER, Picture, PicturePanel, Sensitivity,
+        Spacing, Stated, StepLimit, StepLimits, Study, Watched,
         causes::{ENOUGH_OR_IDLE, NOT_MEASURED, SAFETY_MARGIN, STEP, STRESS, WIDE_BOUNDS},
     },
 };
@@ -171,7 +171,9 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
     if tier == Tier::Full {
         let because = "Walls are of first order on disordered particles, sums of second.";
         let (id, bound) = (format!("{NAME}.{RECOMMENDED}.50.order"), Bound::Above(1.0));
-        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
+        if let Some(ladder) = ladders.iter_mut().find(|ladder| ladder.variant == RECOMMENDED) {
+            ladder.order = Some(Gate::new(id, ORDER, bound, Evidence::Theory, because));
+        }
     }
     Accuracy {
         about,
@@ -313,7 +315,7 @@ fn limit(variant: &'static str, n: usize) -> StepLimit {
                   softer by a fifth.";
     let gate = |default| {
         let (id, bound) = (format!("{NAME}.step.{variant}.theory"), Bound::Within(default, 1.2));
-        Some(Gate::new(id, "measured/theory", bound, Evidence::Theory, theory))
+        Some(Gate::new(id, OF_THEORY, bound, Evidence::Theory, theory))
     };
     let scene = format!("Re 50, H/dx = {n}");
     StepLimit::proportional(&CASE, scene, spec, ("courant", at_limit), gate)

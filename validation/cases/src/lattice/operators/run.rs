@@ -92,7 +92,7 @@ impl Operator {
     }
 }
 
-/// Of each particle what was made of the field, and the exact value.
+/// Computed and exact value at each particle.
 type Values = Vec<[Vector2<f64>; 2]>;
 
 impl OperatorVariant {

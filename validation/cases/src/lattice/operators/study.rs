@@ -7,7 +7,7 @@ use touchstone_harness::{
     orders::{self, Line, Refinement},
     runs::Runs,
     section::Section,
-    studies::CustomStudy,
+    studies::{CustomStudy, ORDER},
     table,
 };
 
@@ -152,7 +152,7 @@ impl Group {
             ),
         };
         let id = format!("{}.{}.{}", OPERATORS.name, of.name, self.texts()[0]);
-        let gate = Gate::new(id, "order", bound, Evidence::Theory, because);
+        let gate = Gate::new(id, ORDER, bound, Evidence::Theory, because);
         match self {
             Group::Lattice
                 if of.kernel == CUBIC && !of.is_corrected && of.operator != Operator::Density =>

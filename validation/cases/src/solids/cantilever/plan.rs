@@ -25,11 +25,11 @@ use crate::solids::{
 pub enum Group {
     /// Frequency, mean and amplitude of the end.
     Whole,
-    /// Under a tenth of the weight.
+    /// A tenth of the weight.
     Light,
     /// The first swing.
     First,
-    /// By the equations of the paper.
+    /// The equations of the paper.
     Paper,
 }
 

@@ -9,8 +9,8 @@ use touchstone_harness::{
     pictures::{self, Film, Heading},
     studies::{
         Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, CurveOf, CurvePanel, Curves,
-        Ladder, Map, MapPanel, Picture, PicturePanel, Sensitivity, Spacing, Stated, StepLimit,
-        StepLimits, Watched,
+        Ladder, Map, MapPanel, OF_THEORY, Picture, PicturePanel, Sensitivity, Spacing, Stated,
+        StepLimit, StepLimits, Watched,
         causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
     },
 };
@@ -303,7 +303,7 @@ fn step_limit(variant: &'static str) -> StepLimit {
                    theory, their energy must not rise.";
     let gate = |default| {
         let (id, bound) = (format!("rubber_rings.{variant}.step_limit"), Bound::Above(default));
-        Some(Gate::new(id, "measured/theory", bound, Evidence::Invariant, because))
+        Some(Gate::new(id, OF_THEORY, bound, Evidence::Invariant, because))
     };
     StepLimit::proportional(&RUBBER_RINGS, "collision", spec, ("dt", Rules::dt_limit), gate)
 }

@@ -13,8 +13,8 @@ use touchstone_harness::{
     composed::SettingChange,
     pictures::{self, Film},
     studies::{
-        Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, Heading, Picture, PicturePanel,
-        Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
+        Accuracy, Breaks, Budgets, Card, Change, Comparison, Comparisons, Heading, OF_THEORY,
+        ORDER, Picture, PicturePanel, Sensitivity, Spacing, Stated, StepLimit, StepLimits, Watched,
         causes::{NOT_MEASURED, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
     },
 };
@@ -279,7 +279,9 @@ fn accuracy(tier: Tier, table: &Table) -> Accuracy {
                        order is uncertain by 0.5.";
         let id = format!("{NAME}.martin-moyce.modern.front.order");
         let bound = Bound::Within(0.5, 1.5);
-        ladders[1].order = Some(Gate::new(id, "order", bound, Evidence::Theory, because));
+        if let Some(ladder) = ladders.iter_mut().find(|ladder| ladder.variant == "modern") {
+            ladder.order = Some(Gate::new(id, ORDER, bound, Evidence::Theory, because));
+        }
     }
     Accuracy {
         about: "Front of the column of Martin & Moyce at T = 2, minus the front of the same model by volume \
@@ -332,10 +334,11 @@ fn budgets(tier: Tier, accuracy: &Accuracy) -> Budgets {
     };
     let of = |variant: &&'static str| {
         let own = if *variant == "modern" { &OF_MODERN[..] } else { &OF_SEED };
+        let base = DAM_BREAK.chosen(variant, |s| s.n = n);
         let mut all = DAM_BREAK.changes(variant, |s| s.n = n, &[&CHANGES, own].concat());
-        for change in all.iter_mut().filter(|of| !["all", "spacing"].contains(&of.part)) {
-            // Other changes may ask more of the time step than the variant's own settings do.
-            change.spec.allow_unstable = true;
+        for Change { spec, .. } in &mut all {
+            // Changes of more than the spacing may ask more of the time step than the base does.
+            spec.allow_unstable = DamSettings { n, ..spec.settings_as() } != base;
         }
         all
     };
@@ -358,7 +361,7 @@ fn limit(variant: &'static str) -> StepLimit {
                    3.5-fold a step there.";
     let gate = |default| {
         let (id, bound) = (format!("{NAME}.limit.{variant}.Martin"), Bound::Within(default, 1.2));
-        Some(Gate::new(id, "measured/theory", bound, Evidence::Theory, because))
+        Some(Gate::new(id, OF_THEORY, bound, Evidence::Theory, because))
     };
     // The limit as the record's dt and dt/limit state it.
     let at_limit = |rules: &Rules| rules.dt() / (rules.dt() / rules.dt_limit());

@@ -241,7 +241,7 @@ mod tests {
             let work = record.value(metric).expect("a metric");
             assert!((work - 4.5 * (k + 1) as f64 / 50.0).abs() < 1e-12, "{metric:?}");
         }
-        // Work of terms is no gap; work of terms that is missing in the energy is one.
+        // Work of terms leaves no gap, unless it is missing in the energy.
         let sample = |time, kinetic, compression, works| {
             let energy = FluidEnergy { kinetic, compression, ..FluidEnergy::default() };
             Sample { time, energy, works: items(works) }

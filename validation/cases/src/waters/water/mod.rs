@@ -39,9 +39,9 @@ pub fn at_rest(medium: &Medium) -> exact::Hydrostatic {
     exact::Hydrostatic { eos: medium.eos, gravity: -medium.acceleration.y }
 }
 
-/// Refuses a scene whose wall particles, which have the density of water at their height, have no density far
-/// above the surface: (γ − 1) g y/c₀² must be less than 1 at each height y above it. `setting` returns the
-/// setting to change, its value and the allowed values, from the largest of these heights \[m\].
+/// Refuses a scene with wall particles at a height y above the surface at which water at rest has no density,
+/// (γ − 1) g y/c₀² ≥ 1. From the largest y \[m\] `setting` returns the setting to change, its value and the
+/// allowed values.
 ///
 /// # Errors
 /// The error from `setting`.
