@@ -34,6 +34,8 @@ pub struct Properties {
     pub integrator: &'static str,
     /// Name of the walls.
     pub walls: &'static str,
+    /// Whether its walls are mirrors to which a fluid sticks.
+    pub has_no_slip_mirrors: bool,
     /// Position of the first row of boundary particles.
     pub first_row: FirstRow,
     /// Do its walls read [`Parts::surface`](super::Parts::surface)?
@@ -74,6 +76,7 @@ impl Properties {
             kernel: S::Kernel::NAME,
             integrator: S::Integrator::NAME,
             walls: S::Walls::NAME,
+            has_no_slip_mirrors: S::Walls::NO_SLIP_MIRRORS,
             first_row: S::Walls::FIRST_ROW,
             has_feet: <S::Walls as Walls<S::Extra>>::Extrapolation::FEET,
             law: None,

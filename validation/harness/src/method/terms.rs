@@ -147,6 +147,8 @@ pub trait Boundary: Sized {
     const NAME: &str;
     /// Position of its boundary particles.
     const FIRST_ROW: FirstRow;
+    /// Whether the walls are mirrors to which a fluid sticks.
+    const NO_SLIP_MIRRORS: bool = false;
     /// The settings that only some walls read and these do.
     const USES: &[MediumSetting] = &[];
     /// The walls.
@@ -163,6 +165,7 @@ impl Boundary for Open {
 
 impl Boundary for Ghosts {
     const NAME: &str = "ghosts";
+    const NO_SLIP_MIRRORS: bool = true;
     const FIRST_ROW: FirstRow = FirstRow::Nowhere;
     const USES: &[MediumSetting] = &[MediumSetting::WallCurvature];
     fn new(_: &Medium, walls: Vec<PlaneWall>) -> Self {

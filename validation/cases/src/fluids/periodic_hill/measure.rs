@@ -74,7 +74,7 @@ const OF_FIELD: &[MetricKey] = &[
 /// Metrics that compare with the reference.
 const COMPARED: [MetricKey; 5] = [L2_U, L2_V, FORCE_ERROR, SEPARATION_ERROR, REATTACHMENT_ERROR];
 
-/// What drives the flow, and the flow that it drives.
+/// The body force and the flux that it drives.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Drive {
     /// Body force \[m/s²\].

@@ -64,7 +64,7 @@ fn places(ring: &[Point]) -> Vec<Vector2<f64>> {
 
 /// Are there two pieces, each with a hole?
 fn is_whole(at: &RingSample) -> bool {
-    at.pieces == 2.0 && at.holes >= 1.0
+    at.counts.pieces == 2.0 && at.counts.holes >= 1.0
 }
 
 /// The ring on the left and the one on the right.
@@ -79,10 +79,13 @@ fn energies_of(
     known: Option<ElasticEnergy>,
     all: &[Point],
     now: &Snapshot<Symmetric>,
-) -> [Result<f64, Absent>; 3] {
-    let of_points = || ElasticEnergy::each(all.iter().copied(), now, &s.material());
-    let each = |known: ElasticEnergy| [known.kinetic, known.compression, known.shear].map(Ok);
-    known.map_or_else(of_points, each)
+) -> ElasticEnergy<Result<f64, Absent>> {
+    match known {
+        Some(ElasticEnergy { kinetic, compression, shear }) => {
+            ElasticEnergy { kinetic: Ok(kinetic), compression: Ok(compression), shear: Ok(shear) }
+        }
+        None => ElasticEnergy::each(all.iter().copied(), now, &s.material()),
+    }
 }
 
 /// The least volume of a particle over its volume at the start.
@@ -91,12 +94,13 @@ fn least_volume(s: &RingSettings, now: &Snapshot<Symmetric>) -> Result<f64, Abse
     Ok(s.rho / largest(now.stored().map(|p| density.of(&p))))
 }
 
-/// Pieces of both rings, and the fewest holes of one.
-fn count(s: &RingSettings, particles: &[Point]) -> [f64; 2] {
+/// Counts of both rings.
+fn count(s: &RingSettings, particles: &[Point]) -> Counts {
     let least_hole = Topology::least_hole_of_ring(s.inner, s.outer);
     let found = halves(particles).map(|ring| Topology::of(&places(ring), s.dx(), least_hole));
+    let pieces = found.iter().map(|ring| ring.pieces).sum::<usize>();
     let holes = found.iter().map(|ring| ring.holes).min().unwrap_or_default();
-    [found.iter().map(|ring| ring.pieces).sum::<usize>() as f64, holes as f64]
+    Counts { pieces: pieces as f64, holes: holes as f64 }
 }
 
 /// Metrics of contact; `restitution` is for rings that have separated.
@@ -116,6 +120,15 @@ fn put_contact(phases: &[ContactPhase], restitution: f64, record: &mut Record) {
     }
 }
 
+/// Pieces and holes.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct Counts {
+    /// Pieces of both rings.
+    pieces: f64,
+    /// The fewest holes of one.
+    holes: f64,
+}
+
 /// Both rings at a time, the centre and the extents of the ring on the right.
 #[derive(Serialize, Deserialize)]
 struct RingSample {
@@ -127,14 +140,10 @@ struct RingSample {
     velocity: f64,
     /// Along and across the line of flight \[L\].
     extents: Vector2<f64>,
-    /// Pieces of both rings.
-    pieces: f64,
-    /// The fewest holes of one.
-    holes: f64,
+    counts: Counts,
     /// The longest distance of neighbours \[dx\].
     stretch: f64,
-    /// Kinetic, compression and shear energy \[J/m\].
-    energies: [Result<f64, Absent>; 3],
+    energies: ElasticEnergy<Result<f64, Absent>>,
     /// Least volume of a particle over its volume at the start.
     volume: Result<f64, Absent>,
 }
@@ -170,10 +179,8 @@ impl RingHistory {
     fn add(&mut self, s: &RingSettings, now: &Snapshot<Symmetric>, known: Option<ElasticEnergy>) {
         let (c0, dx, all) = (s.c0(), s.dx(), along_flight(s, now.all()));
         let [left, right] = halves(&all);
-        let [pieces, holes] = match self.samples.last() {
-            Some(last) if !self.samples.len().is_multiple_of(COUNTED_EVERY) => {
-                [last.pieces, last.holes]
-            }
+        let counts = match self.samples.last() {
+            Some(last) if !self.samples.len().is_multiple_of(COUNTED_EVERY) => last.counts,
             _ => count(s, &all),
         };
         let [centre, velocity, extents] = side(right, dx);
@@ -184,8 +191,7 @@ impl RingHistory {
             place: centre.x,
             velocity: velocity.x / c0,
             extents,
-            pieces,
-            holes,
+            counts,
             stretch,
             energies: energies_of(s, known, &all, now),
             volume: least_volume(s, now),
@@ -200,18 +206,20 @@ impl RingHistory {
         record.put_column(VELOCITY, samples, |at| at.velocity);
         record.put_column(WIDTH, samples, |at| at.extents.x);
         record.put_column(HEIGHT, samples, |at| at.extents.y);
-        record.put_column(series("pieces", "1"), samples, |at| at.pieces);
-        for (k, energy) in ["kinetic", "compression", "shear"].into_iter().enumerate() {
-            record.put_known_column(series(energy, "J/m"), samples, |at| at.energies[k].clone());
-        }
-        record.put_column(series("holes", "1"), samples, |at| at.holes);
+        record.put_column(series("pieces", "1"), samples, |at| at.counts.pieces);
+        let energy = |name| series(name, "J/m");
+        record.put_known_column(energy("kinetic"), samples, |at| at.energies.kinetic.clone());
+        record
+            .put_known_column(energy("compression"), samples, |at| at.energies.compression.clone());
+        record.put_known_column(energy("shear"), samples, |at| at.energies.shear.clone());
+        record.put_column(series("holes", "1"), samples, |at| at.counts.holes);
         record.put_column(series("stretch", "dx"), samples, |at| at.stretch);
     }
 
     /// The sum of the energies of each sample \[J/m\].
     fn energy(&self) -> Result<Vec<f64>, Absent> {
         let total = |at: &RingSample| {
-            let [kinetic, compression, shear] = at.energies.clone();
+            let ElasticEnergy { kinetic, compression, shear } = at.energies.clone();
             Ok(kinetic? + compression? + shear?)
         };
         self.samples.iter().map(total).collect()
@@ -228,10 +236,10 @@ impl RingHistory {
         let all = || self.samples.iter();
         let least = |of: fn(&RingSample) -> f64| all().map(of).fold(f64::INFINITY, f64::min);
         let most = |of: fn(&RingSample) -> f64| all().map(of).fold(0.0, f64::max);
-        record.put(PIECES_MOST, most(|at| at.pieces));
+        record.put(PIECES_MOST, most(|at| at.counts.pieces));
         // A hole narrower than a disc is not detected at the start either.
         if self.samples.first().is_some_and(is_whole) {
-            record.put(HOLES_LEAST, least(|at| at.holes));
+            record.put(HOLES_LEAST, least(|at| at.counts.holes));
             if let Some(torn) = all().find(|at| !is_whole(at)).filter(|_| !self.stays) {
                 record.put(TORN_AT, torn.time);
             }
@@ -340,7 +348,7 @@ mod tests {
         }
         let mut record = Record::new("rubber_rings", "made-up", serde_json::Value::Null, 1);
         series.put(&settings, &mut record);
-        (record, series.points(|at| at.holes))
+        (record, series.points(|at| at.counts.holes))
     }
 
     /// As in rings at 0.09 to 0.12 c0: a ring opens at its rear pole into a C, still one piece.

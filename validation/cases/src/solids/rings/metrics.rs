@@ -58,7 +58,7 @@ pub const STEPWISE: &[MetricKey] = &[
     ENERGY_GAINED,
 ];
 
-/// Distances of the path and the extents of a ring over time from those of finite elements.
+/// Distances of path and extents of a ring over time from finite elements.
 pub const OF_HISTORIES: [MetricKey; 6] =
     [X_C_WORST, X_C_RMS, V_C_RMS, WIDTH_RMS, HEIGHT_RMS, HISTORIES];
 /// Least and largest extents.

@@ -167,7 +167,7 @@ impl ElasticBody for RingSettings {
         }
     }
 
-    /// Twice the density or twice the speed of sound is no rubber any more.
+    /// Twice the density or twice the speed of sound is unphysical for rubber.
     fn scales(&self) -> SolidScales {
         let (dx, c0) = ((self.outer - self.inner) / self.layers(), self.c0());
         let (density, speed) = (self.rho, self.speed * c0);

@@ -198,13 +198,13 @@ impl Distances<'_> {
     /// Restitution, largest height, least width, and the path of the centre of mass.
     fn of_extremes(&self) -> Vec<Gate> {
         let (allowed, softer) = (self.allowed, self.softer());
-        let mut gates = [RESTITUTION_ERROR, HEIGHT_MAX_ERROR, WIDTH_MIN_ERROR]
-            .map(|metric| self.near_zero(metric, allowed))
-            .to_vec();
+        let [restitution, height, mut width] =
+            [RESTITUTION_ERROR, HEIGHT_MAX_ERROR, WIDTH_MIN_ERROR]
+                .map(|metric| self.near_zero(metric, allowed));
         let least = self.exact.number(WIDTH_MIN).map_or(f64::NAN, |width| width.value);
         let flatter = softer * (2.0 * self.row.settings.outer / least - 1.0);
         if flatter > allowed {
-            gates[2] = faces::soft(gates[2].clone(), Bound::Within(-flatter, allowed));
+            width = faces::soft(width, Bound::Within(-flatter, allowed));
         }
         let (x, v) = (&self.exact.place, &self.exact.velocity);
         let least = x.iter().map(|(_, x)| *x).fold(f64::INFINITY, f64::min);
@@ -213,8 +213,8 @@ impl Distances<'_> {
         let [touch, parted] = self.contact();
         let behind = softer * (parted - touch) * v[last].1;
         let known = Bound::Within(-behind, allowed);
-        gates.push(faces::soft(self.near_zero(X_C_WORST, allowed), known));
-        gates
+        let path = faces::soft(self.near_zero(X_C_WORST, allowed), known);
+        vec![restitution, height, width, path]
     }
 
     /// How often the rings touch, when they part, and the impulse of each phase. A sample is taken every 0.25

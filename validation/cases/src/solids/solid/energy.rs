@@ -1,5 +1,6 @@
 //! The energies of an elastic body per unit depth, from its particles.
 
+use serde::{Deserialize, Serialize};
 use touchstone_base::absent::Absent;
 use touchstone_harness::snapshot::{Moments, Point, Snapshot, kinetic};
 use touchstone_solver::{Potential, Symmetric};
@@ -7,14 +8,14 @@ use touchstone_solver::{Potential, Symmetric};
 use super::Material;
 
 /// Energies \[J/m\].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ElasticEnergy {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ElasticEnergy<T = f64> {
     /// Σ m v²/2.
-    pub kinetic: f64,
+    pub kinetic: T,
     /// Σ m e with de = p dρ/ρ² and (12): e = ⁰c² (ln(ρ/⁰ρ) + ⁰ρ/ρ − 1).
-    pub compression: f64,
+    pub compression: T,
     /// Σ (m/ρ) S:S/(4μ) with Sᶻᶻ = −(Sˣˣ + Sʸʸ).
-    pub shear: f64,
+    pub shear: T,
 }
 
 impl ElasticEnergy {
@@ -25,7 +26,7 @@ impl ElasticEnergy {
         Self::known(now).map_or_else(of_points, Ok)
     }
 
-    /// Of a method whose forces derive from energies.
+    /// The energy that a method states whose forces derive from energies.
     pub fn known(now: &Snapshot<Symmetric>) -> Option<Self> {
         let potential = now.sums(|simulation| simulation.potential()).ok()??;
         let Potential { compression, shear, hourglass, loads } = potential;
@@ -33,7 +34,7 @@ impl ElasticEnergy {
         Some(Self { kinetic: kinetic(now.stored()), compression, shear })
     }
 
-    /// Of particles of a snapshot.
+    /// The energy of particles of a snapshot.
     ///
     /// # Errors
     /// As [`ElasticEnergy::of`].
@@ -42,16 +43,16 @@ impl ElasticEnergy {
         now: &Snapshot<Symmetric>,
         of: &Material,
     ) -> Result<Self, Absent> {
-        let [kinetic, compression, shear] = Self::each(points, now, of);
+        let ElasticEnergy { kinetic, compression, shear } = Self::each(points, now, of);
         Ok(Self { kinetic: kinetic?, compression: compression?, shear: shear? })
     }
 
-    /// Kinetic, compression and shear energy of particles of a snapshot, each with the columns that it needs.
+    /// The energies of particles of a snapshot, each with the columns that it needs.
     pub fn each(
         points: impl Iterator<Item = Point> + Clone,
         now: &Snapshot<Symmetric>,
         of: &Material,
-    ) -> [Result<f64, Absent>; 3] {
+    ) -> ElasticEnergy<Result<f64, Absent>> {
         let compression = now.density().map(|density| {
             let energy = |p: Point| of.compression_energy(p.mass, density.of(&p));
             points.clone().map(energy).fold(0.0, |sum, one| sum + one)
@@ -61,7 +62,7 @@ impl ElasticEnergy {
             let energy = |p: Point| of.shear_energy(p.mass / density.of(&p), &stress.of(&p));
             Ok(points.clone().map(energy).fold(0.0, |sum, one| sum + one))
         });
-        [Ok(kinetic(points)), compression, shear]
+        ElasticEnergy { kinetic: Ok(kinetic(points)), compression, shear }
     }
 
     /// Total energy.

@@ -53,19 +53,18 @@ pub fn curves(tier: Tier) -> Vec<Curves> {
 }
 
 fn column(tier: Tier) -> Curves {
-    let [measured_front, measured_height] = &*MARTIN_MOYCE;
-    let [model_front, model_height] = &*MODEL_OF_MARTIN_MOYCE;
     let of = (tier, Group::Free);
     let axes = (["time T = t √(2g/a) [-]", "front Z [a]"], 3.6);
-    let fronts = panel(of, "front", axes, front, [measured_front, model_front]);
+    let fronts =
+        panel(of, "front", axes, front, [&MARTIN_MOYCE.front, &MODEL_OF_MARTIN_MOYCE.front]);
     let fallen = |record: &Record| {
         let DamSettings { width: a, gravity: g, .. } = record.run.settings_as();
         height(record, (a / g).sqrt())
     };
     // Its clock is in √(H/g), and H is 2a.
-    let model = model_height.iter().map(|(t, y)| (t / FRAC_1_SQRT_2, *y)).collect();
+    let model = MODEL_OF_MARTIN_MOYCE.height.iter().map(|(t, y)| (t / FRAC_1_SQRT_2, *y)).collect();
     let axes = (["time τ = t √(g/a) [-]", "height [2a]"], 2.6);
-    let heights = panel(of, "residual height", axes, fallen, [measured_height, &model]);
+    let heights = panel(of, "residual height", axes, fallen, [&MARTIN_MOYCE.height, &model]);
     let caption = "Does the water run as in the experiment and as by volume of fluid? Front from the back \
                    wall, and height at 0.2 a, of a column of width a = 57.15 mm and height 2a. Fronts of \
                    Martin & Moyce 1952 are digitised within 0.1 a; volume of fluid solves the same model. \

@@ -119,22 +119,22 @@ fn numbers(id: &str, variant: &str, n: usize) -> Vec<MemberNumber> {
 /// Known values of a median of `modern`.
 #[derive(Clone, Copy)]
 struct KnownMedian {
-    /// Of forty other starts, seeds 21 to 60.
+    /// Median of forty other starts, seeds 21 to 60.
     median: f64,
-    /// Scatter of these.
+    /// Their scatter.
     scatter: f64,
-    /// Of twenty starts with 3 % more gravity.
+    /// Median of twenty starts with 3 % more gravity.
     more: f64,
-    /// Of twenty starts with 3 % less gravity.
+    /// Median of twenty starts with 3 % less gravity.
     less: f64,
 }
 
 /// The known medians at H/dx.
 struct KnownMedians {
     n: usize,
-    /// Of the level at H3.
+    /// Level at H3.
     level: KnownMedian,
-    /// Of the impulse on P3.
+    /// Impulse on P3.
     impulse: KnownMedian,
 }
 

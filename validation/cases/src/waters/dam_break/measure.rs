@@ -35,7 +35,7 @@ const LOST: f64 = 0.5;
 
 /// Findings in a part of the water.
 struct Findings {
-    /// x of the foremost particle below a quarter of the height of the column \[m\]: spray is no front.
+    /// x of the foremost particle below a quarter of the height of the column \[m\]: spray does not count.
     foremost: f64,
     /// x \[m\] and volume \[m²\] of the particles within reach of a probe.
     near: Vec<[f64; 2]>,
@@ -55,7 +55,7 @@ impl Findings {
     ) -> Self {
         let low = water.iter().filter(|p| p.position.y < 0.25 * dam.settings.height);
         let values = water.iter().map(|p| [p.position.x, volume(p)]);
-        // A volume that is no number makes every depth none.
+        // A volume that is not a number makes every depth undefined.
         let is_near = |[x, volume]: &[f64; 2]| {
             !volume.is_finite() || probes.iter().any(|(place, w)| (x - place).abs() < *w)
         };
@@ -111,13 +111,17 @@ struct TankSample {
 /// Samples of a run.
 #[derive(Serialize, Deserialize)]
 pub struct Samples {
-    /// x of the foremost particle at the start, and the floor under the water then \[m\].
-    start: [f64; 2],
+    /// x of the foremost particle at the start \[m\].
+    foremost: f64,
+    /// The floor under the water at the start \[m\].
+    floor: f64,
     series: Vec<TankSample>,
     /// Height of the centre of mass at the start/(H/2) - 1.
     released: f64,
-    /// Particles outside: the most at any time, and at the last.
-    outside: [f64; 2],
+    /// The most particles outside at any time.
+    outside_most: f64,
+    /// Particles outside at the last sample.
+    outside: f64,
     /// The largest speed \[m/s\].
     fastest: f64,
     /// Numbers of the particles that have left over the rim.
@@ -135,9 +139,16 @@ impl Dam {
 impl Samples {
     /// None yet.
     pub fn new() -> Self {
-        let ([start, outside], [released, fastest]) = ([[f64::NAN; 2]; 2], [f64::NAN; 2]);
-        let (series, spilled) = (Vec::new(), BTreeSet::new());
-        Self { start, series, released, outside, fastest, spilled }
+        Self {
+            foremost: f64::NAN,
+            floor: f64::NAN,
+            series: Vec::new(),
+            released: f64::NAN,
+            outside_most: f64::NAN,
+            outside: f64::NAN,
+            fastest: f64::NAN,
+            spilled: BTreeSet::new(),
+        }
     }
 
     /// Takes a sample of a simulation that has been brought to a time.
@@ -152,18 +163,18 @@ impl Samples {
         let Some(found) = parts.into_iter().reduce(Findings::and) else { return };
         let (centre, half) = (centre(now), 0.5 * s.height);
         if self.released.is_nan() {
-            self.start = [found.foremost, floor(&now.moving(), dam.medium.eos.density)];
+            self.foremost = found.foremost;
+            self.floor = floor(&now.moving(), dam.medium.eos.density);
             self.released = centre / half - 1.0;
         }
-        let [first, floor] = self.start;
         let depth_at = |(place, w)| match &density {
             Ok(_) => Ok(depth(&found.near, place, w)),
             Err(absent) => Err(absent.clone()),
         };
         // Water reaches a fixed distance beyond its foremost particle, by which it begins at a.
-        let front = s.width + found.foremost - first;
+        let front = s.width + found.foremost - self.foremost;
         let [height, levels @ ..] = probes.map(depth_at);
-        let (time, potential) = (now.time(), (centre - floor) / half);
+        let (time, potential) = (now.time(), (centre - self.floor) / half);
         self.series.push(TankSample { time, front, height, levels, potential });
         self.look_at_walls(dam, now, &found);
     }
@@ -176,7 +187,7 @@ impl Samples {
         // Particles by their numbers are copies, which most samples do without.
         if self.spilled.is_empty() && !found.has_lost {
             self.fastest = self.fastest.max(found.fastest);
-            self.outside = [self.outside[0].max(0.0), 0.0];
+            (self.outside_most, self.outside) = (self.outside_most.max(0.0), 0.0);
             return;
         }
         let mut lost = 0.0;
@@ -191,7 +202,7 @@ impl Samples {
                 self.fastest = self.fastest.max(p.velocity.norm());
             }
         }
-        self.outside = [self.outside[0].max(lost), lost];
+        (self.outside_most, self.outside) = (self.outside_most.max(lost), lost);
     }
 
     /// The most by which the front is behind where it has been, until it is two spacings from the far wall,
@@ -203,11 +214,9 @@ impl Samples {
 
     /// Metrics that need no reference, and the series.
     pub fn measure(&self, dam: &Dam, record: &mut Record) {
-        let [most, last] = self.outside;
-        record.put(metrics::OUTSIDE, most);
-        record.put(metrics::OUTSIDE_END, last);
-        let [columns, rows] = dam.counts;
-        record.put(metrics::SPILLED, self.spilled.len() as f64 / (columns * rows) as f64);
+        record.put(metrics::OUTSIDE, self.outside_most);
+        record.put(metrics::OUTSIDE_END, self.outside);
+        record.put(metrics::SPILLED, self.spilled.len() as f64 / (dam.columns * dam.rows) as f64);
         record.put(metrics::RELEASED, self.released);
         record.put(metrics::FRONT_BACK, self.fallen_back(dam) / dam.settings.width);
         record.put(metrics::MACH, self.fastest / dam.medium.eos.sound_speed);
@@ -355,7 +364,7 @@ mod tests {
         let mut samples = Samples::new();
         for (from, to, rows) in [(0, 20, 10), (3, 40, 4), (5, 50, 2)] {
             let mut all = water(&tank, from, to, rows, Vector2::zeros());
-            // Spray above a quarter of the column is no front.
+            // Spray above a quarter of the column does not count.
             all.push(Particle::fluid(Vector2::new(1.55, 0.2), Vector2::zeros(), 1e3, 1e-12));
             samples.sample(&tank, &at_start(all));
         }

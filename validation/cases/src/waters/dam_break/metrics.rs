@@ -100,7 +100,7 @@ pub const IMPULSE_AWAY: [MetricKey; 4] = four(
      fluid, minus 1",
     ["impulse_P1_away", "impulse_P2_away", "impulse_P3_away", "impulse_P4_away"],
 );
-/// Distance of the history of the pressure on each sensor from that of the reference with the same model.
+/// Distance of the history of the pressure on each sensor from the reference with the same model.
 pub const PRESSURE_AWAY: [MetricKey; 4] = four(
     "rms distance of the pressure/(rho g H) from that of the same model by volume of fluid, both means over \
      0.01 (H/g)^(1/2), from 0.1 to 2.5 (H/g)^(1/2) after the arrival at P1",

@@ -14,7 +14,7 @@ use super::{
         LEVELS, MACH, MASS_ERROR, MOMENTUM_GAP, OUTSIDE, POTENTIAL_AWAY, REACHED, RELEASED,
         RINGING, Z,
     },
-    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS, WINDOWS},
+    reference::{FRONT_SPREAD, IMPULSE_SPREAD, PEERS, PeerFronts, WINDOWS},
 };
 use crate::waters::{
     causes::{
@@ -172,8 +172,9 @@ fn free_references(gates: &RunGates) -> Vec<Gate> {
     let height = "The height is measured at stations that are 1/18 of the column apart.";
     let clock =
         "A diaphragm that takes time to open can only delay the height, as it delays the front.";
-    let place = |(t, low, high): (f64, f64, f64)| {
-        gates.reference(Z.at(t), Bound::Within(low - FRONT_SPREAD, high + FRONT_SPREAD), peers)
+    let place = |PeerFronts { time, least, most }| {
+        let bound = Bound::Within(least - FRONT_SPREAD, most + FRONT_SPREAD);
+        gates.reference(Z.at(time), bound, peers)
     };
     let [second, third] = PEERS.map(place);
     vec![
@@ -280,7 +281,7 @@ type Why = (&'static Cause, &'static str);
 
 /// The metrics of a run with known limitations of their gates, their size, and the reason.
 fn known(row: &Row) -> Vec<(MetricName, f64, Why)> {
-    let [z2, z3] = PEERS.map(|(t, ..)| Z.at(t));
+    let [z2, z3] = PEERS.map(|of| Z.at(of.time));
     match (row.group, row.variant) {
         (Group::Free, "seed") => vec![
             (z2, 2.35, THICK),

@@ -31,26 +31,49 @@ pub const LEVEL_SPREAD: f64 = 0.024;
 /// Relative standard uncertainty of impulses: the impulses on P2L and P2 for one (H/g)^(1/2) from the arrival
 /// at P1 differ by 0.06, √2 times the uncertainty of one sensor.
 pub const IMPULSE_SPREAD: f64 = 0.06 / SQRT_2;
-/// Results of three other particle codes for Z at T = 2 and 3, as the founders measured them in 2025-26:
-/// SPHinXsys, DualSPHysics and PySPH, WCSPH in two dimensions.
-pub const PEERS: [(f64, f64, f64); 2] = [(2.0, 2.62, 2.66), (3.0, 3.97, 4.00)];
+/// Z of three other particle codes at T.
+pub struct PeerFronts {
+    /// T.
+    pub time: f64,
+    /// The least Z.
+    pub least: f64,
+    /// The largest Z.
+    pub most: f64,
+}
 
-/// Front (T, Z) and residual height (τ, η) of Martin & Moyce. Packages are embedded and checked by a test.
-pub static MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
-    [("front", ["T", "Z"]), ("height", ["tau", "H"])]
-        .map(|(table, columns)| Package::curve("dambreak_martin_moyce", table, columns, &[]))
+/// Fronts of three other particle codes, as the founders measured them in 2025-26: SPHinXsys, DualSPHysics and
+/// PySPH, WCSPH in two dimensions.
+pub const PEERS: [PeerFronts; 2] = [
+    PeerFronts { time: 2.0, least: 2.62, most: 2.66 },
+    PeerFronts { time: 3.0, least: 3.97, most: 4.00 },
+];
+
+/// Curves of the column of Martin & Moyce.
+pub struct OfColumn {
+    /// Z over T.
+    pub front: Points,
+    /// Residual height \[H\], measured over τ and computed over t (g/H)^(1/2).
+    pub height: Points,
+}
+
+/// The experiment. Packages are embedded and checked by a test.
+pub static MARTIN_MOYCE: LazyLock<OfColumn> = LazyLock::new(|| {
+    let curve = |table, columns| Package::curve("dambreak_martin_moyce", table, columns, &[]);
+    OfColumn { front: curve("front", ["T", "Z"]), height: curve("height", ["tau", "H"]) }
 });
 
-/// Z over T and residual height \[H\] of that column by volume of fluid.
-pub static MODEL_OF_MARTIN_MOYCE: LazyLock<[Points; 2]> = LazyLock::new(|| {
-    let [front, height] = ["front", "height"].map(|name| of_model("martin_moyce", name));
+/// The column by volume of fluid.
+pub static MODEL_OF_MARTIN_MOYCE: LazyLock<OfColumn> = LazyLock::new(|| {
     // H is 2a, so T = 2 t (g/H)^(1/2) and Z = 2 x/H.
-    [front.into_iter().map(|(t, x)| (2.0 * t, 2.0 * x)).collect(), height]
+    let front = of_model("martin_moyce", "front").into_iter().map(|(t, x)| (2.0 * t, 2.0 * x));
+    OfColumn { front: front.collect(), height: of_model("martin_moyce", "height") }
 });
 
-/// Potential energy \[M g H/2\] of both columns by volume of fluid.
-static POTENTIAL: LazyLock<[Points; 2]> =
-    LazyLock::new(|| ["martin_moyce", "lobovsky"].map(|scene| of_model(scene, "potential")));
+/// Potential energy \[M g H/2\] of the column of Martin & Moyce by volume of fluid.
+static POTENTIAL_OF_COLUMN: LazyLock<Points> =
+    LazyLock::new(|| of_model("martin_moyce", "potential"));
+/// Potential energy \[M g H/2\] in the tank of Lobovsky et al. by volume of fluid.
+static POTENTIAL_OF_TANK: LazyLock<Points> = LazyLock::new(|| of_model("lobovsky", "potential"));
 
 /// Curves of the tank of Lobovsky et al., in units of H, (H/g)^(1/2) and ρ g H.
 pub struct OfTank {
@@ -159,13 +182,11 @@ const ARRIVED: f64 = 0.1;
 /// wave that it falls back into has not yet closed over air.
 pub const WINDOWS: [f64; 2] = [1.0, 2.5];
 
-/// Histories of pressure are compared during this time after the arrival \[(H/g)^(1/2)\]: by volume of
-/// fluid the
-/// arrival is known to 0.021.
+/// Histories of pressure are compared during this time after the arrival \[(H/g)^(1/2)\]: the arrival
+/// by volume of fluid is known to 0.021.
 const HISTORY: [f64; 2] = [0.1, 2.5];
-/// The ringing is that of this time \[(H/g)^(1/2)\], after the first impact and before the jet closes
-/// over air,
-/// about a mean over [`SMOOTH`].
+/// The ringing is measured during this time \[(H/g)^(1/2)\], after the first impact and before the jet
+/// closes over air, about a mean over [`SMOOTH`].
 const RINGS: [f64; 2] = [3.2, 5.8];
 /// Four periods of the slowest oscillation of 30 spacings \[(H/g)^(1/2)\].
 const SMOOTH: f64 = 0.5;
@@ -186,7 +207,8 @@ const DRY: &str = "the run ends before water comes to this place";
 fn put_if_reached(
     record: &mut Record,
     metric: impl Into<MetricName>,
-    [reached, time]: [f64; 2],
+    reached: f64,
+    time: f64,
     value: impl FnOnce() -> f64,
 ) {
     let is_reached = time <= reached * (1.0 + 1e-9);
@@ -251,35 +273,35 @@ fn with_potential(model: &[(f64, f64)], end: f64, s: &DamSettings, record: &mut 
 }
 
 fn front_of_martin_moyce(s: &DamSettings, record: &mut Record) {
-    with_potential(&POTENTIAL[0], s.end, s, record);
+    with_potential(&POTENTIAL_OF_COLUMN, s.end, s, record);
     let front = front(record);
     let reached = end_of(&front);
     for t in FREE_TIMES {
-        let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE[0], t);
-        put_if_reached(record, FRONT_AWAY.at(t), [reached, t], away);
+        let away = || value(&front, t) - value(&MODEL_OF_MARTIN_MOYCE.front, t);
+        put_if_reached(record, FRONT_AWAY.at(t), reached, t, away);
     }
-    for (t, ..) in PEERS {
-        put_if_reached(record, Z.at(t), [reached, t], || value(&front, t));
+    for PeerFronts { time, .. } in PEERS {
+        put_if_reached(record, Z.at(time), reached, time, || value(&front, time));
     }
-    let measured = until(&MARTIN_MOYCE[0], reached);
+    let measured = until(&MARTIN_MOYCE.front, reached);
     put_distance(record, FRONT, &[(front, measured)], 1.0, "Z at equal T");
 }
 
 fn height_of_martin_moyce(s: &DamSettings, record: &mut Record) {
     let height_of = |unit| height(record, unit);
     let [height, falls] = [(s.width / s.gravity).sqrt(), s.unit_time()].map(height_of);
-    record.put(HEIGHT_AWAY, distance(&falls, &until(&MODEL_OF_MARTIN_MOYCE[1], s.end), 0.0));
-    let measured = until(&MARTIN_MOYCE[1], end_of(&height));
+    record.put(HEIGHT_AWAY, distance(&falls, &until(&MODEL_OF_MARTIN_MOYCE.height, s.end), 0.0));
+    let measured = until(&MARTIN_MOYCE.height, end_of(&height));
     let what = "the depth at 0.2 a over 2a, not at the back wall, where a layer of a few spacings lags, \
                 from what was read there, at equal tau";
     put_distance(record, HEIGHT, &[(height, measured)], 1.0, what);
 }
 
 fn front_of_lobovsky(s: &DamSettings, record: &mut Record) {
-    with_potential(&POTENTIAL[1], POTENTIAL_UNTIL, s, record);
+    with_potential(&POTENTIAL_OF_TANK, POTENTIAL_UNTIL, s, record);
     let [front, from_wall] = [s.width, 0.0].map(|place| front_from(record, place));
     let away = || value(&from_wall, TANK_TIME) - value(&MODEL.front, TANK_TIME);
-    put_if_reached(record, FRONT_AWAY.at(TANK_TIME), [end_of(&from_wall), TANK_TIME], away);
+    put_if_reached(record, FRONT_AWAY.at(TANK_TIME), end_of(&from_wall), TANK_TIME, away);
     let measured = until(&LOBOVSKY.front, s.end);
     put_distance(record, FRONT, &[(front, measured)], 0.6, "x of the tip from the gate/H");
 }
@@ -301,20 +323,20 @@ fn pressures_of_lobovsky(record: &mut Record) {
     let [ours, theirs, models] =
         [&pressures, &LOBOVSKY.pressure, &MODEL.pressure].map(|pressure| arrival(&pressure[0]));
     let reached = end_of(&pressures[0]);
-    put_if_reached(record, ARRIVAL, [reached, ours], || ours);
+    put_if_reached(record, ARRIVAL, reached, ours, || ours);
     for (k, computed) in pressures.iter().enumerate() {
         for window in WINDOWS {
             let [a, b, c] =
                 [(computed, ours), (&LOBOVSKY.pressure[k], theirs), (&MODEL.pressure[k], models)]
                     .map(|(curve, from)| integral(curve, from, window));
-            let times = [reached, ours + window];
-            put_if_reached(record, IMPULSE[k].at(window), times, || a / b - 1.0);
-            put_if_reached(record, IMPULSE_AWAY[k].at(window), times, || a / c - 1.0);
+            let end = ours + window;
+            put_if_reached(record, IMPULSE[k].at(window), reached, end, || a / b - 1.0);
+            put_if_reached(record, IMPULSE_AWAY[k].at(window), reached, end, || a / c - 1.0);
         }
         let history = during(&MODEL.pressure[k], HISTORY.map(|after| models + after));
         let away = || distance(computed, &history, models - ours);
-        put_if_reached(record, PRESSURE_AWAY[k], [reached, ours + HISTORY[1]], away);
-        put_if_reached(record, RINGING[k], [reached, RINGS[1]], || ringing(computed));
+        put_if_reached(record, PRESSURE_AWAY[k], reached, ours + HISTORY[1], away);
+        put_if_reached(record, RINGING[k], reached, RINGS[1], || ringing(computed));
     }
     let peak = pressures[0].iter().map(|(_, p)| *p).fold(f64::NAN, f64::max);
     record.put_or(PEAK, ours.is_finite().then_some(peak), DRY);
@@ -346,7 +368,7 @@ mod tests {
         for (time, is_put) in [(2.0, true), (2.0 + 1e-10, true), (2.1, false), (f64::NAN, false)] {
             record.metrics.clear();
             record.absent.clear();
-            put_if_reached(&mut record, FRONT_AWAY.at(2), [2.0, time], || 1.0);
+            put_if_reached(&mut record, FRONT_AWAY.at(2), 2.0, time, || 1.0);
             let found = [record.metrics.len(), record.absent.len()];
             assert_eq!(found, if is_put { [1, 0] } else { [0, 1] }, "{time}");
         }
@@ -401,7 +423,7 @@ mod tests {
     #[test]
     fn a_computation_that_has_the_curves_of_martin_and_moyce_early_is_that_early() {
         let dam = Dam::changed(|_| {}).unwrap();
-        let [front, height] = &*MARTIN_MOYCE;
+        let OfColumn { front, height } = &*MARTIN_MOYCE;
         let (a, g) = (dam.settings.width, dam.settings.gravity);
         let (t, tau) = ((0.5 * a / g).sqrt(), (a / g).sqrt());
         let row = |k: u32| {
@@ -474,9 +496,9 @@ mod tests {
     #[test]
     fn the_reference_is_read_in_the_units_of_the_cases() {
         for (t, z) in [(1.0, 1.548), (2.0, 2.662), (3.0, 4.099)] {
-            is(value(&MODEL_OF_MARTIN_MOYCE[0], t), z, 1e-3);
+            is(value(&MODEL_OF_MARTIN_MOYCE.front, t), z, 1e-3);
         }
-        is(value(&MODEL_OF_MARTIN_MOYCE[1], 1.5), 0.4638, 1e-3);
+        is(value(&MODEL_OF_MARTIN_MOYCE.height, 1.5), 0.4638, 1e-3);
         is(value(&MODEL.front, 2.0), 4.649, 1e-3);
         is(value(&MODEL.levels[3][0], 4.0), 0.1751, 1e-3);
         let at = arrival(&MODEL.pressure[0]);
@@ -493,9 +515,9 @@ mod tests {
         let of = &dam.settings;
         let row = |k: u32| {
             let t = 0.002 * f64::from(k);
-            let front = of.width * (0.03 + value(&MODEL_OF_MARTIN_MOYCE[0], 2.0 * t));
-            let height = of.height * (0.02 + value(&MODEL_OF_MARTIN_MOYCE[1], t));
-            let potential = value(&POTENTIAL[0], t) - 0.01;
+            let front = of.width * (0.03 + value(&MODEL_OF_MARTIN_MOYCE.front, 2.0 * t));
+            let height = of.height * (0.02 + value(&MODEL_OF_MARTIN_MOYCE.height, t));
+            let potential = value(&POTENTIAL_OF_COLUMN, t) - 0.01;
             [t * of.unit_time(), front, height, 0.0, 0.0, 0.0, 0.0, potential]
         };
         let metric = compared(&dam, (0..900).map(row), Vec::new());
@@ -514,7 +536,7 @@ mod tests {
             let t = 0.01 * f64::from(k);
             let level = |k: usize| h * (0.01 * (k + 1) as f64 + value(&MODEL.levels[k][0], t));
             let front = h * (0.03 + value(&MODEL.front, t));
-            let potential = if t > 3.1 { 9.0 } else { 0.01 + value(&POTENTIAL[1], t) };
+            let potential = if t > 3.1 { 9.0 } else { 0.01 + value(&POTENTIAL_OF_TANK, t) };
             [t * unit, front, 0.0, level(0), level(1), level(2), level(3), potential]
         };
         let too_much = |k: usize| 0.05 * (k + 1) as f64;

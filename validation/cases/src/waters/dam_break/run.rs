@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use touchstone_base::record::{MetricKey, Status};
 use touchstone_harness::prelude::*;
 use touchstone_harness::{
-    method::{Boundary, FirstRow},
+    method::FirstRow,
     pictures,
     snapshot::{Point, Snapshot},
 };
 use touchstone_maths::{geometry::Tank, metrics::budget::Metered};
 use touchstone_schemes::water::WaterMethod;
-use touchstone_solver::{DivergenceBounds, EquationOfState, Ghosts};
+use touchstone_solver::{DivergenceBounds, EquationOfState};
 
 use super::{
     DamSettings, Experiment,
@@ -33,8 +33,10 @@ pub struct Dam {
     pub tank: Tank,
     /// Height of the walls, over which water may leave the tank \[m\]; infinite for mirrors.
     pub rim: f64,
-    /// Particles of the column along x and y.
-    pub counts: [usize; 2],
+    /// Particles of the column along x.
+    pub columns: usize,
+    /// Particles of the column along y.
+    pub rows: usize,
     /// The largest speed expected \[m/s\].
     pub speed: f64,
     /// Time step and its theoretical limit.
@@ -49,7 +51,7 @@ impl Dam {
             let (what, setting) = ("the width of the column", "width or tank");
             return Err(RunError::TooMuch { what, value: s.width, most: s.tank, setting });
         }
-        let counts = [s.width, s.height].map(|side| (side / dx).round().max(1.0) as usize);
+        let [columns, rows] = [s.width, s.height].map(|side| (side / dx).round().max(1.0) as usize);
         let spacings = |length: f64| (length / dx).round() as usize;
         let tank = Tank { columns: spacings(s.tank), rows: spacings(s.rim * s.height), dx };
         let is_endless = method.properties.first_row == FirstRow::Nowhere;
@@ -61,7 +63,7 @@ impl Dam {
         let scales = water::WaterScales { dx, c0: s.c0 * fall, gravity: s.gravity, speed, end };
         let (medium, rules) = s.water.medium(method, scales);
         let (settings, method) = (s.clone(), method.clone());
-        Ok(Self { settings, method, medium, tank, rim, counts, speed, rules })
+        Ok(Self { settings, method, medium, tank, rim, columns, rows, speed, rules })
     }
 
     /// ρ g H \[Pa\], the unit of pressure.
@@ -82,7 +84,7 @@ impl Dam {
     /// Water in hydrostatic equilibrium with the gate that is about to vanish.
     pub fn water(&self, walls: FirstRow) -> Vec<Particle> {
         let s = &self.settings;
-        let [columns, rows] = self.counts;
+        let Self { columns, rows, .. } = *self;
         // Between two surfaces with particles on them there is one column less.
         let is_full = walls == FirstRow::OnSurface && columns == self.tank.columns;
         let columns = columns - usize::from(is_full);
@@ -159,12 +161,12 @@ impl Problem for Dam {
         let of = &self.method.properties;
         let reach = (of.support * medium.h / medium.dx).ceil();
         let behind = if of.first_row == FirstRow::Nowhere { 0.0 } else { reach };
-        let [columns, rows] = self.counts.map(|count| count as f64);
-        let all = columns * rows + behind * (tank.columns as f64 + 2.0 * tank.rows as f64);
-        let unstable = (of.walls == Ghosts::NAME).then(|| {
+        let all = (self.columns * self.rows) as f64
+            + behind * (tank.columns as f64 + 2.0 * tank.rows as f64);
+        let unstable = of.has_no_slip_mirrors.then(|| {
             let allowed = "--allow-unstable: particles of a stretched layer sink through mirrors to which \
                            water sticks; ghosts-slip puts them back";
-            let (value, allowed) = (Ghosts::NAME.into(), allowed.into());
+            let (value, allowed) = (of.walls.into(), allowed.into());
             RunError::Combination { key: "variant", value, allowed }
         });
         let brief = Brief::new(*medium, self.rules, all, DECISIVE)
@@ -187,8 +189,8 @@ impl Problem for Dam {
         // The fastest water crosses the least skin in a step or two; lists that last longer are worth their
         // length. A step far beyond the limit must not make everything a neighbour of everything.
         let skin = (SKIN_STEPS * self.rules.dt() * speed).clamp(LEAST_SKIN * medium.h, medium.h);
-        // Water that is twice as dense, or as fast as sound, is no water any more, unless it has left over
-        // the rim: nothing stops its fall.
+        // Twice the density or the speed of sound is unphysical for water, except for the speed of water that
+        // has left over the rim: nothing stops its fall.
         let falling = speed + self.settings.gravity * self.rules.end;
         let fastest = c0.max(2.0 * speed).max(falling);
         let limits = DivergenceBounds { density: [0.5 * rho, 2.0 * rho], speed: fastest };
@@ -261,8 +263,8 @@ fn water_mass(now: &Snapshot) -> f64 {
     now.of_moving(|p| p.mass).sum()
 }
 
-/// Times of samples \[s\], ascending, a whole number of steps apart, so that none is shortened; and which of
-/// them is that of each frame of the film.
+/// Times of the samples \[s\], ascending, whole numbers of steps apart, so that no step is shortened; and the
+/// index of the sample of each frame of the film.
 fn stops(dam: &Dam) -> (Vec<f64>, Vec<usize>) {
     let (end, dt) = (dam.settings.end * dam.settings.unit_time(), dam.rules.dt());
     let (h, eos) = (dam.medium.h, dam.medium.eos);
