@@ -12,6 +12,7 @@ use touchstone_report::{Axis, sig};
 
 use super::{
     DamSettings,
+    columns::{LEVELS, PRESSURES},
     measure::{PROBES, SENSORS},
     metrics::ARRIVAL,
     plan::{self, Group, Row},
@@ -93,7 +94,7 @@ fn tank(tier: Tier) -> Curves {
     let axes = ([time, "front from the gate [H]"], 2.8);
     let mut panels = vec![panel(of, "front", axes, from_gate, [&LOBOVSKY.front, &model])];
     for (k, place) in PROBES.iter().enumerate() {
-        let title = format!("H{}, x = {place} m", k + 1);
+        let title = format!("{}, x = {place} m", LEVELS[k].name);
         let curves = [&LOBOVSKY, &MODEL].map(|known| known.level(k, 6.0));
         let level = move |record: &Record| depth(record, k);
         panels.push(panel(of, &title, ([time, "depth [H]"], 6.0), level, curves.each_ref()));
@@ -104,7 +105,7 @@ fn tank(tier: Tier) -> Curves {
     };
     let [theirs, models] = [&LOBOVSKY, &MODEL].map(|known| arrival(&known.pressure[0]));
     for (k, height) in SENSORS.iter().enumerate() {
-        let title = format!("P{}, {} mm above the floor", k + 1, sig(1e3 * height, 2));
+        let title = format!("{}, {} mm above the floor", PRESSURES[k].name, sig(1e3 * height, 2));
         let arrived = move |record: &Record| {
             // NaN, so that no curve is drawn, if the wave did not arrive.
             let arrival = record.value(ARRIVAL).unwrap_or(f64::NAN);

@@ -6,7 +6,7 @@ use touchstone_harness::studies::{Ensemble, Ensembles, History, MemberNumber};
 use touchstone_maths::metrics::curve::{Points, integral, integrals, mean};
 
 use super::{
-    NAME,
+    NAME, columns,
     metrics::IMPULSE,
     plan::{self, Group, Table},
     reference::{
@@ -56,8 +56,8 @@ fn histories(id: &str, variant: &str) -> Vec<History> {
         Gate::new(id, metric, Bound::Above(until), Evidence::Invariant, because)
     };
     let level = |k: usize| {
-        let name = format!("H{}", k + 1);
-        let gate = (variant == "modern" || k == 0).then(|| agree(&name, LEVELS_UNTIL));
+        let name = columns::LEVELS[k].name;
+        let gate = (variant == "modern" || k == 0).then(|| agree(name, LEVELS_UNTIL));
         History {
             name: format!("level {name} [H]"),
             points: Box::new(move |record| depth(record, k)),
@@ -69,9 +69,9 @@ fn histories(id: &str, variant: &str) -> Vec<History> {
     };
     let [theirs, models] = [&LOBOVSKY.pressure, &MODEL.pressure].map(|p| arrival(&p[0]));
     let pressed = |k: usize| {
-        let name = format!("P{}", k + 1);
+        let name = columns::PRESSURES[k].name;
         let measured = &LOBOVSKY.pressure[k];
-        let gate = (variant == "modern").then(|| agree(&name, models + WINDOWS[0]));
+        let gate = (variant == "modern").then(|| agree(name, models + WINDOWS[0]));
         // On the clock of the model, by which the wave arrives.
         let later = |(t, y): (f64, f64)| (t + models - theirs, y);
         History {
