@@ -28,12 +28,12 @@ pub fn snapshot(name: &str) -> Option<String> {
 /// The numbers of a snapshot by their names, for each variant and run.
 pub type Kept = BTreeMap<(String, String), BTreeMap<String, f64>>;
 
-/// The tables of a snapshot, one a variant, with the variant in the first cell. Lines without cells are none.
+/// The tables of a snapshot, one a variant, with the variant in the first cell, without the means of profiles.
 fn tables(name: &str) -> impl Iterator<Item = (String, Vec<Vec<String>>)> {
     let text = snapshot(name).unwrap_or_default();
     let parts: Vec<String> = text.split("\n\n").map(String::from).collect();
     parts.into_iter().filter_map(|part| {
-        let rows = part.lines().filter(|line| line.contains('|'));
+        let rows = part.lines().filter(|line| line.contains('|') && !line.starts_with("profiles "));
         let rows: Vec<Vec<String>> =
             rows.map(|row| row.split('|').map(|cell| cell.trim().to_string()).collect()).collect();
         Some((rows.first()?[0].clone(), rows))
