@@ -84,7 +84,7 @@ fn remove_all(paths: &mut BTreeSet<PathBuf>) -> usize {
 /// Reads a regular file: a pipe in its place would be waited for without end.
 ///
 /// # Errors
-/// Errors of the system; or if the path is no regular file.
+/// Errors of the system; or if the path is not a regular file.
 pub fn read(path: &Path) -> io::Result<Vec<u8>> {
     read_at_most(path, u64::MAX)
 }
@@ -93,7 +93,7 @@ pub fn read(path: &Path) -> io::Result<Vec<u8>> {
 /// a file of the system with size 0.
 ///
 /// # Errors
-/// Errors of the system; or if the path is no regular file, or the file is longer.
+/// Errors of the system; or if the path is not a regular file, or the file is longer.
 pub fn read_at_most(path: &Path, most: u64) -> io::Result<Vec<u8>> {
     check_regular(path, most)?;
     bytes_of(File::open(path)?, most)
@@ -112,7 +112,7 @@ fn bytes_of(from: impl Read, most: u64) -> io::Result<Vec<u8>> {
 /// Reads a text of up to `most` bytes from a regular file.
 ///
 /// # Errors
-/// Errors of the system; or if the path is no regular file, or the file is larger or not UTF-8.
+/// Errors of the system; or if the path is not a regular file, or the file is larger or not UTF-8.
 pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     check_regular(path, most)?;
     text_of(File::open(path)?, most)

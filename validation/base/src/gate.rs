@@ -451,7 +451,7 @@ pub struct Judged {
     /// The gate.
     #[serde(flatten)]
     pub gate: Gate,
-    /// Unit of the metric; none of one that the record lacks.
+    /// Unit of the metric; `None` if the record lacks it.
     pub unit: Option<String>,
     /// The judgement.
     #[serde(flatten)]

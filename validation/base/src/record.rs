@@ -36,7 +36,7 @@ pub const SCHEMA: u32 = 3;
 /// Why a record was not written or not read.
 #[derive(Debug, Error)]
 pub enum RecordError {
-    /// The text is no record.
+    /// The text is not a record.
     #[error("the record cannot be read: {0}")]
     Unreadable(#[from] serde_json::Error),
     /// The document has another version.
@@ -501,7 +501,7 @@ impl Profile {
 }
 
 impl Record {
-    /// The day on which a record that the program contains was made together with those of other codes.
+    /// The day on which a record that the program contains was made together with records of other codes.
     pub fn session(&self) -> Option<&str> {
         self.numerics.get(crate::submission::SESSION)?.as_str()
     }

@@ -230,8 +230,8 @@ impl Reference {
         Self::from_texts(name, package.map_or("", |(_, text)| text), &files)
     }
 
-    /// Checks and reads a reference from the text of its description and of its tables by path, of which the
-    /// build script has checked the hashes.
+    /// Checks and reads a reference from the text of its description and of its tables by path. The build
+    /// script has checked their hashes.
     pub fn from_texts(
         name: &str,
         package: &str,

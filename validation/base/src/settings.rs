@@ -93,7 +93,7 @@ impl fmt::Display for Value {
 }
 
 impl Value {
-    /// The number; none of a flag or of a value by rule.
+    /// The number; `None` for a flag or a value by rule.
     pub fn number(self) -> Option<f64> {
         match self {
             Value::Count(count) => Some(count as f64),

@@ -84,10 +84,10 @@ pub(crate) fn name<'de, D: Deserializer<'de>>(from: D) -> Result<String, D::Erro
     }
 }
 
-/// Reads settings by name, each given once: of two values the last would be used in silence.
+/// Reads settings by name, each given once: a second value would silently replace the first.
 ///
 /// # Errors
-/// If they are no object, or one is given twice.
+/// If they are not an object, or one is given twice.
 fn settings<'de, D: Deserializer<'de>>(from: D) -> Result<Value, D::Error> {
     struct Once;
     impl<'de> Visitor<'de> for Once {

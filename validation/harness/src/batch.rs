@@ -67,7 +67,7 @@ pub(crate) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// A batch of jobs, none of which is made, with the records that exist.
+    /// A batch of jobs that are still to be made, with the records that exist.
     pub(crate) fn new(jobs: &[Job], made: BatchResult, making: &'a BatchOptions<'a>) -> Self {
         let (mut tally, mut gates) = (Tally::default(), BTreeMap::new());
         for job in jobs {

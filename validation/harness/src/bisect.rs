@@ -363,7 +363,7 @@ mod tests {
         assert_eq!(watched(|k| if k > 7.0 { f64::NAN } else { 1.0 }), (true, 8));
     }
 
-    /// Of eight steps the second quarter is the third and the fourth, the last the seventh and the eighth;
+    /// The second quarter of eight steps is the third and the fourth, the last the seventh and the eighth;
     /// the other steps do not count. An increase by more than half is growth, a smaller one is not.
     #[test]
     fn growth_compares_the_last_quarter_with_the_second() {

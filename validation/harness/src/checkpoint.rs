@@ -36,8 +36,7 @@ pub(crate) struct Stage {
     pub frames: Option<(Vec<(f64, String)>, usize)>,
 }
 
-/// The state of a simulation: a [`Checkpoint`], of which particles keep deviatoric stresses alone of their
-/// extra fields.
+/// The state of a simulation: a [`Checkpoint`] whose extra fields are reduced to deviatoric stresses.
 #[derive(Serialize, Deserialize)]
 struct StoredState {
     #[serde(with = "ProgressFields")]
@@ -48,7 +47,7 @@ struct StoredState {
     past: Vec<StoredStep>,
 }
 
-/// The components xx, yy and xy of a deviatoric stress, none of a fluid \[Pa\].
+/// The components xx, yy and xy of a deviatoric stress, absent for a fluid \[Pa\].
 type Stress = Option<[f64; 3]>;
 
 #[derive(Serialize, Deserialize)]
@@ -200,7 +199,7 @@ pub(crate) fn save<X: Numbers>(
     Ok(postcard::to_allocvec(&Stored { state, stage, seen })?)
 }
 
-/// Gives a simulation of the same scene its state from bytes; how far it is, and what was observed of it.
+/// Restores a simulation; returns its stage and the serialised observations.
 pub(crate) fn restore<X: Numbers>(
     bytes: &[u8],
     simulation: &mut dyn Stepper<X>,

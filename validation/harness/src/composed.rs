@@ -30,7 +30,7 @@ pub struct Composition {
     variant: Variant,
     settings: Box<dyn Values>,
     pose: Box<Pose>,
-    /// Settings that none of its terms and walls reads: the variant refuses them.
+    /// Settings that its terms and walls do not read: the variant refuses them.
     lacks: Vec<&'static str>,
     /// Settings of a run that differ from the variant's, as `key=value`.
     changed: String,
@@ -82,7 +82,7 @@ impl<T: Settings, M: 'static> Variants<T, M> {
 
 impl<T: Settings, X: 'static, D: ?Sized + 'static> Variants<T, Method<X, D>> {
     /// Adds a variant: name, description, method, and a function that changes the default settings. It
-    /// refuses settings that none of its terms and walls reads.
+    /// refuses settings that its terms and walls do not read.
     #[must_use]
     pub fn with(
         self,

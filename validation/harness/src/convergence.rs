@@ -92,7 +92,7 @@ impl Convergence {
 /// method that has this formal order, if one is declared.
 ///
 /// # Errors
-/// Why there is none, in words; an error of exactly 0 has no order and is refused.
+/// The reason, in words, if there is no order; an error of exactly 0 has none and is refused.
 pub fn convergence(levels: &[ErrorLevel], formal: Option<f64>) -> Result<Convergence, String> {
     let levels = sorted(levels)?;
     let x: Vec<f64> = levels.iter().map(|level| ln(level.spacing)).collect();
@@ -207,7 +207,7 @@ mod tests {
         assert_relative_eq!(width, 2.0 * 12.7062 * found.standard_error, epsilon = 1e-12);
     }
 
-    /// By hand: the line through (0, 1), (1, 3), (2, 2), (3, 5) is 1.1 + 1.1 x, its residuals are -0.1, 0.8,
+    /// Calculated by hand: the line through (0, 1), (1, 3), (2, 2), (3, 5) is 1.1 + 1.1 x, its residuals are -0.1, 0.8,
     /// -1.3 and 0.6, whose squares add up to 2.7, and Σ (x - x̄)² = 5: (2.7/2/5)^(1/2).
     #[test]
     fn the_standard_error_is_that_of_two_fewer_than_the_points() {

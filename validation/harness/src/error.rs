@@ -96,7 +96,7 @@ pub enum RunError {
     /// A scene that no file can state for another code.
     #[error("the case has no scene to export: {0}")]
     NoScene(&'static str),
-    /// A relation that is no symmetry of the scene.
+    /// A relation that is not a symmetry of the scene.
     #[error("relation {} does not hold here: {reason}", .relation.name())]
     NoSymmetry {
         /// The relation.

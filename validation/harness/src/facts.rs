@@ -103,8 +103,8 @@ pub struct SubmittedCurve {
 pub struct Draws {
     /// The variants whose errors change with the order below; all if none is named.
     pub variants: &'static [&'static str],
-    /// The setting of the resolution, a number of spacings or a spacing of which a whole number is a length
-    /// of 1, and the ends between which it is drawn.
+    /// The setting of the resolution, a number of spacings or a spacing that divides a length of 1, and the
+    /// ends between which it is drawn.
     pub resolution: (&'static str, [f64; 2]),
     /// The formal order of the errors in the spacing.
     pub order: f64,

@@ -60,8 +60,7 @@ pub struct OwnParticle {
 pub struct Foreign<'a> {
     /// The frames.
     pub frames: &'a [Frame],
-    /// The particles in place of the particles of the problem, by their numbers; none of a code that took
-    /// the particles of the problem.
+    /// The code's own particles, by id; empty if it uses those of the problem.
     pub own: Vec<OwnParticle>,
     /// Where particles are put inside the period before anything is measured.
     pub domain: Domain,
@@ -118,7 +117,7 @@ impl Foreign<'_> {
     /// `start` has none.
     ///
     /// # Errors
-    /// If an id is none of the start.
+    /// If an id is not among the ids at the start.
     pub(crate) fn columns<X: Numbers>(
         &self,
         frame: &Frame,
@@ -214,7 +213,7 @@ pub(crate) struct OurSums<D: ?Sized> {
     pub simulation: RefCell<Box<D>>,
     /// Do places and velocities determine all else, by the deformation from a reference?
     pub is_lagrangian: bool,
-    /// The column without which the simulation has particles of the problem in place of those of the code.
+    /// The missing column, if any; without it no sums can be taken.
     pub lacks: Option<Absent>,
 }
 

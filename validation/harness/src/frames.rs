@@ -43,7 +43,7 @@ impl<'a> Frames<'a> {
         (self.written.clone(), self.come)
     }
 
-    /// Goes on after these frames of an earlier run, of which some may have been removed. One whose time had
+    /// Goes on after these frames of an earlier run; some may have been removed. One whose time had
     /// come when that run was interrupted may be still to be written.
     pub fn go_on(&mut self, (mut written, come): (Vec<(f64, String)>, usize)) {
         written.retain(|(_, name)| self.folder.path().join(name).is_file());

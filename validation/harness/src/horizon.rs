@@ -4,7 +4,7 @@ use touchstone_base::random::Random;
 
 use crate::quantiles::{CONFIDENCE, between};
 
-/// Members without which there is no interval, nor a horizon: fewer bound no median.
+/// The fewest members that bound a median; with fewer there is no interval and no horizon.
 pub const FEWEST: usize = 6;
 /// Draws of the bootstrap, and its seed: equal numbers on every machine.
 const DRAWS: usize = 1000;
@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(shown, "3.685 3.545 3.840 3.140");
     }
 
-    /// Six members, of which one parts from the others early. The medians of all 6⁶ draws are enumerated
+    /// Six members; one parts from the others early. The medians of all 6⁶ draws are enumerated
     /// here: 28 % of them are the early time, and 72 % the late one, whichever member it is.
     #[test]
     fn the_interval_is_that_of_all_draws_of_members() {
@@ -171,7 +171,7 @@ mod tests {
         assert!((low - 25.0).abs() < 1e-9 && (high - 975.0).abs() < 1e-9, "{low} {high}");
     }
 
-    /// Members 0 and 1 part at 3, 0 and 2 at 5, 1 and 2 at 7. A member that is drawn twice is no pair with
+    /// Members 0 and 1 part at 3, 0 and 2 at 5, 1 and 2 at 7. A member that is drawn twice does not pair with
     /// itself, and its pairs with another one count twice.
     #[test]
     fn a_median_is_over_pairs_of_different_members() {

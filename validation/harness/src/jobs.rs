@@ -79,7 +79,7 @@ pub struct BatchResult {
     pub records: BTreeMap<RunKey, Record>,
     /// Runs whose record the store had.
     pub reused: usize,
-    /// Of these, records made from other sources.
+    /// Reused records that were made from other sources.
     pub of_other_sources: usize,
     /// Errors of the store for records that it could not keep. They are still among `records`: a full disk
     /// loses no result.

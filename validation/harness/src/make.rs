@@ -21,7 +21,7 @@ pub struct StoredRuns {
     pub made: BatchResult,
     /// The runs that it lacks.
     pub missing: Vec<Job>,
-    /// Runs of which only a record from other sources exists.
+    /// Runs that have only a record from other sources.
     pub other: usize,
 }
 
@@ -323,7 +323,7 @@ mod tests {
         assert_eq!(shares.into_inner().unwrap(), [0.0, 0.7, 0.9, 1.0]);
     }
 
-    /// The deep tier took 4.5 hours on 16 threads, of which 15 waited for one run most of the time.
+    /// The deep tier took 4.5 hours on 16 threads; 15 waited for one run most of the time.
     #[test]
     fn a_large_run_for_which_the_others_would_wait_is_made_on_all_threads() {
         let sources = |_: &str| "one".to_string();

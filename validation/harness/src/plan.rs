@@ -5,7 +5,7 @@ use crate::{
     runs::{Planned, Tier},
 };
 
-/// The runs of a case in a tier: those of its studies, each once, with the gates of all. The measured
+/// The runs of all studies of a case in a tier, each once, with the gates of all. The measured
 /// metrics of each run include the metrics of its gates.
 pub fn of_case(case: &dyn Case, tier: Tier) -> Vec<Planned> {
     let (mut runs, facts) = (case.studies(tier).runs(), case.facts());

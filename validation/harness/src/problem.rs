@@ -72,7 +72,7 @@ pub struct Brief {
     pub particles: f64,
     /// The settings on which the number of particles and of time steps depends.
     pub decisive: &'static str,
-    /// Steps of which the record keeps something.
+    /// Steps that leave data in the record.
     pub samples: f64,
     /// Steps to each of the times at least.
     pub least_steps: usize,
@@ -360,7 +360,7 @@ pub trait AnyProblem {
     /// Its scene, at its times, or at a few early times for a relation.
     ///
     /// # Errors
-    /// If it is refused, has no scene that a file can state, or the relation is no symmetry of it.
+    /// If it is refused, has no scene that a file can state, or the relation is not a symmetry of it.
     fn outline(
         &self,
         spec: &RunSpec,

@@ -52,8 +52,8 @@ const PAUSE: &str = "";
 /// Time steps between samples of the lists: a sample costs a fraction of a step.
 const SAMPLE_EVERY: u64 = 500;
 
-/// A clock over named parts, of which one is under way. Only the thread that steps reads it: atomic, so that
-/// a simulation can own a share of it, and never locked.
+/// A clock over named parts; one part is under way. Only the thread that steps reads it: atomic, so that a
+/// simulation can own a share of it, and never locked.
 struct Clock {
     start: Instant,
     /// The index of the part under way.
@@ -106,7 +106,7 @@ pub(crate) struct Profiler {
 }
 
 impl Profiler {
-    /// A profiler of a simulation with these observers, of which frames and checkpoints are the last.
+    /// A profiler of a simulation with these observers; frames and checkpoints are the last.
     pub fn new<X: Numbers>(
         simulation: &mut dyn Stepper<X>,
         observers: Vec<&'static str>,

@@ -125,7 +125,7 @@ impl View {
     /// The transformation of a scene by a relation. `moves` marks its moving particles.
     ///
     /// # Errors
-    /// Why the relation is no symmetry of it.
+    /// Why the relation is not a symmetry of it.
     pub fn of(
         relation: Relation,
         medium: &Medium,

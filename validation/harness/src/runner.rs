@@ -203,7 +203,7 @@ impl Monitor<'_> {
         }
     }
 
-    /// The cost of the run so far, of which the last stepping took `stepping`.
+    /// The cost of the run so far; the last stepping took `stepping`.
     fn cost<X: Numbers>(&self, simulation: &dyn Stepper<X>, stepping: Reading) -> Cost {
         let work = simulation.work();
         let last = if work.steps > self.steps { simulation.dt() } else { 0.0 };

@@ -41,7 +41,7 @@ pub struct Planned {
     /// How long it takes on one thread \[s\], by [`estimate`](crate::estimate::estimate); long runs start
     /// first, so that no core waits for the last one.
     pub seconds: f64,
-    /// Does it have so many particles that several threads shorten it?
+    /// Whether it is large enough to benefit from threads.
     pub is_large: bool,
 }
 
@@ -161,7 +161,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 }
 
 /// The judged runs of a case. A study looks up by its [`RunSpec`] a run that is among its
-/// [`runs`](crate::study::Study::runs). To look up another run, or one of which less is measured, is a fault
+/// [`runs`](crate::study::Study::runs). To look up another run, or one with fewer measurements, is a fault
 /// of the program, and panics: no page has a gap where a study reads what nobody planned.
 #[derive(Debug, Default)]
 pub struct Runs {

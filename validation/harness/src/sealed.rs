@@ -117,7 +117,7 @@ impl Draws {
     }
 }
 
-/// The largest magnitude that a gate allows: none of windows of our own methods, and of counts.
+/// The largest magnitude that a gate allows; `None` for windows about our own theory and for counts.
 fn most(gate: &Gate) -> Option<f64> {
     match (gate.bound, gate.evidence) {
         (Bound::Within(..), Evidence::Theory) => None,
@@ -229,7 +229,8 @@ mod tests {
         JudgedLevel { fineness, most, gate, settings: Value::Null }
     }
 
-    /// Of order 2 beyond the judged runs, interpolated between them, and the largest of equal resolutions.
+    /// Bounds extrapolate with order 2, interpolate between judged runs, and use the largest at equal
+    /// resolution.
     #[test]
     fn bounds_follow_from_those_of_judged_runs() {
         let draws = Draws {
@@ -252,7 +253,7 @@ mod tests {
         assert!(draws.bound(&[], 10.0).is_none());
     }
 
-    /// A window about the theory of our own steps is no bound for another code.
+    /// A window about the theory of our own steps does not bound another code.
     #[test]
     fn windows_of_theory_and_counts_give_no_bound() {
         let of = |bound, evidence| most(&Gate::new("c.v", "l2", bound, evidence, "made up"));

@@ -30,7 +30,7 @@ pub struct Storage {
 }
 
 impl Storage {
-    /// Of schemes: eight particles share a list of neighbours.
+    /// Memory of schemes: eight particles share a list of neighbours.
     pub const LISTS: Self = Self { particle: 400.0, neighbour: 0.75 };
 }
 
@@ -47,7 +47,7 @@ pub struct Size {
     pub neighbours: f64,
     /// Pair sweeps of a step.
     pub sweeps: f64,
-    /// Steps of which the record keeps something.
+    /// Steps that leave data in the record.
     pub samples: f64,
     /// Memory of a particle.
     pub storage: Storage,

@@ -67,7 +67,7 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Of these particles, summed in the order given.
+    /// The sums over these particles, in the order given.
     pub fn of(points: impl Iterator<Item = Point>) -> Self {
         let (mut mass, mut first, mut momentum) = (0.0, Vector2::zeros(), Vector2::zeros());
         for p in points {
@@ -229,8 +229,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
         parts.into_iter().flatten()
     }
 
-    /// What `find` finds in each part of the moving particles, some hundred as they are stored, on several
-    /// threads if the simulation is.
+    /// Results of `find` for chunks of some hundred moving particles, in storage order.
     pub fn in_parts<R: Send>(&self, find: impl Fn(&[Point]) -> R + Sync) -> Vec<R> {
         match &self.source {
             Source::Given(..) => vec![find(&self.stored().collect::<Vec<_>>())],
@@ -278,7 +277,7 @@ impl<'a, X: Numbers> Snapshot<'a, X> {
         })
     }
 
-    /// The arrays of particles that are none of our simulation.
+    /// The arrays of particles from outside our simulation.
     pub fn columns(&self) -> Option<&ParticleArrays<X>> {
         match &self.source {
             Source::Ours(_) => None,

@@ -21,7 +21,7 @@ pub struct Store {
     folder: OutputFolder,
 }
 
-/// More than this is no record \[bytes\]: one with a million particles has 100 MB.
+/// Largest record \[bytes\]: one with a million particles has 100 MB.
 pub const MOST_BYTES: u64 = 1 << 30;
 
 /// Begins the name of the record of a run that another code made.
@@ -30,10 +30,10 @@ const SUBMITTED: &str = "submitted-";
 /// Prefix of the file that states that a run is under way, or why it failed. Its age is the time since the
 /// last sign of life, which separates a run that continues from the remains of a killed process.
 const BEGUN: &str = ".begun-";
-/// Wall time between signs of life, and without one after which a run is no longer continued.
+/// Wall time between signs of life, and without one until a run counts as dead.
 const SIGN_EVERY: Duration = Duration::from_secs(20);
 const DEAD_AFTER: Duration = Duration::from_secs(120);
-/// More than this is no reason for a failure \[bytes\].
+/// Largest text of a reason for a failure \[bytes\].
 const MOST_REASON: u64 = 1 << 16;
 
 /// Why a store has no record of a run.
@@ -133,7 +133,7 @@ impl Store {
         paths.into_iter().map(of_its_name).collect()
     }
 
-    /// The record of a run, if there is one. An interrupted record, or one of which less was measured than
+    /// The record of a run, if there is one. An interrupted record, or one with fewer measurements than
     /// the run asks for, does not count: the run will be made again.
     ///
     /// # Errors
@@ -192,13 +192,13 @@ impl Store {
     /// Every record of the folder, sorted by file name.
     ///
     /// # Errors
-    /// If the folder or a file of it cannot be read, or a `.json` file is no record.
+    /// If the folder or a file of it cannot be read, or a `.json` file is not a record.
     pub fn all(path: &Path) -> Result<Vec<Record>, FileError> {
         let refused = |reason| FileError::Unread { path: path.to_path_buf(), reason };
         paths(path, "").map_err(refused)?.into_iter().map(read).collect()
     }
 
-    /// All records of a folder, with an error for each file that is no record; none for a folder that cannot
+    /// All records of a folder, with an error for each file that is not a record; empty if the folder cannot
     /// be read.
     pub fn each(path: &Path) -> impl Iterator<Item = Result<Record, FileError>> {
         paths(path, "").unwrap_or_default().into_iter().map(read)

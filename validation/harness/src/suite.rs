@@ -143,7 +143,7 @@ pub fn run(cases: &[&'static dyn Case], making: &BatchOptions) -> Suite {
 /// Judges the records of plans: gates run by run, then studies. A pure function of the records.
 pub fn judge(plans: Plans, tier: Tier, mut made: BatchResult) -> Suite {
     if made.interrupted {
-        return Suite { tier, cases: Vec::new(), made }; // nothing can be said of runs that were cut short
+        return Suite { tier, cases: Vec::new(), made }; // runs that were cut short are not judged
     }
     let of_plans: Vec<(&'static dyn Case, Runs)> = plans
         .into_iter()

@@ -87,7 +87,7 @@ pub fn floor(base: &Outline, other: &Outline, steps: f64) -> f64 {
     rounding(base).max(rounding(other)) * steps * steps
 }
 
-/// A difference below which a relation must find errors: with a larger floor it is no test.
+/// A difference below which a relation must find errors: with a larger floor it tests nothing.
 const TELLING: f64 = 1e-6;
 
 /// The most steps after which round-off explains no difference that a relation must find.

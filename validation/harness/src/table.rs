@@ -1,7 +1,7 @@
 //! The table of the runs of a case: variants over values of settings, for each tier, with their groups.
 //!
-//! A case states its runs here once. Its plan, its ladders and its studies look them up by group, so none of
-//! them states variants, resolutions or tiers again.
+//! A case states its runs here once. Its plan, its ladders and its studies look them up by group, and do
+//! not repeat variants, resolutions or tiers.
 
 use touchstone_base::{gate::Gate, mutation::Disorder, settings::Settings, spec::RunSpec};
 use touchstone_report::ColourMap;
@@ -15,7 +15,7 @@ use crate::{
     studies::{Ladder, Spacing},
 };
 
-/// By how much the starts of an ensemble differ \[dx\]: less than any method or experiment knows, and more
+/// Difference between the starts of an ensemble \[dx\]: less than any method or experiment knows, and more
 /// than round-off.
 const DISORDER: f64 = 1e-6;
 
@@ -145,7 +145,7 @@ impl<T: Settings, G: Copy + PartialEq> Table<T, G> {
         ladder
     }
 
-    /// The ladders of variants over the runs of some groups; none of a variant without such runs.
+    /// The ladders of variants over the runs of some groups; a variant without such runs has none.
     pub fn ladders(
         &self,
         groups: &[G],

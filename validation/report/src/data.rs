@@ -80,8 +80,8 @@ pub(super) fn json(panels: Vec<Value>, columns: Columns) -> String {
     text.replace('&', "\\u0026").replace('<', "\\u003c").replace('>', "\\u003e")
 }
 
-/// Of more particles in a panel only some have a value: they are nearer to each other than the reach of the
-/// pointer, and the records have all of them.
+/// Most particles of a panel with a value at the pointer: more are nearer to each other than its reach, and
+/// the records have all.
 const MOST_DOTS: usize = 2_000;
 
 /// Points beyond which a column is drawn, not read: its numbers have the digits that the drawing shows.

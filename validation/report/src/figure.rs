@@ -196,7 +196,7 @@ impl Shape {
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Look {
-    /// Of line and markers.
+    /// Colour of line and markers.
     pub colour: Colour,
     /// The line, if any.
     pub line: Option<Dash>,

@@ -17,7 +17,7 @@ pub(super) fn power_of_ten(k: i32) -> String {
     format!("10{}", k.to_string().chars().map(digit).collect::<String>())
 }
 
-/// The text for a value that is no finite number.
+/// The text for a value that is not finite.
 fn not_finite(x: f64) -> String {
     if x.is_nan() { "NaN".into() } else { minus(format!("{}∞", if x < 0.0 { "-" } else { "" })) }
 }

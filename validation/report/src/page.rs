@@ -242,7 +242,7 @@ const VIEWPORT: &str = "<meta name=\"viewport\" content=\"width=device-width, in
 /// Before the name of the records that a page shows.
 const MADE_FROM: &str = "<meta name=\"touchstone-records\" content=\"";
 
-/// The name of the records that a page shows; none of a text that is no page of ours.
+/// The name of the records that a page shows; `None` if the text is not a page of ours.
 pub fn made_from(html: &str) -> Option<&str> {
     let (_, after) = html.split_once(MADE_FROM)?;
     Some(after.split_once('"')?.0)

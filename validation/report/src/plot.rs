@@ -75,7 +75,7 @@ impl<'a> Prepared<'a> {
         this
     }
 
-    /// What is drawn, and the axes by which a place becomes a value.
+    /// The plot, and the axes by which a place becomes a value.
     pub fn parts(&self) -> (&'a Plot, [&Ruler; 2]) {
         (self.plot, [&self.frame.x, &self.frame.y])
     }

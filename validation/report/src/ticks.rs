@@ -95,7 +95,7 @@ fn logarithmic(lo: f64, hi: f64, count: usize) -> Ticks {
     Ticks { major: with_labels(major), minor, exponent: 0 }
 }
 
-/// Are these at least three, and is no more than 0.45 of a logarithmic axis without one?
+/// Whether there are at least three, with gaps of at most 0.45 of a logarithmic axis.
 fn is_spread(values: &[f64], lo: f64, hi: f64) -> bool {
     let ends: Vec<f64> = [lo].iter().chain(values).chain(&[hi]).copied().collect();
     let gap = |pair: &[f64]| (pair[1] / pair[0]).ln() / (hi / lo).ln();

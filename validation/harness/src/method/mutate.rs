@@ -10,7 +10,7 @@ use touchstone_solver::{Numbers, Particle, Role, Tait};
 use super::{Medium, Parts};
 use crate::relation::{DENSITY, LENGTH, NoSymmetry, Relation, View};
 
-/// Disorders the start, then multiplies the constant that is wrong by its factor. The time step is no part of
+/// Disorders the start, then multiplies the constant that is wrong by its factor. The time step is not part of
 /// a scene, and neither are the lifetime of neighbour lists and the bodies of a total Lagrangian solid.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     if let Some(disorder) = parts.disorder {
@@ -74,7 +74,7 @@ fn disturb<X: Numbers>(parts: &mut Parts<X>, Disorder { most, seed }: Disorder) 
 /// Transforms the parts to the frame of another observer.
 ///
 /// # Errors
-/// Why the relation is no symmetry of the scene.
+/// Why the relation is not a symmetry of the scene.
 pub(crate) fn see<X: Numbers>(parts: &mut Parts<X>, by: Relation) -> Result<View, NoSymmetry> {
     let moves: Vec<bool> = parts.particles.iter().map(|p| p.role == Role::Fluid).collect();
     let Parts { medium, domain, particles, mirrors, surface, bodies, skin, limits, .. } = parts;

@@ -21,13 +21,13 @@ pub struct Budgets {
     label: String,
     /// The runs in words, one or two sentences.
     about: String,
-    /// The changes of each variant; the first one is none.
+    /// Changes of each variant; the first is the unchanged run.
     pub of: Vec<Vec<Change>>,
 }
 
 impl Budgets {
-    /// Budgets of the error of ladders: the runs in one or two sentences, and the changes of each variant, of
-    /// which the first one is none.
+    /// Budgets of the error of ladders: the runs in one or two sentences, and the changes of each variant;
+    /// the first is the unchanged run.
     pub fn new(accuracy: &Accuracy, about: impl Into<String>, of: Vec<Vec<Change>>) -> Self {
         let (id, error) = (format!("{}-error-budget", accuracy.id), accuracy.error.clone());
         Self { id, error, label: accuracy.label.clone(), about: about.into(), of }

@@ -545,7 +545,7 @@ mod tests {
         assert_eq!(at("bad", &all(Vec::new())), None);
     }
 
-    /// A case of which a row is made.
+    /// The case of a row.
     struct MadeUp;
 
     impl Case for MadeUp {
@@ -655,7 +655,7 @@ mod tests {
         assert_eq!(texts(&cells)[..4], ["`good`", "–", "–", "50 %"]);
     }
 
-    /// The uncertainty of an error is u_val, of which the reference's is a part: here (0.6² + 0.4²)^(1/2),
+    /// The uncertainty of an error is u_val, which includes the reference's: here (0.6² + 0.4²)^(1/2),
     /// because u_num is 3/2 of the range of the levels 0.6, 0.2 and 0.2.
     #[test]
     fn an_error_has_the_uncertainty_of_its_comparison() {

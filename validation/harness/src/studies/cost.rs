@@ -426,7 +426,7 @@ mod tests {
             names(pareto(points.iter(), LadderPoint::median)),
             ["cheapest", "a hundredth better"]
         );
-        // By work, of which they all have as much as the number of their place, the first comes first.
+        // Work equals the index, so the first point is the cheapest.
         let work = |k: usize| LadderPoint { pairs: k as f64, ..points[k].clone() };
         let work: Vec<LadderPoint> = (0..points.len()).map(work).collect();
         assert_eq!(names(pareto(work.iter(), |p| p.pairs)), ["a hundredth better"]);
@@ -454,8 +454,8 @@ mod tests {
         assert_eq!(cheapest(&points, 3e-3), 0.1);
     }
 
-    /// Ladders of `seed` and `best` at n = 10, 20, 40, 80, of which the order of the second is judged; runs
-    /// with these errors, a function of variant and n, each of which took n/20 s, n/40 s and n/10 s.
+    /// Ladders of `seed` and `best` at n = 10, 20, 40, 80; the order of `best` is judged. Errors are a
+    /// function of variant and n; each run took n/20 s, n/40 s and n/10 s.
     fn study_of(error: impl Fn(&str, f64) -> f64) -> Section {
         let bound = Bound::Within(2.9, 3.1);
         let gate = Gate::new("case.order", "order", bound, Evidence::Theory, "made up");

@@ -121,7 +121,7 @@ impl<'a> Followed<'a> {
     fn in_words(&self) -> String {
         let end = sig(self.end(), 3);
         match &self.horizon {
-            Err(reason) => format!("nothing can be said: {reason}"),
+            Err(reason) => format!("inconclusive: {reason}"),
             Ok(Horizon { first, .. }) if first.is_infinite() => format!("all agree until {end}"),
             Ok(Horizon { time, .. }) if time.is_infinite() => {
                 format!("most pairs agree until {end}")
@@ -457,7 +457,7 @@ mod tests {
         let reason = |study: &Section| row(study, 0, &["horizon", "verdict"]);
         let (failed, one) = judged(all()[..1].to_vec());
         assert_eq!(failed, ["case.ensemble.members", "case.agree", "case.median"]);
-        assert_eq!(reason(&one), ["–", "nothing can be said: 1 members; 6 are needed"]);
+        assert_eq!(reason(&one), ["–", "inconclusive: 1 members; 6 are needed"]);
         assert_eq!(row(&one, 1, &["median"]), ["1.00 (– … –)"]);
         let (failed, none) = judged(Vec::new());
         assert_eq!(failed.len(), 3);

@@ -44,7 +44,7 @@ pub struct Sensitivity {
     pub is_bisected: bool,
 }
 
-/// A constant, an error of which the gates must detect.
+/// A constant whose errors the gates must detect.
 pub struct Watched {
     /// The constant.
     pub constant: Constant,
@@ -77,7 +77,7 @@ impl Watched {
         Self { is_quick: true, ..self }
     }
 
-    /// Adds gross faults, each of which some gate must detect: factors of the constant.
+    /// Adds gross faults that some gate must detect: factors of the constant.
     pub fn faults(self, factors: &[f64]) -> Self {
         Self { faults: factors.to_vec(), ..self }
     }

@@ -115,7 +115,7 @@ fn better(marks: &[SubmissionMark]) -> Option<String> {
     })
 }
 
-/// More names than these are no legend: a thousand of them took 2 GB to draw. The table has all.
+/// Most names in a legend: a thousand took 2 GB to draw. The table has all.
 const MOST_NAMED: usize = 24;
 
 /// Marks by their names: ours and the most accurate of the others, and all others.
@@ -394,7 +394,7 @@ mod tests {
     }
 
     /// A run of a code with this number of particles, seconds and error; the same error at another time and a
-    /// number that is no accuracy, each with a gate that it fails.
+    /// number that is not an accuracy, each with a gate that it fails.
     fn run_of(code: &str, particles: usize, seconds: f64, error: f64) -> JudgedRun {
         let gate = |metric: &str, most: f64| {
             let (id, bound) = (format!("case.{metric}"), Bound::Below(most));
@@ -421,8 +421,8 @@ mod tests {
         Accuracy::new("case", ERROR, "Error [-]")
     }
 
-    /// Of runs of one code with equal numbers of particles the fastest is shown; of curves, which have no
-    /// particles, each.
+    /// Among runs of one code with equal numbers of particles only the fastest is shown; curves, which have
+    /// no particles, are all shown.
     #[test]
     fn the_fastest_of_one_code_with_as_many_particles_is_shown() {
         let of = [(10, 3.0, 0.3), (10, 1.0, 0.2), (20, 2.0, 0.1), (0, 5.0, 0.5), (0, 6.0, 0.6)];

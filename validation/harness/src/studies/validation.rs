@@ -38,7 +38,7 @@ const FASTEST: f64 = 2.5;
 const EXPANDS: f64 = 2.0;
 /// A comparison with an uncertainty of 95 % above this fraction of the compared quantity could not detect an
 /// error of a tenth: a small E is then no evidence.
-const TELLS: f64 = 0.1;
+const CONCLUSIVE: f64 = 0.1;
 
 /// A comparison with a reference: exact, or with an uncertainty by ASME V&V 20.
 #[derive(Clone)]
@@ -120,10 +120,10 @@ pub enum Conclusion {
     NotDistinguishable,
     /// |E| > 2 u_val.
     ModelError,
-    /// |E| ≤ 2 u_val, and u_val is too large to say anything.
+    /// |E| ≤ 2 u_val, and u_val is too large for a conclusion.
     TooUncertain,
     /// The ladder shows no order.
-    LadderDoesNotTell,
+    NoOrder,
     /// A run or its ladder is missing.
     Unknown,
 }
@@ -137,7 +137,7 @@ impl Conclusion {
             Self::NotDistinguishable => "not-distinguishable",
             Self::ModelError => "model-error",
             Self::TooUncertain => "too-uncertain",
-            Self::LadderDoesNotTell => "ladder-does-not-tell",
+            Self::NoOrder => "ladder-does-not-tell",
             Self::Unknown => "unknown",
         }
     }
@@ -168,11 +168,11 @@ impl ComparisonResult {
         parts.into_iter().fold(0.0, |sum, part| sum + part * part).sqrt()
     }
 
-    /// Whether the ladder shows an order and the uncertainty is small enough to say something of the error.
+    /// Whether the ladder shows an order and the uncertainty is small enough for a conclusion.
     pub fn is_conclusive(&self) -> bool {
         !matches!(
             self.conclusion(),
-            Conclusion::TooUncertain | Conclusion::LadderDoesNotTell | Conclusion::Unknown
+            Conclusion::TooUncertain | Conclusion::NoOrder | Conclusion::Unknown
         )
     }
 
@@ -190,9 +190,9 @@ impl ComparisonResult {
             Some(Ok(of)) if self.stops(of) => Conclusion::Stops,
             Some(Ok(Convergence { interval: [low, _], .. })) if *low > 0.0 => Conclusion::Converges,
             None if has_order && error > uncertainty => Conclusion::ModelError,
-            None if has_order && uncertainty > TELLS => Conclusion::TooUncertain,
+            None if has_order && uncertainty > CONCLUSIVE => Conclusion::TooUncertain,
             None if has_order => Conclusion::NotDistinguishable,
-            _ => Conclusion::LadderDoesNotTell,
+            _ => Conclusion::NoOrder,
         }
     }
 
@@ -216,9 +216,9 @@ impl ComparisonResult {
                 "not distinguishable from the reference at this uncertainty".into()
             }
             Conclusion::ModelError => format!("model error {error} ± {uncertainty}"),
-            Conclusion::TooUncertain => format!("uncertain by {uncertainty}: nothing can be said"),
-            Conclusion::LadderDoesNotTell => "the ladder does not tell".into(),
-            Conclusion::Unknown => "runs are missing: nothing can be said".into(),
+            Conclusion::TooUncertain => format!("uncertain by {uncertainty}: inconclusive"),
+            Conclusion::NoOrder => "no order found".into(),
+            Conclusion::Unknown => "runs are missing: inconclusive".into(),
         }
     }
 
@@ -305,8 +305,7 @@ const OF_UNCERTAIN: &str = "Uncertainty of the comparisons with references that 
     u_input is the change by inputs that are wrong by their own uncertainty, of the coarsest run; u_D the \
     uncertainty that the reference states; u_val the root of the sum of squares. |E| ≤ 2 u_val: not \
     distinguishable; |E| > 2 u_val: model error. If |E| ≤ 2 u_val and 2 u_val exceeds a tenth of the \
-    compared quantity, nothing can be said. Without an order there is no verdict: the ladder does not \
-    tell.";
+    compared quantity, the comparison is inconclusive. Without an order there is no verdict.";
 
 /// The comparisons of a case with references, exact ones and others.
 pub struct Comparisons(pub Vec<Comparison>);
@@ -472,7 +471,7 @@ mod tests {
             let found = found(error, parts, false);
             assert_eq!(
                 (found.conclusion(), &*found.in_words()),
-                (Conclusion::LadderDoesNotTell, "the ladder does not tell")
+                (Conclusion::NoOrder, "no order found")
             );
         }
         for missing in [f64::NAN, f64::INFINITY] {
@@ -515,7 +514,7 @@ mod tests {
         let floor = |n: f64| if n < 15.0 { 1.0 / (n * n) } else { 0.006 };
         assert_eq!(verdict(&floor), (Conclusion::Stops, "stops at 0.60 %".into()));
         let noise = |n: f64| if n == 10.0 || n == 20.0 { 0.3 } else { 0.1 };
-        assert_eq!(verdict(&noise).0, Conclusion::LadderDoesNotTell);
+        assert_eq!(verdict(&noise).0, Conclusion::NoOrder);
         assert_eq!(verdict(&|n| if n == 10.0 { f64::NAN } else { 1.0 / n }).0, Conclusion::Unknown);
     }
 
@@ -568,7 +567,7 @@ mod tests {
             (uncertain("law", &ladder), Conclusion::NotDistinguishable),
             (uncertain("floor", &ladder), Conclusion::ModelError),
             (uncertain("slow", &ladder), Conclusion::TooUncertain),
-            (uncertain("noise", &ladder), Conclusion::LadderDoesNotTell),
+            (uncertain("noise", &ladder), Conclusion::NoOrder),
             (uncertain("none", &ladder), Conclusion::Unknown),
             (uncertain("missing", &ladder), Conclusion::Unknown),
         ];

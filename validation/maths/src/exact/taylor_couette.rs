@@ -1,4 +1,4 @@
-//! Steady laminar flow between two concentric cylinders of which the inner one turns.
+//! Steady laminar flow between two concentric cylinders; the inner one turns.
 
 /// Two cylinders about the origin.
 #[derive(Clone, Copy, Debug)]

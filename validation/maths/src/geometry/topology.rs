@@ -38,7 +38,7 @@ pub struct Topology {
 }
 
 impl Topology {
-    /// Of particles with the spacing `dx` \[m\]; holes of less than `least_hole` \[m²\] do not count.
+    /// Topology of particles at the spacing `dx` \[m\]; holes of less than `least_hole` \[m²\] do not count.
     ///
     /// A piece closes in its holes alone, so each piece is scanned in its own box: debris far away
     /// costs nothing.
@@ -322,7 +322,7 @@ mod tests {
         }
     }
 
-    /// A cut through nine of ten layers is none.
+    /// A cut through nine of ten layers does not open a ring.
     #[test]
     fn one_layer_keeps_a_ring_closed() {
         let layers = [3.0, 3.5, 3.9];

@@ -51,8 +51,8 @@ pub fn sensor(kernel: (f64, Weight), wall: f64, [height, diameter]: [f64; 2]) ->
     (0..POINTS).map(spot).collect()
 }
 
-/// The integral of a kernel, of which the support \[m\] is given too, about a point of a wall at this height
-/// over the quarter-plane of water.
+/// The integral of a kernel with this support \[m\] about a point of a wall at this height over the
+/// quarter-plane of water.
 fn inside((support, weight): (f64, Weight), height: f64) -> f64 {
     const CELLS: i32 = 40;
     let cell = support / f64::from(CELLS);

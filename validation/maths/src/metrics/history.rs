@@ -58,7 +58,7 @@ mod tests {
         times.map(|t| (t, t * t - 3.0)).collect()
     }
 
-    /// Up through 1 at 0.5, down through it at 2, where a row is; a start at the value is no passage.
+    /// Up through 1 at 0.5, down through it at 2, where a row is; a start at the value is not a passage.
     #[test]
     fn a_zigzag_passes_a_value_where_its_lines_do() {
         let history = [(0.0, 0.0), (1.0, 2.0), (2.0, 1.0), (3.0, 0.0), (4.0, f64::NAN)];
@@ -80,7 +80,7 @@ mod tests {
         assert_eq!(rms(found.into_iter()), 0.125);
     }
 
-    /// Of t², the chord of a sample interval d is above by d²/4 at its middle.
+    /// The chord of t² over a sample interval d is above by d²/4 at its middle.
     #[test]
     fn between_samples_a_history_is_linear() {
         let (coarse, fine) = (history(every(1.0, 8.0)), history(every(0.5, 8.0)));

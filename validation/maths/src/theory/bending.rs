@@ -101,7 +101,7 @@ mod tests {
     use super::*;
     use touchstone_solver::kernel::{CubicSpline, WendlandC2};
 
-    /// By an independent program, which eliminates in another order.
+    /// Compared with an independent program, which eliminates in another order.
     #[test]
     fn plates_of_few_layers_have_the_stiffness_of_an_elastic_plate_unless_they_hardly_change_their_volume()
      {

@@ -29,7 +29,7 @@ mod tests {
     use crate::theory::lattice::SquareLattice;
     use approx::assert_relative_eq;
 
-    /// By an independent sum: 30, 15 and 7 %; far from faces there is the factor of the lattice squared.
+    /// From an independent sum: 30, 15 and 7 %; far from faces there is the factor of the lattice squared.
     #[test]
     fn a_body_of_few_layers_bends_slowly() {
         for (layers, excess) in [(5, 0.30061), (10, 0.15282), (20, 0.07315), (40, 0.03309)] {

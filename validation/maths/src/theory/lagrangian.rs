@@ -151,7 +151,7 @@ mod tests {
         assert_relative_eq!(error(0.2, 1.3) / error(0.1, 1.3), 4.0, max_relative = 0.02);
     }
 
-    /// By an independent program after 1,500 iterations, over K + 4μ/3; its last digits still grow, for the
+    /// From an independent program after 1,500 iterations, over K + 4μ/3; its last digits still grow, as the
     /// modes of four corners differ little. A step that waves of the lattice allow made plates diverge within
     /// ten steps.
     #[test]

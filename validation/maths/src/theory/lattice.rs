@@ -40,7 +40,7 @@ pub fn near<K: Kernel>(h_over_dx: f64) -> Vec<(Vector2<f64>, f64)> {
 pub struct SquareLattice {
     /// h/dx.
     h: f64,
-    /// By which gradients are multiplied: 1, or 1/G₁.
+    /// Factor of gradients: 1, or 1/G₁.
     correction: f64,
     sites: Vec<Site>,
 }

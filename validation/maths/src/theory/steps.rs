@@ -96,11 +96,11 @@ fn factor_between(values: &[f64]) -> f64 {
 /// Amplitudes of a wave \[c₀\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WaveAmplitudes {
-    /// Of the pressure, p = -c₀ ρ̂/ρ₀.
+    /// Pressure, p = -c₀ ρ̂/ρ₀.
     pub pressure: f64,
-    /// Of the velocity along the wave vector.
+    /// Velocity along the wave vector.
     pub along: f64,
-    /// Of the velocity across it.
+    /// Velocity across it.
     pub across: f64,
 }
 

@@ -586,7 +586,7 @@ mod tests {
         }
     }
 
-    /// Of (z - 1)² z² + (ω dt)² (3z² - 3z + 1) the roots at the limit are exp(±iπ/3) and (1 ± i)/2, and for
+    /// The roots of (z - 1)² z² + (ω dt)² (3z² - 3z + 1) at the limit are exp(±iπ/3) and (1 ± i)/2, and for
     /// small steps |z| = 1 - (ω dt)⁴/2. Viscosity alone has the limit of the leapfrog.
     #[test]
     fn a_single_sweep_damps_sound_up_to_its_limit() {
