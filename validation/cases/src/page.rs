@@ -284,7 +284,8 @@ fn reading(suite: &Suite) -> Section {
     costs.push(studies::budget::READING);
     let compared = owned(&studies::validation::READING);
     let detected = owned(&[studies::sensitivity::READING]);
-    let of_others = studies::submissions::reading(&suite.cases);
+    let cases: Vec<_> = suite.cases.iter().map(|of| (of.case, &of.runs)).collect();
+    let of_others = studies::submissions::reading(&cases);
     Section::new("reading", "How to read the sections")
         .child(part("costs", "Errors, orders and costs", owned(&costs)))
         .child(part("comparisons", "Comparisons with references", compared))

@@ -207,8 +207,8 @@ mod tests {
         assert_relative_eq!(width, 2.0 * 12.7062 * found.standard_error, epsilon = 1e-12);
     }
 
-    /// Calculated by hand: the line through (0, 1), (1, 3), (2, 2), (3, 5) is 1.1 + 1.1 x, its residuals are -0.1, 0.8,
-    /// -1.3 and 0.6, whose squares add up to 2.7, and Σ (x - x̄)² = 5: (2.7/2/5)^(1/2).
+    /// The line through (0, 1), (1, 3), (2, 2), (3, 5) is 1.1 + 1.1 x, its residuals are -0.1, 0.8, -1.3 and
+    /// 0.6, whose squares add up to 2.7, and Σ (x - x̄)² = 5: (2.7/2/5)^(1/2).
     #[test]
     fn the_standard_error_is_that_of_two_fewer_than_the_points() {
         let (found, error) = slope(&[0.0, 1.0, 2.0, 3.0], &[1.0, 3.0, 2.0, 5.0]);

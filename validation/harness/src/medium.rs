@@ -6,8 +6,8 @@ use touchstone_maths::theory::time_step;
 use touchstone_solver::Tait;
 
 /// The parameters of a material at a particle spacing. Parameters that a case does not use are 0. A new one
-/// needs a unit in [`crate::relation::View::medium`] and a place in [`mutate`](fn@crate::method::mutate): both
-/// name every parameter.
+/// needs a unit in [`crate::relation::View::medium`] and a place in [`mutate`](fn@crate::method::mutate):
+/// both name every parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Medium {
     /// Equation of state, with density at rest and sound speed; a solid takes these two of it.

@@ -90,6 +90,10 @@ pub const SI: Units<f64> = Units { length: 1.0, time: 1.0, mass: 1.0 };
 /// Inverses of 1/8 m, 1/32 s and 4 kg/m.
 const BINARY: Units<f64> = Units { length: 8.0, time: 32.0, mass: 0.25 };
 
+/// Inverses of a foot (0.3048 m), a minute and a pound (0.45359237 kg) per foot.
+const OTHER: Units<f64> =
+    Units { length: 1.0 / 0.3048, time: 1.0 / 60.0, mass: 0.3048 / 0.453_592_37 };
+
 /// The unit of a quantity, by exponents.
 pub type Unit = Units<i32>;
 /// \[m\].
@@ -150,12 +154,7 @@ impl View {
                 View { boost, ..same }
             }
             BinaryUnits => View { units: BINARY, ..same },
-            // 1 ft = 0.3048 m, 1 lb = 0.45359237 kg.
-            OtherUnits => {
-                let units =
-                    Units { length: 1.0 / 0.3048, time: 1.0 / 60.0, mass: 0.3048 / 0.453_592_37 };
-                View { units, ..same }
-            }
+            OtherUnits => View { units: OTHER, ..same },
             Shifted => View { shift: Vector2::new(along(0, 17.3), along(1, -11.9)), ..same },
         })
     }

@@ -10,8 +10,8 @@ use touchstone_solver::{Numbers, Particle, Role, Tait};
 use super::{Medium, Parts};
 use crate::relation::{DENSITY, LENGTH, NoSymmetry, Relation, View};
 
-/// Disorders the start, then multiplies the constant that is wrong by its factor. The time step is not part of
-/// a scene, and neither are the lifetime of neighbour lists and the bodies of a total Lagrangian solid.
+/// Disorders the start, then multiplies the constant that is wrong by its factor. The time step is not part
+/// of a scene, and neither are the lifetime of neighbour lists and the bodies of a total Lagrangian solid.
 pub fn mutate<X: Numbers>(parts: &mut Parts<X>) {
     if let Some(disorder) = parts.disorder {
         disturb(parts, disorder);

@@ -170,8 +170,8 @@ fn reference(name: &str, all: &[(String, Vec<(f64, f64)>)], points: Vec<(f64, f6
     }
 }
 
-/// The look of a curve of a run, by its place among the named curves of all panels: the last of several curves
-/// of one subject is a solid line.
+/// The look of a curve of a run, by its place among the named curves of all panels: the last of several
+/// curves of one subject is a solid line.
 fn look(line: &CurveOf, named: &[&CurveOf], symbols: bool) -> Look {
     let subject = line.subject();
     let k = named.iter().position(|of| of.name == line.name).unwrap_or_default();

@@ -11,12 +11,12 @@ use touchstone_report::{Axis, Cell, Figure, Plot, Series, Shape, percent, plain,
 
 use super::{Accuracy, Card, Comparisons, anchor, cost::error_of};
 use crate::{
+    case::Case,
     columns::TableColumns,
     looks,
     runs::{Judged, JudgedRun, Runs},
     section::Section,
     study::Studies,
-    suite::CaseResults,
 };
 
 /// The code, its scheme and the variant of its problem; of a run of ours the variant.
@@ -177,8 +177,8 @@ fn figure(id: &str, accuracy: &Accuracy, marks: &[SubmissionMark]) -> Figure {
 /// Runs with fewer particles measure mostly the fixed cost of a step.
 const FEW: usize = 120;
 
-/// How to read runs of other codes.
-pub fn reading(cases: &[CaseResults]) -> Vec<String> {
+/// How to read runs of other codes; `cases` are all cases with their runs.
+pub fn reading(cases: &[(&dyn Case, &Runs)]) -> Vec<String> {
     let words = [MEASURED, DIVISIONS].map(String::from);
     words.into_iter().chain(provenance(cases)).collect()
 }
@@ -195,8 +195,8 @@ const DIVISIONS: &str = "Closed division: our particles, spacing and support of 
              coarser runs that the figure shows and no gate judges.";
 
 /// Place and time of the runs that the program contains, and notes for their reader.
-fn provenance(cases: &[CaseResults]) -> Option<String> {
-    let peers = || cases.iter().flat_map(|of| &of.runs.peers).map(|run| &run.record);
+fn provenance(cases: &[(&dyn Case, &Runs)]) -> Option<String> {
+    let peers = || cases.iter().flat_map(|(_, runs)| &runs.peers).map(|run| &run.record);
     let day = peers().find_map(Record::session)?;
     let of = peers().filter_map(|record| record.run.submission.as_deref());
     let versions: BTreeSet<String> = of.map(|of| format!("{} {}", of.code, of.version)).collect();
@@ -211,10 +211,10 @@ fn provenance(cases: &[CaseResults]) -> Option<String> {
     if peers().any(|record| (1..=FEW).contains(&record.cost.particles)) {
         words += " Seconds with 60 to 120 particles measure the overhead of a step, not the speed of a code.";
     }
-    let late = cases.iter().filter_map(|of| {
-        let late = of.case.facts().late_variant?;
+    let late = cases.iter().filter_map(|(case, runs)| {
+        let late = case.facts().late_variant?;
         let is_ours = |of: &Submission| of.code == OURS;
-        let mut runs = of.runs.peers.iter().map(|run| &run.record.run);
+        let mut runs = runs.peers.iter().map(|run| &run.record.run);
         runs.any(|run| run.variant == late && run.submission.as_deref().is_some_and(is_ours))
             .then_some(late)
     });

@@ -91,11 +91,9 @@ fn card(accuracy: &Accuracy) -> Card {
             let in_tank = "front at t = 2 √(H/g) in the tank of Lobovsky et al., H/dx = {n}";
             let (name, uncertainty, unit) = match run.settings_as::<DamSettings>().scene() {
                 Some(Experiment::MartinMoyce) => {
-                    (front, 2.0 * vof("martin_moyce", "front_at_1").uncertainty, "a")
+                    (front, 2.0 * u_d("martin_moyce", "front_at_1"), "a")
                 }
-                Some(Experiment::Lobovsky) => {
-                    (in_tank, vof("lobovsky", "front_at_2").uncertainty, "H")
-                }
+                Some(Experiment::Lobovsky) => (in_tank, u_d("lobovsky", "front_at_2"), "H"),
                 None => ("front, dx a part of 1/{n} of the column", f64::NAN, "a"),
             };
             let uncertainty = Some(uncertainty).filter(|u| u.is_finite());
@@ -188,16 +186,8 @@ fn front() -> SubmittedCurve {
 fn comparisons(tier: Tier, table: &Table) -> Comparisons {
     // Compared quantity, its metric, and u_D as a method.
     let column = [
-        (
-            "front at T = 2 [a]",
-            FRONT_AWAY.at(2),
-            2.0 * vof("martin_moyce", "front_at_1").uncertainty,
-        ),
-        (
-            "residual height, rms [H]",
-            HEIGHT_AWAY.into(),
-            vof("martin_moyce", "height_at_1.65").uncertainty,
-        ),
+        ("front at T = 2 [a]", FRONT_AWAY.at(2), 2.0 * u_d("martin_moyce", "front_at_1")),
+        ("residual height, rms [H]", HEIGHT_AWAY.into(), u_d("martin_moyce", "height_at_1.65")),
     ];
     let measured_column = [
         ("front after its best shift, rms [a]", FRONT.rms_shifted.into(), FRONT_SPREAD),
@@ -206,16 +196,8 @@ fn comparisons(tier: Tier, table: &Table) -> Comparisons {
     let mut all = compared(table, Group::Ladder, 0.005 / 2.25, &column, &measured_column);
     if tier == Tier::Full {
         let mut tank = vec![
-            (
-                "tank: front at t = 2 [H]",
-                FRONT_AWAY.at(2),
-                vof("lobovsky", "front_at_2").uncertainty,
-            ),
-            (
-                "tank: level at H4, rms [H]",
-                LEVEL_AWAY[3].into(),
-                vof("lobovsky", "H4_at_5").uncertainty,
-            ),
+            ("tank: front at t = 2 [H]", FRONT_AWAY.at(2), u_d("lobovsky", "front_at_2")),
+            ("tank: level at H4, rms [H]", LEVEL_AWAY[3].into(), u_d("lobovsky", "H4_at_5")),
         ];
         let [front, levels] = [
             "tank: front after its best shift, rms [H]",
@@ -239,6 +221,11 @@ fn comparisons(tier: Tier, table: &Table) -> Comparisons {
 /// A number of the reference by volume of fluid.
 fn vof(scene: &str, name: &str) -> Uncertain {
     Reference::summarised("dam_break_vof", &[("scene", scene), ("quantity", name)])
+}
+
+/// The uncertainty of this number.
+fn u_d(scene: &str, name: &str) -> f64 {
+    vof(scene, name).uncertainty
 }
 
 /// Comparisons of the ladder of a group with volume of fluid and with an experiment, each with the compared
