@@ -18,6 +18,15 @@ const DISORDER: f64 = 0.01;
 /// A start of a run with a value of the setting in which starts differ; none if the case has no such run.
 pub type Start = fn(&RunSpec, f64) -> Option<RunSpec>;
 
+/// An outcome of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapOutcome {
+    /// Name in the legend.
+    pub name: &'static str,
+    /// Colour of the cell.
+    pub colour: Colour,
+}
+
 /// Outcomes over two settings.
 pub struct Map {
     /// Anchor of the study and of its figure.
@@ -31,12 +40,11 @@ pub struct Map {
     /// Name of the vertical setting, with its unit.
     pub y: String,
     /// The possible outcomes of a cell, in the order of the legend.
-    pub outcomes: Vec<(String, Colour)>,
+    pub outcomes: Vec<MapOutcome>,
     /// Panels side by side.
     pub panels: Vec<MapPanel>,
-    /// The outcome of a cell from its records, as an index of `outcomes`, and a short text. A run that was
-    /// refused has a record too.
-    pub outcome: fn(&[&Record]) -> (usize, String),
+    /// The outcome of a cell from its records, and a short text. A run that was refused has a record too.
+    pub outcome: fn(&[&Record]) -> (MapOutcome, String),
     /// The setting in which the starts of a cell differ, and the ends of its values; without one a cell has
     /// one start, and further starts are disordered.
     pub starts: Option<(Start, [f64; 2])>,
@@ -110,20 +118,21 @@ impl Study for Map {
 }
 
 fn panel(map: &Map, panel: &MapPanel, runs: &Runs) -> Plot {
-    let mut cells = vec![Vec::new(); map.outcomes.len()];
+    let mut all = Vec::new();
     for (y, row) in panel.cells.iter().enumerate() {
         for (x, specs) in row.iter().enumerate() {
             let records: Vec<&Record> = specs.iter().filter_map(|spec| runs.record(spec)).collect();
             if !records.is_empty() {
                 let (outcome, text) = (map.outcome)(&records);
-                cells[outcome].push(GridCell { column: x, row: y, text });
+                all.push((outcome, GridCell { column: x, row: y, text }));
             }
         }
     }
     let plot =
         Plot::new(&panel.title, Axis::names(&map.x, &panel.x), Axis::names(&map.y, &panel.y));
-    map.outcomes.iter().zip(cells).fold(plot, |plot, ((name, colour), cells)| {
-        plot.layer(Layer::Cells { name: name.clone(), colour: *colour, cells })
+    map.outcomes.iter().fold(plot, |plot, of| {
+        let cells = all.iter().filter(|(outcome, _)| outcome == of).map(|(_, cell)| cell.clone());
+        plot.layer(Layer::Cells { name: of.name.into(), colour: of.colour, cells: cells.collect() })
     })
 }
 
@@ -133,6 +142,9 @@ mod tests {
 
     use super::*;
     use crate::studies::tests::{ERROR, evaluate, runs, spec};
+
+    const SMALL: MapOutcome = MapOutcome { name: "small", colour: Colour::BLACK };
+    const LARGE: MapOutcome = MapOutcome { name: "large", colour: Colour::GREY };
 
     /// Cells of x = 1, 2, 3 and y = 10, 20: the run of x + y has this sum as its error; the cell of 2 and 10
     /// has no run, the cell of 3 and 20 has two.
@@ -151,11 +163,11 @@ mod tests {
             caption: "Made up.".into(),
             x: "x [-]".into(),
             y: "y [-]".into(),
-            outcomes: vec![("small".into(), Colour::BLACK), ("large".into(), Colour::GREY)],
+            outcomes: vec![SMALL, LARGE],
             panels: vec![MapPanel::over("panel", &[1, 2, 3], &[10, 20], cell)],
             outcome: |records| {
                 let sum: f64 = records.iter().map(|r| r.value(ERROR).unwrap_or(f64::NAN)).sum();
-                (usize::from(sum > 20.0), sum.to_string())
+                (if sum > 20.0 { LARGE } else { SMALL }, sum.to_string())
             },
             starts: None,
         };

@@ -24,7 +24,7 @@ pub use curves::{CurveOf, CurvePanel, Curves, PointsOf};
 pub use ensemble::{Ensemble, Ensembles, History, MemberNumber};
 pub use ladder::{FINER, Ladder, Level, ORDER, Refine, Resolution, Spacing};
 pub use limit::{OF_THEORY, StepLimit, StepLimits};
-pub use map::{Map, MapPanel, STARTS};
+pub use map::{Map, MapOutcome, MapPanel, STARTS};
 pub use sensitivity::{Blind, Sensitivity, Watched};
 pub use validation::{Comparison, Comparisons};
 

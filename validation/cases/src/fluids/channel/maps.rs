@@ -11,7 +11,7 @@ use touchstone_harness::prelude::*;
 use touchstone_harness::{
     runs::Runs,
     section::Section,
-    studies::{CustomStudy, Map, MapPanel, Study},
+    studies::{CustomStudy, Map, MapOutcome, MapPanel, Study},
 };
 use touchstone_report::{Colour, percent, sig};
 
@@ -103,19 +103,13 @@ fn map(id: &str, title: &str, y: &str, panels: Vec<MapPanel>) -> Map {
          the median start, or the time t of divergence; a run fails if it diverges or if this error \
          exceeds 5 %. Starts are disordered by 1e-4 dx; the full tier has two more up to Re 20."
     );
-    let outcomes = [
-        ("no start fails, error ≤ 1 %", Colour::GREEN),
-        ("no start fails, error ≤ 5 %", Colour::YELLOW),
-        ("some starts fail", Colour::ORANGE),
-        ("every start fails", Colour::VERMILLION),
-    ];
     Map {
         id: id.into(),
         title: title.into(),
         caption,
         x: "Reynolds number Re [-]".into(),
         y: y.into(),
-        outcomes: outcomes.map(|(name, colour)| (name.to_string(), colour)).into(),
+        outcomes: vec![ACCURATE, INACCURATE, SOME_FAIL, ALL_FAIL],
         panels,
         outcome,
         starts: Some((disordered, [DISORDER[0], DISORDER[2]])),
@@ -127,11 +121,18 @@ fn disordered(run: &RunSpec, jitter: f64) -> Option<RunSpec> {
     Flow::Poiseuille.case().altered(run, |s| s.jitter = jitter)
 }
 
+const ACCURATE: MapOutcome =
+    MapOutcome { name: "no start fails, error ≤ 1 %", colour: Colour::GREEN };
+const INACCURATE: MapOutcome =
+    MapOutcome { name: "no start fails, error ≤ 5 %", colour: Colour::YELLOW };
+const SOME_FAIL: MapOutcome = MapOutcome { name: "some starts fail", colour: Colour::ORANGE };
+const ALL_FAIL: MapOutcome = MapOutcome { name: "every start fails", colour: Colour::VERMILLION };
+
 /// The outcome of a cell, and its text.
-fn outcome(records: &[&Record]) -> (usize, String) {
+fn outcome(records: &[&Record]) -> (MapOutcome, String) {
     let ends = ends(records);
     let Some(median) = ends.get(ends.len().saturating_sub(1) / 2) else {
-        return (3, "refused".into());
+        return (ALL_FAIL, "refused".into());
     };
     let words = match median {
         diverged if *diverged > MOST_ERROR => format!("t = {}", sig(DIVERGED - diverged, 2)),
@@ -139,9 +140,10 @@ fn outcome(records: &[&Record]) -> (usize, String) {
         error => percent(*error, 2),
     };
     match failed(&ends) {
-        0 => (usize::from(*median > 0.01), words),
-        failed if failed < ends.len() => (2, format!("{failed} of {} fail", ends.len())),
-        _ => (3, words),
+        0 if *median > 0.01 => (INACCURATE, words),
+        0 => (ACCURATE, words),
+        failed if failed < ends.len() => (SOME_FAIL, format!("{failed} of {} fail", ends.len())),
+        _ => (ALL_FAIL, words),
     }
 }
 
@@ -252,16 +254,16 @@ mod tests {
             (failed(&ends), mostly_fails(&ends), class, words)
         };
         let text = |words: &str| words.to_string();
-        assert_eq!(of(&[Ok(0.004), Err(0.7), Ok(0.08)]), (2, true, 2, text("2 of 3 fail")));
-        assert_eq!(of(&[Err(0.4), Err(0.7), Err(0.5)]), (3, true, 3, text("t = 0.50")));
+        assert_eq!(of(&[Ok(0.004), Err(0.7), Ok(0.08)]), (2, true, SOME_FAIL, text("2 of 3 fail")));
+        assert_eq!(of(&[Err(0.4), Err(0.7), Err(0.5)]), (3, true, ALL_FAIL, text("t = 0.50")));
         assert_eq!(
             of(&[Ok(0.2), Ok(f64::NAN), Err(0.5)]),
-            (3, true, 3, format!("≥ {}", percent(1e3, 2)))
+            (3, true, ALL_FAIL, format!("≥ {}", percent(1e3, 2)))
         );
-        assert_eq!(of(&[Ok(0.01), Ok(0.01), Err(0.5)]), (1, false, 2, text("1 of 3 fail")));
-        assert_eq!(of(&[Ok(0.2), Ok(0.06), Ok(0.07)]), (3, true, 3, percent(0.07, 2)));
-        assert_eq!(of(&[Ok(0.004), Ok(0.02), Ok(0.03)]), (0, false, 1, percent(0.02, 2)));
-        assert_eq!(of(&[]), (0, true, 3, text("refused")));
+        assert_eq!(of(&[Ok(0.01), Ok(0.01), Err(0.5)]), (1, false, SOME_FAIL, text("1 of 3 fail")));
+        assert_eq!(of(&[Ok(0.2), Ok(0.06), Ok(0.07)]), (3, true, ALL_FAIL, percent(0.07, 2)));
+        assert_eq!(of(&[Ok(0.004), Ok(0.02), Ok(0.03)]), (0, false, INACCURATE, percent(0.02, 2)));
+        assert_eq!(of(&[]), (0, true, ALL_FAIL, text("refused")));
     }
 
     #[test]

@@ -9,8 +9,8 @@ use touchstone_harness::{
     pictures::{self, Film, Heading},
     studies::{
         Accuracy, Breaks, Budgets, Card, Comparison, Comparisons, CurveOf, CurvePanel, Curves,
-        Ladder, Map, MapPanel, OF_THEORY, Picture, PicturePanel, Sensitivity, Spacing, Stated,
-        StepLimit, StepLimits, Watched,
+        Ladder, Map, MapOutcome, MapPanel, OF_THEORY, Picture, PicturePanel, Sensitivity, Spacing,
+        Stated, StepLimit, StepLimits, Watched,
         causes::{ENOUGH_OR_IDLE, SAFETY_MARGIN, STEP, WIDE_BOUNDS},
     },
 };
@@ -327,13 +327,7 @@ fn map(tier: Tier, table: &Table) -> Map {
             rows.map(|row| row.run.spec.clone()).collect()
         })
     };
-    let outcomes = [
-        ("whole", Colour::GREEN),
-        ("pressed flat", Colour::SKY),
-        ("torn", Colour::YELLOW),
-        ("in pieces", Colour::ORANGE),
-        ("diverged", Colour::VERMILLION),
-    ];
+    let outcomes = [Fate::Whole, Fate::Flat, Fate::Torn, Fate::InPieces, Fate::Diverged];
     Map {
         id: "rubber-rings-fracture-map".into(),
         title: "At which speed rings break".into(),
@@ -347,7 +341,7 @@ fn map(tier: Tier, table: &Table) -> Map {
             .into(),
         x: "speed of each ring [c0]".into(),
         y: "variant".into(),
-        outcomes: outcomes.map(|(name, colour)| (name.to_string(), colour)).into(),
+        outcomes: outcomes.map(Fate::outcome).into(),
         panels: spacings.iter().map(panel).collect(),
         outcome,
         starts: None,
@@ -367,6 +361,20 @@ enum Fate {
     InPieces,
     /// The run did not reach its end.
     Diverged,
+}
+
+impl Fate {
+    /// The outcome in the map.
+    fn outcome(self) -> MapOutcome {
+        let (name, colour) = match self {
+            Self::Whole => ("whole", Colour::GREEN),
+            Self::Flat => ("pressed flat", Colour::SKY),
+            Self::Torn => ("torn", Colour::YELLOW),
+            Self::InPieces => ("in pieces", Colour::ORANGE),
+            Self::Diverged => ("diverged", Colour::VERMILLION),
+        };
+        MapOutcome { name, colour }
+    }
 }
 
 fn fate(record: &Record) -> Fate {
@@ -392,9 +400,9 @@ fn has_broken(record: &Record) -> Option<bool> {
 }
 
 /// The worst outcome of some runs, and a number for it.
-fn outcome(records: &[&Record]) -> (usize, String) {
+fn outcome(records: &[&Record]) -> (MapOutcome, String) {
     let Some(record) = records.iter().max_by_key(|record| fate(record)) else {
-        return (Fate::Diverged as usize, String::new());
+        return (Fate::Diverged.outcome(), String::new());
     };
     let worst = fate(record);
     let alike = records.iter().filter(|record| fate(record) == worst).count();
@@ -407,7 +415,7 @@ fn outcome(records: &[&Record]) -> (usize, String) {
         Fate::InPieces => format!("{} pieces", number(PIECES_MOST)),
         Fate::Diverged => "diverged".into(),
     };
-    (worst as usize, text)
+    (worst.outcome(), text)
 }
 
 /// Errors of constants that the gates of a collision of five layers must detect.
