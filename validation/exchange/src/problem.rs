@@ -1,5 +1,6 @@
 //! A problem as a document: every number with its unit, every equation with its text.
 
+use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use touchstone_base::{
@@ -12,6 +13,7 @@ use touchstone_base::{
 use touchstone_harness::{
     case::{self, Case, RunError},
     facts::{Facts, Parameter, SubmittedCurve},
+    foreign::ForeignParticle,
     gates::GateIndex,
     method::{Medium, MediumSetting, Properties},
     outline::Outline,
@@ -273,6 +275,14 @@ impl ExportedProblem {
     pub fn moving(&self) -> Vec<u32> {
         let roles = self.outline.particles.column("role").iter().enumerate();
         roles.filter(|(_, role)| **role == 0.0).map(|(k, _)| k as u32).collect()
+    }
+
+    /// The particle with this number at the start, if there is one.
+    pub fn start_of(&self, id: u32) -> Option<ForeignParticle> {
+        let value = |name| self.outline.particles.column(name).get(id as usize).copied();
+        let position = Vector2::new(value("x")?, value("y")?);
+        let velocity = Vector2::new(value("u")?, value("v")?);
+        Some(ForeignParticle { id, position, velocity, density: Some(value("density")?) })
     }
 
     /// Is the material an elastic solid?
@@ -609,9 +619,5 @@ fn material(m: &Medium, method: &Properties) -> Value {
     if m.shear_modulus == 0.0 && method.uses.contains(&MediumSetting::Alpha) {
         own.push(("artificial_viscosity_alpha", with_unit(m.alpha, "-")));
     }
-    let mut all = serde_json::Map::new();
-    for (name, value) in common.into_iter().chain(own) {
-        all.insert(name.into(), value);
-    }
-    all.into()
+    common.into_iter().chain(own).collect()
 }

@@ -3,7 +3,6 @@
 
 use std::{collections::BTreeMap, ops::RangeInclusive, path::Path};
 
-use nalgebra::Vector2;
 use serde::{
     Deserialize, Deserializer,
     de::{DeserializeOwned, Error},
@@ -571,19 +570,12 @@ impl Entry {
     /// method.
     pub fn few_digits(&self, problem: &ExportedProblem) -> Option<String> {
         let Results { frames, own, .. } = &self.results;
-        let (last, particles) = (frames.last()?, &problem.outline.particles);
         let own: BTreeMap<u32, ForeignParticle> = match self.particles() {
             Division::Closed => BTreeMap::new(),
             Division::Open => own.iter().map(|own| (own.start.id, own.start)).collect(),
         };
-        let given = |id: u32| {
-            let value = |name| particles.column(name).get(id as usize).copied();
-            let position = Vector2::new(value("x")?, value("y")?);
-            let velocity = Vector2::new(value("u")?, value("v")?);
-            Some(ForeignParticle { id, position, velocity, density: Some(value("density")?) })
-        };
-        let start = |id: u32| if own.is_empty() { given(id) } else { own.get(&id).copied() };
-        digits::few(last, &start).filter(|_| self.curve.is_none())
+        let start = |id| if own.is_empty() { problem.start_of(id) } else { own.get(&id).copied() };
+        digits::few(frames.last()?, &start).filter(|_| self.curve.is_none())
     }
 
     /// Removes metrics that rounded numbers do not determine: measurements over a very short time, and

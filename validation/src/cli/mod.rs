@@ -220,23 +220,24 @@ impl Session {
 const MOST_SHOWN: usize = 10;
 
 /// Prints problems, the first ones in full.
-fn print_problems(lines: &[String]) {
-    lines.iter().take(MOST_SHOWN).for_each(|line| output::say(&format!("touchstone: {line}")));
-    if lines.len() > MOST_SHOWN {
-        output::say(&format!("touchstone: and {} more like this", lines.len() - MOST_SHOWN));
+fn print_problems(lines: impl ExactSizeIterator<Item = String>) {
+    let more = lines.len().saturating_sub(MOST_SHOWN);
+    lines.take(MOST_SHOWN).for_each(|line| output::say(&format!("touchstone: {line}")));
+    if more > 0 {
+        output::say(&format!("touchstone: and {more} more like this"));
     }
 }
 
 /// Reports records that could not be read, kept or made.
 fn report_problems(made: &BatchResult) {
     let again = |error: &FileError| format!("{error}; this record is ignored");
-    print_problems(&made.unsound.values().map(again).collect::<Vec<_>>());
+    print_problems(made.unsound.values().map(again));
     let lost = |error: &FileError| format!("a record could not be stored: {error}");
-    print_problems(&made.not_kept.values().map(lost).collect::<Vec<_>>());
+    print_problems(made.not_kept.values().map(lost));
     let failed = |(key, failed): (&RunKey, &RunError)| format!("run {key} has no record: {failed}");
-    print_problems(&made.failed.iter().map(failed).collect::<Vec<_>>());
+    print_problems(made.failed.iter().map(failed));
     let unread = |error: &FileError| format!("{error}; the submission is ignored");
-    print_problems(&made.unread.iter().map(unread).collect::<Vec<_>>());
+    print_problems(made.unread.iter().map(unread));
 }
 
 /// 4 if a run ended by a bug, 2 if a file could not be written or read, otherwise nothing.

@@ -132,7 +132,7 @@ fn sum(jobs: &[Job], sizes: &[Option<Size>]) -> String {
 /// Makes the runs of a plan, one record each.
 pub fn make(file: &Path, store: &Path, arguments: &arguments::Run, session: &Session) -> Outcome {
     let (planned, refused) = planned(file, arguments, session)?;
-    print_problems(&refused);
+    print_problems(refused.iter().cloned());
     if planned.is_empty() {
         return Err(Failure::usage(format!("{} describes no run", file.display())));
     }

@@ -49,9 +49,7 @@ pub fn of(
     if !cases.iter().any(is_other) {
         return None;
     }
-    print_problems(
-        &unread.iter().map(|error| format!("{error}; it is not shown")).collect::<Vec<_>>(),
-    );
+    print_problems(unread.iter().map(|error| format!("{error}; it is not shown")));
     Some(cases)
 }
 

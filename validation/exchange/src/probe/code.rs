@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use touchstone_base::{files, text::first};
 use touchstone_harness::{
     case::{self, Case, RunError},
-    foreign::Frame,
+    foreign::{ForeignParticle, Frame},
 };
 
 use super::{Pose, floating};
@@ -309,30 +309,18 @@ fn solved(problem: ExportedProblem, folder: &Path, map: &Renamed) -> Result<Solv
         return Err("particles of the code's own choice; expected division closed".into());
     }
     entry.check(&problem).map_err(first_flaw)?;
-    let column = |name: &str| problem.outline.particles.column(name);
-    let moving = problem.moving();
-    let state = |id: &u32| {
-        let k = *id as usize;
-        State {
-            mass: column("mass")[k],
-            position: Vector2::new(column("x")[k], column("y")[k]),
-            velocity: Vector2::new(column("u")[k], column("v")[k]),
-            density: Some(column("density")[k]),
-        }
+    let (moving, masses) = (problem.moving(), problem.outline.particles.column("mass"));
+    let state = |of: ForeignParticle| {
+        let ForeignParticle { id, position, velocity, density } = of;
+        State { mass: masses[id as usize], position, velocity, density }
     };
-    let start = Moment { time: 0.0, states: moving.iter().map(state).collect() };
-    let masses = column("mass");
+    let states = moving.iter().filter_map(|id| problem.start_of(*id)).map(state);
+    let start = Moment { time: 0.0, states: states.collect() };
     let moment = |frame: &Frame| {
-        let mut all: Vec<_> =
-            frame.particles.iter().filter(|of| moving.binary_search(&of.id).is_ok()).collect();
+        let moves = |of: &ForeignParticle| moving.binary_search(&of.id).is_ok();
+        let mut all: Vec<_> = frame.particles.iter().copied().filter(moves).collect();
         all.sort_by_key(|of| of.id);
-        let states = all.into_iter().map(|of| State {
-            mass: masses[of.id as usize],
-            position: of.position,
-            velocity: of.velocity,
-            density: of.density,
-        });
-        Moment { time: frame.time, states: states.collect() }
+        Moment { time: frame.time, states: all.into_iter().map(state).collect() }
     };
     let moments: Vec<Moment> = entry.results.frames.iter().map(moment).collect();
     Ok(Solved { problem, entry, start, moments })

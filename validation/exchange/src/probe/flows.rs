@@ -27,8 +27,7 @@ pub fn did_it_run() -> Question {
         id: "ran",
         text: "Did it run? Are times, steps and particles those of a run?",
         poses: || vec![mild()],
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let outline = &of.problem.outline;
             // A way as short as the disorder of the start tells one run from another.
             let end = of.moments.iter().find(|at| at.time > 0.012).unwrap_or(&of.start);
@@ -90,8 +89,7 @@ pub fn conservation() -> Question {
         id: "conservation",
         text: "Is momentum kept, and energy lost only to the viscosity?",
         poses: || vec![super::vortices(&["re=1000"])],
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let sizes =
                 of.start.states.iter().fold(0.0, |sum, at| sum + at.mass * at.velocity.norm());
             let momentum = (fit::momentum(of.end()) - fit::momentum(&of.start)).norm() / sizes;
@@ -146,8 +144,7 @@ pub fn drag() -> Question {
         id: "moving-wall",
         text: "Does a moving wall drag the fluid, at its own speed?",
         poses: || vec![couette()],
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let speed = start_up(of)?.v;
             let all = profile(of, &of.end().states)?;
             let (start, slope) = fit::line(&all);
@@ -179,8 +176,7 @@ pub fn stick() -> Question {
         id: "no-slip",
         text: "Does the fluid stick to the wall, as asked?",
         poses: || vec![couette()],
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let flow = start_up(of)?;
             let time = 0.1 * flow.l * flow.l / flow.nu;
             let at = of
@@ -215,8 +211,7 @@ pub fn slip() -> Question {
         id: "free-slip",
         text: "Does the fluid slip along the wall, as asked?",
         poses: || vec![Pose::of("slip_channel", "plain", &[]).or("extrapolating-wall")],
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             // u = U (1 + cos πy/L exp(−π²νt/L²)), L = U = 1.
             let (states, nu) = (&of.end().states, of.problem.outline.medium.nu);
             let decay = PI * PI * nu * of.end().time;
@@ -273,8 +268,7 @@ pub fn force() -> Question {
                     .or("extrapolating-wall"),
             ]
         },
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let flow = start_up(of)?;
             let middle = profile(of, &of.end().states)?;
             let middle = middle.into_iter().filter(|[y, _]| (y - 0.5).abs() < 0.25);

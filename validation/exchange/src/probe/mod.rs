@@ -184,6 +184,8 @@ pub type NotApplicable = String;
 
 /// How an answer is found.
 pub enum Reads {
+    /// In complete results of its only pose.
+    One(fn(&Solved) -> Result<Finding, NotApplicable>),
     /// In complete results of all poses.
     Results(fn(&[&Solved]) -> Result<Finding, NotApplicable>),
     /// In the results of the first pose, and in the end of the second, whatever it was.
@@ -234,6 +236,12 @@ impl Verdict {
             Self::Fail => "FAIL",
             Self::NotApplicable => "not applicable",
         }
+    }
+}
+
+impl From<Result<Finding, NotApplicable>> for Answer {
+    fn from(read: Result<Finding, NotApplicable>) -> Self {
+        read.map_or_else(Self::NotApplicable, Self::Found)
     }
 }
 
@@ -393,9 +401,8 @@ fn answer(question: &Question, ran: &[&Ran]) -> Answer {
         }
     }
     match (&question.answer, last) {
-        (Reads::Results(read), _) => {
-            read(&solved).map_or_else(Answer::NotApplicable, Answer::Found)
-        }
+        (Reads::One(read), _) => named(&solved).and_then(|[only]| read(only)).into(),
+        (Reads::Results(read), _) => read(&solved).into(),
         (Reads::Ends(read), Some(last)) => read(last),
         (Reads::Ends(_), None) => Answer::Failed("the question has no problem".into()),
     }

@@ -4,15 +4,14 @@ use std::f64::consts::PI;
 
 use touchstone_base::functions::{atan2, cos, sin};
 
-use super::{Criterion, Factor, Finding, Pose, Question, Reads, fit, named};
+use super::{Criterion, Factor, Finding, Pose, Question, Reads, fit};
 
 pub fn spin() -> Question {
     Question {
         id: "spin",
         text: "Does a spinning disk keep its angular momentum and its shape?",
         poses: || vec![Pose::of("spinning_disk", "lagrangian", &["n=6", "end=0.1"])],
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let (start, end) = (&of.start.states, &of.end().states);
             let spin = |all: &[super::code::State]| {
                 all.iter().fold(0.0, |sum, at| sum + at.mass * at.position.perp(&at.velocity))
@@ -64,8 +63,7 @@ pub fn bend() -> Question {
         poses: || {
             vec![Pose::of("oscillating_plate", "lagrangian", &["n=5", "length=0.14", "end=0.25"])]
         },
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             // The velocities at the start are the first mode.
             let free = |k: &usize| of.start.states[*k].velocity.norm() > 0.0;
             let all: Vec<usize> = (0..of.start.states.len()).filter(free).collect();

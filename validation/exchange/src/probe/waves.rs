@@ -28,8 +28,7 @@ pub fn shear() -> Question {
             let set = ["n=32", "rho=1.5", "nu=0.001", "amplitude=1e-4", "span=0.2"];
             vec![Pose::of("shear_wave", "cubic-leapfrog", &set)]
         },
-        answer: Reads::Results(|of| {
-            let [of] = named(of)?;
+        answer: Reads::One(|of| {
             let gain = amplitude(of);
             let outline = &of.problem.outline;
             let k = wave_number(of);

@@ -32,10 +32,9 @@ pub fn frames(
     let first = rows.column(ascending);
     let line = |k: usize| rows.first_line + k as u64;
     let mut flaws = Vec::new();
-    let particles = &problem.outline.particles;
-    let (x, y, moving) = (particles.column("x"), particles.column("y"), problem.moving());
-    let from: Vec<Vector2<f64>> =
-        moving.iter().map(|id| Vector2::new(x[*id as usize], y[*id as usize])).collect();
+    let moving = problem.moving();
+    let at_start = moving.iter().filter_map(|id| problem.start_of(*id));
+    let from: Vec<Vector2<f64>> = at_start.map(|placed| placed.position).collect();
     let unread = rows.unread.iter().cloned().collect();
     let mut results = Results { unread, ..Results::default() };
     let (count, mut k) = ((curve.rows)(&problem.spec), 0);
@@ -71,13 +70,13 @@ pub fn frames(
         let row = |k: usize| curve.columns.iter().map(|(name, _)| rows.column(name)[k]).collect();
         let at: Vec<Vec<f64>> = (start..k).map(row).collect();
         let placed = moving.iter().zip((curve.place)(&problem.spec, &at, &from));
-        let placed = placed.map(|(id, [position, velocity])| ForeignParticle {
-            id: *id,
+        let particles = placed.map(|(&id, [position, velocity])| ForeignParticle {
+            id,
             position,
             velocity,
             density: None,
         });
-        results.frames.push(Frame { time, particles: placed.collect() });
+        results.frames.push(Frame { time, particles: particles.collect() });
         results.places.push((CURVE.into(), line(start)));
     }
     if count == 1 {
