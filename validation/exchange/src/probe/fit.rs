@@ -20,7 +20,8 @@ pub fn factor(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> Factor {
 }
 
 /// The factor in the limit of fine spacing, from the factors at two spacings dx: with an error c dx²,
-/// g(dx) = g0 − c dx² gives g0. Its uncertainty is what remains of the fourth order, (g0 − g)² of the finer one.
+/// g(dx) = g0 − c dx² gives g0. Its uncertainty is what remains of the fourth order, (g0 − g)² of the finer
+/// one.
 pub fn limit([coarse, fine]: [Factor; 2], spacings: [f64; 2]) -> Factor {
     let ratio = (spacings[0] / spacings[1]).powi(2);
     let value = fine.value + (fine.value - coarse.value) / (ratio - 1.0);
