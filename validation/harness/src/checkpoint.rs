@@ -184,7 +184,7 @@ pub(crate) fn read<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, RunError> {
     if rest.is_empty() { Ok(value) } else { Err(RunError::Checkpoint("more bytes than it needs")) }
 }
 
-/// A simulation and what is observed of it, as bytes.
+/// A simulation and its observations, as bytes.
 pub(crate) fn save<X: Numbers>(
     simulation: &dyn Stepper<X>,
     stage: Stage,

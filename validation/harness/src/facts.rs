@@ -1,5 +1,5 @@
-//! Facts of a case that depend on neither the tier nor a run: which metrics need what, what another code must
-//! know, and when a run counts as stable.
+//! Facts of a case that depend on neither the tier nor a run: the data that metrics need, the facts that
+//! another code must know, and when a run counts as stable.
 
 use nalgebra::Vector2;
 use touchstone_base::{

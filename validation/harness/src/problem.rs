@@ -251,7 +251,7 @@ impl<P: Problem> Calls<P> {
         self
     }
 
-    /// Likewise a function that changes our simulation. `resumed` makes the change again when a run goes on
+    /// Adds such a function that changes our simulation. `resumed` makes the change again when a run goes on
     /// from a checkpoint, which does not hold it.
     #[must_use]
     pub fn control(mut self, name: &'static str, call: OfOurs<P>, resumed: Resumed<P>) -> Self {

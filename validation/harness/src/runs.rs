@@ -162,7 +162,7 @@ pub fn merged(all: Vec<Planned>) -> Vec<Planned> {
 
 /// The judged runs of a case. A study looks up by its [`RunSpec`] a run that is among its
 /// [`runs`](crate::study::Study::runs). To look up another run, or one with fewer measurements, is a fault
-/// of the program, and panics: no page has a gap where a study reads what nobody planned.
+/// of the program, and panics: no page has a gap where a study reads an unplanned run.
 #[derive(Debug, Default)]
 pub struct Runs {
     /// All runs in the order of the plan.

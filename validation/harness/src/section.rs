@@ -6,7 +6,7 @@ use touchstone_report::Block;
 
 use crate::runs::Judged;
 
-/// The result of a study: what the report shows of it, and the gates that judge it.
+/// The result of a study: its part of the report, and the gates that judge it.
 #[derive(Clone, Debug)]
 pub struct Section {
     /// Anchor in the report: letters, digits, hyphens.

@@ -61,7 +61,7 @@ pub(crate) struct Tally {
 }
 
 impl Tally {
-    /// A run is to be made, which is expected to take so long.
+    /// Adds a run with its expected time \[s\].
     pub(crate) fn plan(&mut self, run: RunKey, case: &'static str, expected: f64) {
         let times = Times { expected, ..Times::default() };
         self.runs.entry(run).or_insert(RunTally { case, times, has_ended: false });
@@ -105,7 +105,7 @@ impl Tally {
         }
     }
 
-    /// A run has a record after so long.
+    /// A run has a record after this time \[s\].
     pub(crate) fn finish(&mut self, run: &RunKey, name: String, took: f64) {
         self.reach(run, 1.0, took);
         self.done += 1;

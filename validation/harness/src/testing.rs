@@ -1,4 +1,4 @@
-//! Cases that tests make up. A test states what it needs of one.
+//! Cases that tests make up: a test states only the parts that it needs.
 
 use serde_json::{Value, json};
 use touchstone_base::{record::Record, settings::Field, spec::RunSpec};

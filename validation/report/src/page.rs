@@ -214,7 +214,7 @@ impl Page {
         page.into_string()
     }
 
-    /// Its figures and films as files: names and what makes their bytes.
+    /// Its figures and films as files: names, and functions that make their bytes.
     fn images(&self) -> Vec<Image<'_>> {
         let mut all = Vec::new();
         add_images(&self.opening, &mut all);

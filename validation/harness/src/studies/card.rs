@@ -156,7 +156,7 @@ impl Stated {
         Self { name, against, uncertainty: None, unit: "" }
     }
 
-    /// A setting as it is written in the words.
+    /// The text of a setting.
     fn setting(settings: &Value, name: &str) -> String {
         settings[name].as_f64().map_or_else(|| settings[name].to_string(), touchstone_report::exact)
     }

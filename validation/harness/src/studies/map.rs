@@ -12,7 +12,7 @@ use crate::{
 /// Starts of each cell in the deep tier.
 pub const STARTS: usize = 20;
 /// The disorder by which starts of a cell differ that has one start in the full tier \[spacings\]: more than
-/// round-off, and far less than what a map resolves.
+/// round-off, and far below the resolution of a map.
 const DISORDER: f64 = 0.01;
 
 /// A start of a run with a value of the setting in which starts differ; none if the case has no such run.
