@@ -28,7 +28,7 @@ pub fn snapshot(name: &str) -> Option<String> {
 /// The numbers of a snapshot by their names, for each variant and run.
 pub type Kept = BTreeMap<(String, String), BTreeMap<String, f64>>;
 
-/// The tables of a snapshot, one a variant, with the variant in the first cell, without the means of profiles.
+/// The tables of a snapshot, one a variant, with the variant in the first cell, without means of profiles.
 fn tables(name: &str) -> impl Iterator<Item = (String, Vec<Vec<String>>)> {
     let text = snapshot(name).unwrap_or_default();
     let parts: Vec<String> = text.split("\n\n").map(String::from).collect();

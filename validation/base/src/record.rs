@@ -257,8 +257,8 @@ impl MetricKey {
     }
 }
 
-/// A column of a profile as a case declares it: profile, name and unit are stated once, and every use names the
-/// constant.
+/// A column of a profile as a case declares it: profile, name and unit are stated once, and every use names
+/// the constant.
 ///
 /// ```
 /// use touchstone_base::record::{ColumnKey, Record};

@@ -460,7 +460,7 @@ mod tests {
         let values = suite.cases[0].runs.all.iter().map(|run| run.record.value(ERROR));
         assert_eq!(values.collect::<Vec<_>>(), [Some(1.0); 3]);
         assert_eq!(suite.made.not_kept.len(), 3);
-        for (_, error) in &suite.made.not_kept {
+        for error in suite.made.not_kept.values() {
             let words = error.to_string();
             assert!(words.contains("cannot write") && words.contains("records"), "{words}");
         }

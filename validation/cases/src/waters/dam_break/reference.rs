@@ -41,8 +41,8 @@ pub struct PeerFronts {
     pub most: f64,
 }
 
-/// Fronts of three other particle codes, as the founders measured them in 2025-26: SPHinXsys, DualSPHysics and
-/// PySPH, WCSPH in two dimensions.
+/// Fronts of three other particle codes, as the founders measured them in 2025-26: SPHinXsys, DualSPHysics
+/// and PySPH, WCSPH in two dimensions.
 pub const PEERS: [PeerFronts; 2] = [
     PeerFronts { time: 2.0, least: 2.62, most: 2.66 },
     PeerFronts { time: 3.0, least: 3.97, most: 4.00 },
