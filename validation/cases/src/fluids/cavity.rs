@@ -156,9 +156,23 @@ fn mirrors() -> Vec<PlaneWall> {
     [low, high].concat()
 }
 
-/// An inner point of a mid-line, the component of the velocity there, and its values by finite differences
-/// and by Ghia et al.
-type Place = (Vector2<f64>, usize, [f64; 2]);
+/// A component of the velocity at an inner point of a mid-line.
+#[derive(Clone)]
+struct Place {
+    position: Vector2<f64>,
+    component: usize,
+    /// Its value by finite differences.
+    exact: f64,
+    /// Its value by Ghia et al.
+    ghia: f64,
+}
+
+impl Place {
+    /// The coordinate along the mid-line.
+    fn along(&self) -> f64 {
+        self.position[1 - self.component]
+    }
+}
 
 fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
     let reference = Reference::load("cavity")?;
@@ -168,8 +182,14 @@ fn places(re: f64) -> Result<Vec<Place>, ReferenceError> {
         let of = [("re", &*re), ("quantity", ["u", "v"][component])];
         let rows = table.select(&of, ["place", "value", "published"])?.into_iter();
         let inner = rows.filter(|[along, ..]| *along > 0.0 && *along < 1.0);
-        let place = |along| [Vector2::new(0.5, along), Vector2::new(along, 0.5)][component];
-        Ok(inner.map(|[along, own, ghia]| (place(along), component, [own, ghia])).collect())
+        let position = |along| [Vector2::new(0.5, along), Vector2::new(along, 0.5)][component];
+        let place = |[along, exact, ghia]: [f64; 3]| Place {
+            position: position(along),
+            component,
+            exact,
+            ghia,
+        };
+        Ok(inner.map(place).collect())
     };
     Ok([line(0)?, line(1)?].concat())
 }
@@ -185,16 +205,16 @@ fn volumes(now: &Snapshot) -> Result<Vec<(Point, f64)>, Absent> {
 
 /// The velocity at a point, from a quadratic field fitted to the fluid within 4.5 spacings with weights V W,
 /// so that a boundary layer is not smoothed. NaN without a fit.
-fn velocity((place, component, _): &Place, fluid: &[(Point, f64)], dx: f64) -> f64 {
+fn velocity(place: &Place, fluid: &[(Point, f64)], dx: f64) -> f64 {
     let kernel = Smoothing::<QuinticSpline>::new(1.5 * dx);
     let (mut moments, mut sum) = (SMatrix::<f64, 6, 6>::zeros(), SVector::<f64, 6>::zeros());
     for (p, volume) in fluid {
-        let r = (p.position - place) / dx;
+        let r = (p.position - place.position) / dx;
         let weight = volume * kernel.w(r.norm_squared() * dx * dx);
         if weight > 0.0 {
             let basis = SVector::from([1.0, r.x, r.y, r.x * r.x, r.x * r.y, r.y * r.y]);
             moments += basis * basis.transpose() * weight;
-            sum += basis * (weight * p.velocity[*component]);
+            sum += basis * (weight * p.velocity[place.component]);
         }
     }
     moments.lu().solve(&sum).map_or(f64::NAN, |fitted| fitted[0])
@@ -209,19 +229,18 @@ fn measure(places: &[Place], means: &[f64], record: &mut Record) {
         return record.leave_out(STRENGTH, Absent::because("the reference has Re 100 and 1000"));
     }
     let all = || means.iter().zip(places);
-    for (component, metrics) in [[U_RMS, U_GHIA], [V_RMS, V_GHIA]].into_iter().enumerate() {
-        let of = || all().filter(move |(_, place)| place.1 == component);
-        for (k, metric) in metrics.into_iter().enumerate() {
-            record.put(metric, rms(of().map(|(mean, place)| mean - place.2[k])));
-        }
+    for (component, (own, ghia)) in [(U_RMS, U_GHIA), (V_RMS, V_GHIA)].into_iter().enumerate() {
+        let of = || all().filter(move |(_, place)| place.component == component);
+        record.put(own, rms(of().map(|(mean, place)| mean - place.exact)));
+        record.put(ghia, rms(of().map(|(mean, place)| mean - place.ghia)));
         let (rows, [place, velocity]) = (of().collect::<Vec<_>>(), MID_LINES[component]);
-        record.put_column(place, &rows, |(_, place)| place.0[1 - component]);
+        record.put_column(place, &rows, |(_, place)| place.along());
         record.put_column(velocity, &rows, |(mean, _)| **mean);
     }
-    let sum = |of: fn(f64, f64) -> f64| all().map(|(m, p)| of(*m, p.2[0])).sum::<f64>();
+    let sum = |of: fn(f64, f64) -> f64| all().map(|(m, p)| of(*m, p.exact)).sum::<f64>();
     let least = |of: fn(f64, f64) -> f64| {
-        let along = all().filter(|(_, place)| place.1 == 0);
-        along.map(|(m, p)| of(*m, p.2[0])).fold(f64::INFINITY, f64::min)
+        let along = all().filter(|(_, place)| place.component == 0);
+        along.map(|(m, p)| of(*m, p.exact)).fold(f64::INFINITY, f64::min)
     };
     record.put(RETURN, least(|mean, _| mean) / least(|_, exact| exact) - 1.0);
     record.put(STRENGTH, sum(|mean, exact| mean * exact) / sum(|_, exact| exact * exact) - 1.0);
@@ -462,8 +481,8 @@ fn curves(table: &table::Table<Cavity, f64>) -> Curves {
     let panel = |(re, k): (f64, usize)| {
         let rows = table.of(re).filter(|row| row.settings.n == finest);
         let line = |row: &Row| CurveOf::columns(row.variant, row.run.spec.clone(), MID_LINES[k]);
-        let known = places(re).unwrap_or_default().into_iter().filter(|place| place.1 == k);
-        let known = known.map(|place| (place.0[1 - k], place.2[0])).collect();
+        let known = places(re).unwrap_or_default().into_iter().filter(|place| place.component == k);
+        let known = known.map(|place| (place.along(), place.exact)).collect();
         let axes = [["y/L [-]", "u/U [-]"], ["x/L [-]", "v/U [-]"]][k];
         let known = ("finite differences", known);
         let lines = rows.map(line).collect();
@@ -536,13 +555,14 @@ mod tests {
             )
         };
         all.iter_mut().for_each(|p| p.velocity = field(p.position));
-        for (place, component) in
+        for (at, component) in
             [([0.5, 0.03], 0), ([0.5, 0.517], 0), ([0.97, 0.5], 1), ([0.211, 0.5], 1)]
         {
-            let place = Vector2::new(place[0], place[1]);
+            let position = Vector2::from(at);
+            let place = Place { position, component, exact: 0.0, ghia: 0.0 };
             let fluid = volumes(&Snapshot::of(0.0, &all)).expect("densities");
-            let found = velocity(&(place, component, [0.0; 2]), &fluid, flow.medium.dx);
-            assert!((found - field(place)[component]).abs() < 1e-9, "{place:?}: {found}");
+            let found = velocity(&place, &fluid, flow.medium.dx);
+            assert!((found - field(position)[component]).abs() < 1e-9, "{at:?}: {found}");
         }
     }
 
@@ -551,8 +571,8 @@ mod tests {
     fn what_is_too_much_at_the_places_is_measured() {
         let places = places(100.0).expect("a reference");
         let of = |component: usize| {
-            let of = places.iter().filter(move |place| place.1 == component);
-            of.map(|place| place.2[0]).collect::<Vec<f64>>()
+            let of = places.iter().filter(move |place| place.component == component);
+            of.map(|place| place.exact).collect::<Vec<f64>>()
         };
         let measured = |means: &[f64]| {
             let mut record = Record::new(NAME, RECOMMENDED, serde_json::json!({}), 1);
@@ -562,15 +582,15 @@ mod tests {
         let is = |value: f64, expected: f64| {
             assert!((value - expected).abs() < 1e-12, "{value}, not {expected}");
         };
-        let more: Vec<f64> = places.iter().map(|place| 1.05 * place.2[0]).collect();
+        let more: Vec<f64> = places.iter().map(|place| 1.05 * place.exact).collect();
         let value = measured(&more);
         is(value(STRENGTH), 0.05);
         is(value(RETURN), 0.05);
         for (metric, component) in [(U_RMS, 0), (V_RMS, 1)] {
             is(value(metric), 0.05 * rms(of(component).into_iter()));
         }
-        let mut one: Vec<f64> = places.iter().map(|place| place.2[0]).collect();
-        let first = places.iter().position(|place| place.1 == 1).expect("a place");
+        let mut one: Vec<f64> = places.iter().map(|place| place.exact).collect();
+        let first = places.iter().position(|place| place.component == 1).expect("a place");
         one[first] += 0.1;
         let value = measured(&one);
         is(value(U_RMS), 0.0);

@@ -265,8 +265,10 @@ struct WaterSample {
 
 #[derive(Serialize, Deserialize)]
 struct ColumnHistory {
-    /// Mean heights of the lowest and of the highest particles at the start \[m\].
-    start: [f64; 2],
+    /// Mean height of the lowest particles at the start \[m\].
+    low: f64,
+    /// Mean height of the highest particles at the start \[m\].
+    high: f64,
     samples: Vec<WaterSample>,
     /// The most particles outside of the tank.
     outside: f64,
@@ -277,8 +279,8 @@ struct ColumnHistory {
 impl ColumnHistory {
     /// No sample yet of water that starts like this.
     fn new(column: &WaterColumn, start: &Snapshot) -> Self {
-        let start = ends(column, &start.moving());
-        Self { start, samples: Vec::new(), outside: 0.0, spread: 0.0 }
+        let [low, high] = ends(column, &start.moving());
+        Self { low, high, samples: Vec::new(), outside: 0.0, spread: 0.0 }
     }
 
     fn sample(&mut self, column: &WaterColumn, now: &Snapshot) {
@@ -302,8 +304,8 @@ impl ColumnHistory {
         self.samples.push(WaterSample {
             time: now.time() / column.period,
             pressure: error,
-            level: (high - self.start[1]) / s.depth,
-            gap: (low - self.start[0]) / medium.dx,
+            level: (high - self.high) / s.depth,
+            gap: (low - self.low) / medium.dx,
             kinetic: kinetic(water.iter().copied()) / (mass * s.g * s.depth),
         });
     }

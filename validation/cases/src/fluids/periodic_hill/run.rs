@@ -136,8 +136,8 @@ const ENTRY: f64 = 0.5;
 /// Samples of the field in the last part of the run, at most one for each action of the controller.
 const SAMPLES: f64 = 40.0;
 
-/// Is a look the first in an interval of the length `every`, if looks are a stretch apart?
-fn is_first([time, stretch]: [f64; 2], every: f64) -> bool {
+/// Whether a look is the first in an interval of the length `every`, if looks are a stretch apart.
+fn is_first(time: f64, stretch: f64, every: f64) -> bool {
     let interval = |time: f64| ((time + 1e-9) / every).floor();
     time < 1.5 * stretch || interval(time) > interval(time - stretch)
 }
@@ -183,11 +183,11 @@ impl Monitor {
         let HillSettings { end, average, .. } = setup.settings;
         if is_last(time, end, average * end) {
             self.window.drives.push(drive.clone());
-            if is_first([time, self.stretch], average * end / SAMPLES) {
+            if is_first(time, self.stretch, average * end / SAMPLES) {
                 self.window.sample(setup, now);
             }
         }
-        if is_first([time, self.stretch], ENTRY) {
+        if is_first(time, self.stretch, ENTRY) {
             self.series.push(FlowSample { time, drive, kinetic: kinetic(now.stored()) });
         }
     }
@@ -314,7 +314,7 @@ mod tests {
         assert!(![0.0, 16.1, 31.9].into_iter().any(is_last));
         assert!([32.0, 32.1, 40.0].into_iter().all(is_last));
         let looks = (1..=1000).map(|k| f64::from(k) * 0.01);
-        let times: Vec<f64> = looks.filter(|time| is_first([*time, 0.01], 0.5)).collect();
+        let times: Vec<f64> = looks.filter(|time| is_first(*time, 0.01, 0.5)).collect();
         let exact = (0..=20).map(|k| 0.5 * f64::from(k)).map(|t| t.max(0.01));
         assert!(times.len() == 21 && times.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-9));
     }
