@@ -492,6 +492,31 @@ fn bounds_beside(case: &str) -> Vec<(&'static str, Bound, &'static str)> {
                 "the flow goes around, and nowhere else: within the error of 8 spacings, 1 %";
             vec![("radial_rms", Bound::Below(0.01), around)]
         }
+        "extremes" => {
+            let apart = "a pair that is pressed together parts at less than the speed of sound";
+            vec![("fastest", Bound::Below(1.0), apart)]
+        }
+        "manufactured" => {
+            let smoothed = "smoothing is of order (2 pi h)^2, 0.39 for h = 1.2 dx at 12 spacings";
+            let quarter =
+                "viscosity leaves the velocity a quarter of what smoothing does to the pressure";
+            vec![("pressure_l2", Bound::Below(0.4), smoothed), ("l2", Bound::Below(0.1), quarter)]
+        }
+        "operators" => {
+            let smoothed = "smoothing takes (k h)^2/2, 0.08 for h = 1.5 dx at 24 spacings, or less";
+            let random =
+                "of displacements of 0.2 dx, which kernels of h = dx average over few neighbours";
+            vec![
+                ("bias", Bound::Below(0.08), smoothed),
+                ("gain", Bound::Within(0.92, 1.08), smoothed),
+                ("noise", Bound::Below(0.3), random),
+                ("error", Bound::Below(0.3), random),
+            ]
+        }
+        "slip_channel" => {
+            let rate = "of second order: 14 spacings decay within 2 % of the rate of the viscosity";
+            vec![("decay", Bound::Within(0.98, 1.02), rate)]
+        }
         "taylor_green" => bounds_of_vortices(),
         "cavity" => {
             let wall =
