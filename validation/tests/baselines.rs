@@ -184,8 +184,9 @@ fn two_submissions_of_one_problem_are_compared_metric_by_metric() {
         tables.push(found["metrics"].clone());
     }
     assert_eq!(tables[0], tables[1]);
-    let first = read(&at.join("first.json"));
-    assert_eq!(tables[0].as_array().map(Vec::len), first["metrics"].as_object().map(|of| of.len()));
+    let first: Value = serde_json::from_str(&read(&at.join("baseline.json"))).unwrap();
+    let measured = first["metrics"].as_object().unwrap().len();
+    assert_eq!(tables[0].as_array().map(Vec::len), Some(measured));
     let (words, _) = of(at, "compare first.json own");
     let row = words.lines().find(|line| line.starts_with("l2@0.1 ")).unwrap();
     assert!(row.contains(" bound ") && row.ends_with(" is worse"), "{words}");
