@@ -287,7 +287,7 @@ fn heads_of_arrays_are_not_believed() {
         ("", head(&[1 << 40]), "its head says"),
         ("", head(&[8, 0, 0]), "more than the 8 bytes"),
         ("", head(&[]), "its head says"),
-        ("", "A*==".into(), "no base64"),
+        ("", "A*==".into(), "not base64"),
     ] {
         let whole = String::from_utf8(TEXT.file(3, ("id", "Int64"), ("more", "Int8", &[0.0; 3])));
         let array = "Name=\"Rhop\"  offset=\"0\" format=\"ascii\">1000 999.5 1000 ";
