@@ -103,18 +103,18 @@ impl ReferenceConfiguration {
             this.images.push(ReferenceImage::new(source, map, slips));
             particle.push(particle[source]);
         }
-        let near = |this: &Self, i: usize, list: &mut dyn Iterator<Item = usize>| -> Vec<usize> {
-            let is_near = |&j: &usize| {
-                this.bodies[particle[j]] == this.bodies[i]
-                    && kernel.f((this.places[j] - this.places[i]).norm_squared()) > 0.0
-            };
-            list.filter(is_near).collect()
+        let is_near = |this: &Self, i: usize, j: usize| {
+            this.bodies[particle[j]] == this.bodies[i]
+                && kernel.f((this.places[j] - this.places[i]).norm_squared()) > 0.0
         };
         // Counted first: a growing vector holds up to three times its content, the most memory of a body.
-        let fours = |(i, mut list)| near(&this, i, &mut list).len().div_ceil(LANES);
-        this.fours.reserve_exact(data.lists().enumerate().map(fours).sum());
-        for (i, mut list) in data.lists().enumerate() {
-            let near = near(&this, i, &mut list);
+        let mut count = 0;
+        for (i, list) in data.lists().enumerate() {
+            count += list.filter(|&j| is_near(&this, i, j)).count().div_ceil(LANES);
+        }
+        this.fours.reserve_exact(count);
+        for (i, list) in data.lists().enumerate() {
+            let near: Vec<usize> = list.filter(|&j| is_near(&this, i, j)).collect();
             this.add(kernel, i, &near, &particle)?;
         }
         this.faces = this.find_faces();

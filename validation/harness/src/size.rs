@@ -6,10 +6,10 @@ use std::fmt;
 use touchstone_report::{seconds, sig};
 use touchstone_solver::{Numbers, Stepper};
 
-/// Processor time of a step for one particle \[s\]. Over all compositions and
-/// both integrators (a predictor-corrector visits its pairs as often as a leapfrog), the ratio of actual to
-/// estimated time is within 0.5 and 1.9 for 90 % of the runs of the full tier of 0.05 s or more, and within
-/// 0.3 and 4.5 for all, on a processor with AVX-512; the ratio of the sums is 0.81.
+/// Processor time of a step for one particle \[s\]. Over all compositions and both integrators (a
+/// predictor-corrector visits its pairs as often as a leapfrog), the ratio of actual to estimated time is
+/// within 0.5 and 1.9 for 90 % of the runs of the full tier of 0.05 s or more, and within 0.3 and 4.5 for
+/// all, on a processor with AVX-512; the ratio of the sums is 0.81.
 const STEP_OF_PARTICLE: f64 = 1e-7;
 /// Processor time of a step for each neighbour of a particle \[s\].
 const STEP_OF_NEIGHBOUR: f64 = 2.5e-9;
@@ -23,7 +23,7 @@ pub const MOST_BYTES: f64 = 4e9;
 /// Memory of a particle \[bytes\], within a factor of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Storage {
-    /// Itself.
+    /// The particle without its neighbours.
     pub particle: f64,
     /// Each of its neighbours.
     pub neighbour: f64,
